@@ -52,7 +52,8 @@ def test_motors_of_straight_lines_start_exponentially() -> None:
 
 
 def test_a_steady_state_of_two_motors() -> None:
-    machine = cranks(eq.Drive("left", 30.0, motor=STRAIGHT), FurtherDrive("right", motor=STRAIGHT))
+    strong = Motor(30.0, 60.0, mean_speed="free")
+    machine = cranks(eq.Drive("left", 30.0, motor=strong), FurtherDrive("right", motor=strong))
     found = eq.run(machine)
     assert found.end.kind == "steady"
     assert found.drives["right"].speed[-1] == pytest.approx(30.0, rel=1e-5)
@@ -69,6 +70,22 @@ def test_a_crank_that_follows_the_first_takes_nothing_from_it() -> None:
     right = beside.drives["right"]
     wanted = INERTIA * 2 * (6.0 - 6.0 / 30.0 * beside.drives["left"].speed) / INERTIA
     np.testing.assert_allclose(right.torque, wanted, rtol=1e-8, atol=1e-8)
+
+
+@pytest.mark.parametrize("speed", [20.0, -20.0])
+def test_cycles_of_a_crank_of_constant_speed(speed: float) -> None:
+    machine = cranks(eq.Drive("left", speed), FurtherDrive("right", free=True))
+    found = eq.run(machine, turns=2.5)
+    assert found.end.kind == "turns" and abs(found.turned) == pytest.approx(2.5)
+    period = 2 * pi / 20.0
+    np.testing.assert_allclose(found.cycle_begins, [0.0, period, 2 * period], atol=1e-9)
+    assert found.drives["right"].speed[-1] == pytest.approx(speed)
+
+
+def test_a_crank_that_stands_still_beside_a_free_one() -> None:
+    machine = cranks(eq.Drive("left", 0.0), FurtherDrive("right", motor=Motor(torque=2.0)))
+    found = eq.run(machine, 0.5)
+    assert found.drives["right"].speed[-1] == pytest.approx(2.0 * 0.5 / INERTIA, rel=1e-8)
 
 
 def test_a_pendulum_keeps_its_energy_and_turns_back() -> None:

@@ -99,7 +99,7 @@ class DriveEquations:
         inertia = [[0.0] * count for _ in range(count)]
         for value, (i, j) in zip(upper, self._places, strict=True):
             inertia[i][j] = inertia[j][i] = value
-        each = [forces[k : k + count] for k in range(0, len(forces), count)]
+        each: list[Sequence[float]] = [forces[k : k + count] for k in range(0, len(forces), count)]
         return DriveState(inertia, bias, each, margins, ranges)
 
     def inertia(self, angles: Array) -> Array:

@@ -142,7 +142,7 @@ class DrivesEquation:
         since : an instant, s, after which loads over time follow the line that counts.
         """
         program = self.program
-        crank = np.array([where.crank_angle]) if program.loads else None
+        crank = np.array([where.crank_angle if program.loads else 0.0])
         loads = (float(np.ravel(load(crank))[0]) for load in program.loads)
         factors = (float(load.line_after(since)(time)) for load in self.machine.timed_loads)
         numbers = (*where.angles, *where.speeds, *loads, *factors)

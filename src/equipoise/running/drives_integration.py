@@ -322,18 +322,18 @@ class DrivesIntegration:
         yield "corner", next((time for time in self.corners if time > self.since), inf)
         on = any(driver.on for driver in self.drivers)
         yield "off", limits.off_time if on else inf
-        if self.equation.by_crank:
+        if self.equation.by_crank or not pace:
             return
         yield "turns", 2 * pi * limits.turns / pace
         yield "off", 2 * pi * limits.off_turns / pace if on else inf
         if self.equation.given:
-            yield "mark", abs(self.mark - self.start + self._mark_span) / pace
+            yield "mark", (abs(self.mark - self.start) + self._mark_span) / pace
 
     def _watched(self, time: float) -> Iterator[tuple[tuple[str, str], Any]]:
         """What may happen on the way: its kind and what of, and a function that is 0 there."""
         count, equation = self._count, self.equation
         for k, place in enumerate(equation.unknowns, count):
-            yield ("reversal", equation.drives[place].link), lambda _, y, k=k: y[k]
+            yield ("reversal", equation.drives[place].link), _value(k)
         for joint, left in zip(equation.program.dyads, self._margins, strict=True):
             yield ("dead", joint), _ending(left)
         for k, what in enumerate(equation.program.ranges):
@@ -343,10 +343,7 @@ class DrivesIntegration:
         if not equation.by_crank:
             return
         for kind, way, origin in self._crank_ways():
-            yield (
-                (kind, ""),
-                _ending(lambda _, y, way=way, origin=origin: way - abs(y[0] - origin)),
-            )
+            yield (kind, ""), _ending(_way_left(way, origin))
 
     def _crank_ways(self) -> Iterator[tuple[str, float, float]]:
         """What is to happen after a way of the crank, rad, from an angle on."""
@@ -382,7 +379,7 @@ class DrivesIntegration:
         if acting is None or self.equation.given or (self.corners and self.corners[-1] > time):
             return 1.0
         speeds = acting.where.speeds
-        sizes = [abs(speed) / self.usual for speed in speeds]
+        sizes: list[float] = [abs(speed) / self.usual for speed in speeds]
         sizes += [abs(value) / self.usual**2 for value in acting.accelerations]
         for k in self.circuits:
             driver = self.drivers[k]
@@ -454,6 +451,16 @@ class DrivesIntegration:
 
     def _note(self, kind: str, time: float, state: Sequence[float], of: str = "") -> None:
         self.events.append(DriveEvent(kind, time, self._crank_angle(time, state), of))
+
+
+def _value(place: int) -> Callable[[float, Any], float]:
+    """A value of the state."""
+    return lambda _, state: float(state[place])
+
+
+def _way_left(way: float, origin: float) -> Callable[[float, Any], float]:
+    """What is left of a way of the crank from an angle, rad."""
+    return lambda _, state: way - abs(float(state[0]) - origin)
 
 
 def _ending(function: Callable[[float, Any], float]) -> Any:

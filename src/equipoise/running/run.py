@@ -378,10 +378,8 @@ def _limits(machine: Machine, given: Mapping[str, float | str | None]) -> Limits
 
 def _start(usual: float, speed: float | str | None, angle: float | str | None) -> list[float]:
     """Speed of the crank at the start, rad/s, and its angle, rad."""
-    start = [
-        usual if speed is None else in_si(speed, "angular speed", "speed"),
-        in_si(angle, "angle", "angle"),
-    ]
+    given = usual if speed is None else in_si(speed, "angular speed", "speed")
+    start = [float(value or 0.0) for value in (given, in_si(angle, "angle", "angle"))]
     if not np.all(np.isfinite(start)):
         raise UsageError(
             Note(
@@ -390,7 +388,7 @@ def _start(usual: float, speed: float | str | None, angle: float | str | None) -
                 angle=angle,
             )
         )
-    return [float(value) for value in start]  # type: ignore[arg-type]
+    return start
 
 
 def _turns_counted(limits: Limits, progress: Progress | None) -> Callable[[float], None]:
