@@ -78,13 +78,15 @@ def _over_crank(computed: Computed, output: str) -> Chart:
     from equipoise.figures.analysis import ALL
     from equipoise.figures.forces import over_crank
     from equipoise.mechanism.parts.objectives import ROWS
+    from equipoise.results.scales import TOTALS
     from equipoise.web.figures import capital
 
     outputs = computed.analysis.outputs
     item = outputs[f"{ROWS}{output}" if f"{ROWS}{output}" in outputs else output]
     label = item.label()
     what = [(label, item.dimension, {ALL: item.values_to_draw})]
-    return replace(over_crank(computed.analysis, "output", capital(label), what), keys=())
+    total = item.name if item.group in TOTALS else ""
+    return replace(over_crank(computed.analysis, "output", capital(label), what, total), keys=())
 
 
 def linkage_at(computed: Computed, sample: int) -> Chart:
