@@ -255,7 +255,7 @@ def _spring(posed: Posed, change: Change) -> Addition:
     free = round(MM * values["free_length"], FINEST) / MM
     text = say(
         "{stiffness}, {length} free",
-        stiffness=quantity(values["stiffness"], "stiffness", "N/m"),
+        stiffness=quantity(values["stiffness"], "stiffness"),
         length=quantity(free, "length"),
     )
     return Addition(

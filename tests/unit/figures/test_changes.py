@@ -158,6 +158,9 @@ def test_springs() -> None:
     stands = [one.places[0] for one in (*panel.ground, *panel.signs) if one.role == "stand"]
     assert any(abs(MM * place - ends[1]) < 1e-6 for place in stands)  # so it is held in the frame
     assert f"{spring.stiffness:.4g} N/m" in words(changes_of("spring"))
+    values = {"point": "C", "to": "S", "stiffness": 21530.0, "free_length": 0.1}
+    stiff = changes(replace(result, changes=(Change("spring", "rocker", values),)))
+    assert "21.53 kN/m, 100 mm free" in words(stiff)
     none = Change("spring", "rocker", {"point": "C", "to": "S", "stiffness": 0.0, "free_length": 0})
     chart = changes(replace(result, changes=(none,)))
     assert not springs(chart) and "Nothing to change" in words(chart)
