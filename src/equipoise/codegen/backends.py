@@ -105,18 +105,34 @@ def extremes_of(curve: CurveTops, values: Array) -> tuple[Array, Array]:
     """Highest and lowest values (M,) of the curves through values (M, N), in the order of the
     curve; compiled where Numba is installed.
     """
-    kernel = curve.kernel(values.shape[1])
-    if not kernel or engine() == "numpy":
+    if _uses_numpy(curve, values):
         return curve(values)[0], -curve(-values)[0]
+    gathered = _extremes(curve, values, [0, 1, 2, -1, 3, -1])
+    return gathered[:, 2], gathered[:, 3]
+
+
+def highest_of(curve: CurveTops, values: Array) -> Array:
+    """Highest values (M,) of the curves as of `extremes_of`, in half the time."""
+    if _uses_numpy(curve, values):
+        return curve(values)[0]
+    return _extremes(curve, values, [0, 1, 2, -1, -1, -1])[:, 2]
+
+
+def _uses_numpy(curve: CurveTops, values: Array) -> bool:
+    """Whether extremes of curves through values (M, N) are left to NumPy."""
+    return engine() == "numpy" or not curve.kernel(values.shape[1])
+
+
+def _extremes(curve: CurveTops, values: Array, columns: list[int]) -> Array:
+    """Highest and lowest value, top and dip (M, 4) of each curve, by columns as of `columns_of`."""
     with _one_at_a_time:
-        find = compiled_kernel(kernel)
-    out = np.empty((len(values), 4))
-    out[:, 0], out[:, 1] = values.max(axis=1), values.min(axis=1)
-    unknown = np.isnan(out[:, 0])  # which compiled code passes over
-    columns = np.array([[0, 1, 2, -1, 3, -1]])
-    find(np.ascontiguousarray(values)[:, None], out, columns, *curve.arguments())
-    out[unknown] = np.nan
-    return out[:, 2], out[:, 3]
+        find = compiled_kernel(curve.kernel(values.shape[1]))
+    gathered = np.empty((len(values), 4))
+    gathered[:, 0], gathered[:, 1] = values.max(axis=1), values.min(axis=1)
+    unknown = np.isnan(gathered[:, 0])  # which compiled code passes over
+    find(np.ascontiguousarray(values)[:, None], gathered, np.array([columns]), *curve.arguments())
+    gathered[unknown] = np.nan
+    return gathered
 
 
 @cache

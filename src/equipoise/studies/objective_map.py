@@ -28,7 +28,7 @@ from equipoise.balancing.objectives import (
 )
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import pin_of
-from equipoise.codegen.backends import extremes_of, processors
+from equipoise.codegen.backends import extremes_of, highest_of, processors
 from equipoise.codegen.extremes import GridTops, PanelTops
 from equipoise.dataclass import dataclass
 from equipoise.design.evaluator import ChunkTask, Pool, PooledEvaluator
@@ -230,13 +230,17 @@ class LinearValues:
         """Peaks (P,), or peaks to peaks, of the curve of a signal for changes (P, K)."""
         sampling = signal.sampling
         curve = GridTops(2 * pi) if sampling is None else PanelTops(sampling)
-        start, columns = curve.in_order(signal.start[None]), curve.in_order(signal.columns)
+        both = curve.in_order(np.vstack([signal.columns, signal.start]))
+        axes = [both.real, both.imag] if np.iscomplexobj(both) else [both]
+        matrices = [np.ascontiguousarray(axis) for axis in axes]
 
         def of(part: Array) -> Array:
-            values = part @ columns.real + start.real
-            if np.iscomplexobj(start):
-                other = part @ columns.imag + start.imag
-                return extremes_of(curve, np.sqrt(values**2 + other**2))[0]
+            shares = np.column_stack([part, np.ones(len(part))])
+            values = shares @ matrices[0]
+            if len(matrices) == 2:
+                np.square(values, out=values)
+                values += np.square(shares @ matrices[1])
+                return highest_of(curve, np.sqrt(values, out=values))
             high, low = extremes_of(curve, values)
             return np.maximum(high, -low) if self.measure == "peak" else high - low
 
