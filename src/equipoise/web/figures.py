@@ -22,6 +22,7 @@ from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import Display, change, display, number, typeset
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis
+from equipoise.signals import Figures
 from equipoise.web.following import extent_of
 
 CHARTS = {
@@ -117,14 +118,6 @@ def _of_all_rows(analysis: Analysis) -> Signals:
     return {f"rows.{name}": values for name, values in analysis.rows_total.items()}
 
 
-def _rms(motion: Motion, values: Array) -> float:
-    return float(np.sqrt(motion.mean(np.abs(values) ** 2)))
-
-
-def _peak(motion: Motion, values: Array) -> float:
-    return motion.figures(np.abs(values)).peak
-
-
 def _signed(measure: str, values: Array, size: float) -> float:
     """A figure as it is printed: a peak of what has a sign with that, as curves and cards have it.
 
@@ -134,7 +127,7 @@ def _signed(measure: str, values: Array, size: float) -> float:
     return -size if measure == "peak" and negative else size
 
 
-MEASURES = {"rms": (to_say("RMS"), _rms), "peak": (to_say("peak"), _peak)}
+MEASURES = {"rms": to_say("RMS"), "peak": to_say("peak")}
 
 
 NOTHING = 1e-5
@@ -169,10 +162,20 @@ class _Read:
         return cls(whole.motion, _with_parts(signals_of(whole)))
 
     @cached_property
+    def figures(self) -> dict[str, Figures]:
+        """Figures of the absolute value of each signal, at once: of each alone they take longer
+        than the motion, and a drag waits for them.
+        """
+        if not self.signals:
+            return {}
+        sizes = np.abs(np.stack([*self.signals.values()]))
+        return dict(zip(self.signals, self.motion.figures_of_each(sizes), strict=True))
+
+    @cached_property
     def loudest(self) -> float:
         """Largest force, N."""
-        forces = (values for name, values in self.signals.items() if _is_force(name))
-        return max((_peak(self.motion, values) for values in forces), default=0.0)
+        forces = (figures for name, figures in self.figures.items() if _is_force(name))
+        return max((figures.peak for figures in forces), default=0.0)
 
 
 def _figures(read: _Read, old: _Read | None) -> Iterator[Values]:
@@ -184,8 +187,8 @@ def _figures(read: _Read, old: _Read | None) -> Iterator[Values]:
         values = read.signals[name]
         least = NOTHING * loudest * (1.0 if _is_force(name) else size)
         label = told_signal.say("", several)
-        for measure, (shown, of) in MEASURES.items():
-            value = _plain(of(read.motion, values), least)
+        for measure, shown in MEASURES.items():
+            value = _plain(getattr(read.figures[name], measure), least)
             unit = display(told_signal.dimension)
             entry = {
                 "name": f"{name}.{measure}",
@@ -197,7 +200,7 @@ def _figures(read: _Read, old: _Read | None) -> Iterator[Values]:
                 "text": text_of(_in(unit, value and _signed(measure, values, value))),
             }
             if old is not None and name in old.signals:
-                before = _plain(of(old.motion, old.signals[name]), least)
+                before = _plain(getattr(old.figures[name], measure), least)
                 entry |= {"before": before, "was": was_of(_in(unit, before), _in(unit, value))}
             yield entry
 
