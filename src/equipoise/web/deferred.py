@@ -21,7 +21,7 @@ from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import figures_by_name
 from equipoise.symbols.scene import Scene
 from equipoise.web.block import FloatBlock
-from equipoise.web.edits import Computed, kept_with_design
+from equipoise.web.edits import Computed, kept_with_first
 from equipoise.web.figures import chart, gauge_choice, text_of, was_of
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def can_be_shaken(machine: Machine) -> bool:
     return machine.support is not None and not massless(machine)
 
 
-@kept_with_design
+@kept_with_first
 def responded(shown: Computed) -> Response:
     """The response of a design at its own speed, with the errors of `respond`."""
     from equipoise.vibration.forced import respond
@@ -47,7 +47,7 @@ def responded(shown: Computed) -> Response:
     return respond(shown.analysis.machine)
 
 
-@kept_with_design
+@kept_with_first
 def _curves(shown: Computed, speed: float, progress: Callable[[int, int], None]) -> Sweep:
     """The response of a design over speeds around one, rad/s."""
     from equipoise.vibration.linear import COARSE, around
@@ -325,7 +325,7 @@ def _plants(computed: Computed) -> bool:
     return machine.planting is not None and machine.drive.speed != 0
 
 
-@kept_with_design
+@kept_with_first
 def planted(shown: Computed) -> PlantingFigures:
     """What a design plants, with the errors of `plant`."""
     from equipoise.planting.summary import plant

@@ -79,15 +79,18 @@ class Computed:
         return Scene.of(self.motion)
 
 
-def kept_with_design(make: Callable[..., R]) -> Callable[..., R]:
-    """A function of a design whose result is kept as long as the design is."""
-    results: WeakKeyDictionary[Computed, R] = WeakKeyDictionary()
+def kept_with_first(make: Callable[..., R]) -> Callable[..., R]:
+    """A function of a design or an analysis whose result is kept as long as that is.
+
+    The result must not refer to it, or neither would ever be given back.
+    """
+    results: WeakKeyDictionary[Any, R] = WeakKeyDictionary()
 
     @wraps(make)
-    def result_of(shown: Computed, *arguments: Any) -> R:
-        if shown not in results:
-            results[shown] = make(shown, *arguments)
-        return results[shown]
+    def result_of(first: Any, *arguments: Any) -> R:
+        if first not in results:
+            results[first] = make(first, *arguments)
+        return results[first]
 
     return result_of
 

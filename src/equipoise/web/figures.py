@@ -23,6 +23,7 @@ from equipoise.quantities import Display, change, display, number, typeset
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Figures
+from equipoise.web.edits import kept_with_first
 from equipoise.web.following import extent_of
 
 CHARTS = {
@@ -146,7 +147,7 @@ def figures_of(analysis: Analysis, before: Analysis | None = None) -> list[Value
 
     As analyses have them, of crank angles that resolve where forces jump.
     """
-    return [*_figures(_Read.of(analysis), None if before is None else _Read.of(before))]
+    return [*_figures(_Read.of(analysis), None if before is None else _before(before))]
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,6 +177,12 @@ class _Read:
         """Largest force, N."""
         forces = (figures for name, figures in self.figures.items() if _is_force(name))
         return max((figures.peak for figures in forces), default=0.0)
+
+
+@kept_with_first
+def _before(analysis: Analysis) -> _Read:
+    """Of a machine that stays while another is changed."""
+    return _Read.of(analysis)
 
 
 def _figures(read: _Read, old: _Read | None) -> Iterator[Values]:

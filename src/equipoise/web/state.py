@@ -19,7 +19,7 @@ from equipoise.signals import Periodic
 from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.completeness import forces_lack
 from equipoise.web.drawing import cams_told, ground_of, moves_of, stage_of
-from equipoise.web.edits import Computed, kept_with_design, movable
+from equipoise.web.edits import Computed, kept_with_first, movable
 from equipoise.web.figures import charts_of, least_of, signals_of
 from equipoise.web.following import extent_of
 from equipoise.web.measured_records import MeasuredSignals
@@ -207,7 +207,7 @@ def spectra_of(analysis: Analysis, last: Mapping[str, Array] | None = None) -> M
     return dict(zip(names, sizes, strict=True))
 
 
-@kept_with_design
+@kept_with_first
 def _spectra_before(before: Computed) -> Mapping[str, Array]:
     """Spectra of a machine that stays while another is changed."""
     return spectra_of(before.analysis)
