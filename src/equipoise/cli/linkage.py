@@ -314,8 +314,8 @@ def run(
 ) -> Result:
     """Simulate a machine on a fixed frame under its motors, weight, springs and loads.
 
-    Of several drives, those with a motor or `free = true` follow from torques.  Defaults are those
-    of the table [run] of the file.
+    Of several drives, those with a motor and those that are free follow from torques.  Defaults
+    are those of the table [run] of the file.
 
     Parameters
     ----------

@@ -143,7 +143,7 @@ def axes_in_words(laid: Laid) -> Iterator[Fault]:
     largest: dict[str, float] = {}
     for view, _ in laid.panels:
         for axis, scale in ((view.panel.x, view.x), (view.panel.y, view.y)):
-            if re.search(r"[a-z]_[a-z]", axis.label):
+            if re.search(r"(?<!\S)[a-z]+(_[a-z]+)+(?![^\s,;])", axis.label):
                 yield "axis named as in the code", axis.label
             most = max(abs(scale.low), abs(scale.high))
             largest[axis.unit_name] = max(largest.get(axis.unit_name, 0.0), most)

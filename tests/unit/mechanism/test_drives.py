@@ -151,7 +151,7 @@ def test_models_in_which_the_crank_turns_the_support_are_refused():
     machine = eq.load("yamashita-rig")
     machine = machine.with_drive(motion=SWING, motor=None, flywheel=0.0)
     for model in ("torque", "coupled", "exact"):
-        with pytest.raises(UsageError, match=f"model {model} is for one crank that turns"):
+        with pytest.raises(UsageError, match=f"the {model} model is for one crank that turns"):
             eq.respond(machine, model=model)
     assert eq.respond(machine, model="moment").gauges
 
