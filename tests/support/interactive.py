@@ -6,8 +6,13 @@ import json
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
+
+import equipoise as eq
+from equipoise import signals
+from equipoise.signals import Figures
 
 NODE = shutil.which("node")
 BLOCK = r'<script[^>]* id="equipoise-{}">(.*?)</script>'
@@ -22,6 +27,13 @@ const given = {given};
 const answer = (() => {{ {body} }})();
 writeFileSync("answer.json", JSON.stringify(answer));
 """
+
+
+def sampled(analysis: eq.Analysis, name: str) -> Figures:
+    """Figures of an output with the extremes of its samples, which such a file shows."""
+    whole, values = analysis.summary[name], analysis.outputs[name].resolved
+    found = signals.figures(*analysis.resolved.motion.shown(values))
+    return replace(found, mean=whole.mean, rms=whole.rms)
 
 
 def block(html: str, name: str) -> str:

@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise import signals
 from equipoise.errors import RangeError, UsageError
 from equipoise.exchange.export import export_content
 from equipoise.exchange.formats import FORMATS
@@ -22,14 +21,13 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.force_elements import Load, LoadTable
 from equipoise.schema.template import Template
-from equipoise.signals import Figures
 from equipoise.symbols.scene import Scene
 from equipoise.web.drawing import stage_of
 from equipoise.web.following_signs import ties_of
 from equipoise.web.interactive import Interactive
 from support import machines
 from support.chosen import DISTINCT, few
-from support.interactive import NODE, evaluated
+from support.interactive import NODE, evaluated, sampled
 from support.machines_strokes import named
 
 ROOT = Path(__file__).parents[3]
@@ -61,12 +59,6 @@ def page_of(machine: eq.Machine) -> str:
         return str(export_content(machine, HTML, 0.0)[1])
     except UsageError as error:
         pytest.skip(str(error))
-
-
-def sampled(analysis: eq.Analysis, name: str) -> Figures:
-    whole, values = analysis.summary[name], analysis.outputs[name].resolved
-    found = signals.figures(*analysis.resolved.motion.shown(values))
-    return replace(found, mean=whole.mean, rms=whole.rms)
 
 
 def compare(figures: Any, analysis: eq.Analysis, tolerance: float) -> None:
