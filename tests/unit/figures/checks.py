@@ -17,6 +17,7 @@ from equipoise.figures.sheet import Canvas, CanvasStroke, Item, Words, box_of
 from equipoise.figures.style import PAPER, DrawingStyle, look_of
 from equipoise.figures.vector import svg_of
 from equipoise.figures.view import View
+from equipoise.i18n import say
 from equipoise.results.charts import DEGREES, Chart
 from equipoise.symbols.shapes import Shape
 
@@ -222,9 +223,10 @@ def machines_small(laid: Laid) -> Iterator[Fault]:
 
 def supports_cut(laid: Laid) -> Iterator[Fault]:
     """Where a support goes on beyond a drawing, words say what is there."""
+    note = say("Beyond the drawing: {items}", items="").strip()
     for view, _ in laid.panels:
         supports = [one for one in view.panel.ground if one.role.startswith("support")]
-        noted = not supports or any("Beyond" in text for text in laid.chart.words)
+        noted = not supports or any(note in text for text in laid.chart.words)
         if not noted and _beyond(view, _places(view, supports)) > SLACK:
             yield "support cut without a note", _told(view)
 
