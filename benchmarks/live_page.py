@@ -29,9 +29,9 @@ measures the page of a site in the same way, which computes in WebAssembly in th
 cores without other programs, medians and 95th percentiles of two days:
 
     linkage                keys      drag         keys      drag
-    yamashita-1            40  75    35  54       93 177    67  94
-    slider-crank-engine    78 113    63  82       95 175    61  94
-    stephenson-six-bar     46  74    41  59      115 177    90 154
+    yamashita-1            40  75    35  54       69 145    65  97
+    slider-crank-engine    78 113    63  82      104 176    83 133
+    stephenson-six-bar     46  74    41  59      145 239   107 256
 
 On the second day the machine was slower, not the page: in alternation with the page of the first
 day, beside other programs, a frame of `yamashita-1` took 130 ms of the processor's time while keys
@@ -49,7 +49,7 @@ programs 150 keys had 92 frames, and as many moves 150.  Frames are printed besi
 measures how long a stranger waits: from an empty browser, over 20 Mbit/s from a host that
 compresses nothing, until a joint has been dragged.  Without bytecode in the site, on a slow
 machine, that took 16.5 s, and Chromium 19.0 and 19.3 s of the processor's time until the machine
-was drawn; with it, in alternation, 12.0 and 10.9 s of that time.
+was drawn; with it, in alternation, 12.0 and 10.9 s of that time, and later 11.1 s as a whole.
 """
 
 from __future__ import annotations
