@@ -206,3 +206,14 @@ def test_a_motor_beside_a_motion_or_a_free_drive_is_refused() -> None:
     law = AngleLaw(between=(0.0, 1.0))
     with pytest.raises(ModelError, match="has a motion"):
         cranks(eq.Drive("left", 10.0), FurtherDrive("right", motion=law, motor=STRAIGHT))
+
+
+def test_a_motor_of_a_further_drive_without_a_curve_is_refused() -> None:
+    """As that of the first one is, with its place."""
+    half = replace(STRAIGHT, no_load_speed=None)
+    with pytest.raises(ModelError) as first:
+        cranks(eq.Drive("left", 10.0, motor=half), FurtherDrive("right"))
+    with pytest.raises(ModelError) as further:
+        cranks(eq.Drive("left", 10.0), FurtherDrive("right", motor=half))
+    assert str(first.value).startswith("drive.motor: ")
+    assert str(further.value) == "drives[1].motor" + str(first.value).removeprefix("drive.motor")

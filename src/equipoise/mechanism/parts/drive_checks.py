@@ -62,8 +62,6 @@ def wrong_drive(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[Mo
     """Everything that is wrong with the drive, but for its link."""
     if drive.speeds:
         yield from wrong_speeds("drive.speeds", drive.speeds)
-    if drive.motor is not None:
-        yield from wrong_motor("drive.motor", drive.motor)
     yield from _wrong_push("drive", drive, bodies, sliders)
     yield from _wrong_mover("drive", drive)
     if drive.motion is not None:
@@ -77,6 +75,8 @@ def wrong_drive(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[Mo
 
 def _wrong_mover(where: str, drive: Drive | FurtherDrive) -> Iterator[ModelError]:
     """What is wrong with a drive that moves freely."""
+    if drive.motor is not None:
+        yield from wrong_motor(f"{where}.motor", drive.motor)
     if drive.free and drive.motor is not None:
         yield ModelError(f"{where}.free", Note("a motor drives it; leave one of them out"))
     if drive.free and drive.pushes:
