@@ -11,6 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, ResponseError, UsageError
+from equipoise.figures.running import drives_charts
+from equipoise.figures.style import look_of
 from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
@@ -49,6 +51,15 @@ def test_motors_of_straight_lines_start_exponentially() -> None:
         np.testing.assert_allclose(course.speed, wanted, atol=1e-9 * abs(final))
         np.testing.assert_allclose(course.torque, slope * (final - course.speed), atol=1e-8)
     assert found.end.kind == "time"
+
+
+def test_each_drive_has_a_look_of_its_own_in_pictures() -> None:
+    """The same over speed and torque."""
+    machine = cranks(eq.Drive("left", 30.0, motor=STRAIGHT), FurtherDrive("right", motor=STRAIGHT))
+    speeds, torques = drives_charts(eq.run(machine, 0.05))["speed"].panels
+    looks = {curve.label: look_of(curve.role) for curve in speeds.curves}
+    assert len({*looks.values()}) == len(looks) == 2
+    assert {curve.label: look_of(curve.role) for curve in torques.curves} == looks
 
 
 def test_a_steady_state_of_two_motors() -> None:
@@ -175,9 +186,10 @@ def apart(**changes: Any) -> eq.Machine:
 
 
 def test_links_that_reach_no_start_are_refused() -> None:
-    with pytest.raises(ResponseError, match="assembled"):
+    with pytest.raises(ResponseError, match="assembled") as refused:
         eq.run(replace(five_bar(free=True), drives=(FurtherDrive("right", start=pi, free=True),)),
                1.0, angle=pi)  # fmt: skip
+    assert refused.value.topic == "links-cannot-be-joined-at-any-crank-angle"
 
 
 @pytest.mark.parametrize(

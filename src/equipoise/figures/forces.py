@@ -343,6 +343,9 @@ def order_panel(
     finest = _finest(read, VISIBLE * largest)
     wide = BAR_WIDE * finest / len(read)
     bars = []
+    # A mean that is rounding goes neither up nor down, and takes no room below.
+    read = {role: (orders, np.where(np.abs(sizes) > VISIBLE * largest, sizes, np.abs(sizes)))
+            for role, (orders, sizes) in read.items()}  # fmt: skip
     for number, (role, (orders, sizes)) in enumerate(read.items()):
         visible = (orders <= last) & np.isclose(np.mod(orders / finest + 0.5, 1), 0.5)
         at = orders[visible] + (number - (len(read) - 1) / 2) * wide

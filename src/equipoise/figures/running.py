@@ -33,12 +33,12 @@ def drives_charts(run: DrivesRun) -> dict[str, Chart]:
     """``speed`` of all drives, with the torques of those that have any below it."""
     if not run.time[-1] > 0:
         return {}
-    time, courses = run.time, run.drives
-    speeds = [Curve(time, course.speed, link, "thin") for link, course in courses.items()]
+    time, each = run.time, [*enumerate(run.drives.items(), 1)]  # a drive looks alike in both panels
+    speeds = [Curve(time, item.speed, link, f"several {number}") for number, (link, item) in each]
     torques = [
-        Curve(time, course.torque, link, "thin")
-        for link, course in courses.items()
-        if varies(course.torque)
+        Curve(time, item.torque, link, f"several {number}")
+        for number, (link, item) in each
+        if varies(item.torque)
     ]
     panels = [_curves(time, say("speed of the drives"), "angular speed", speeds, "rpm")]
     if torques:

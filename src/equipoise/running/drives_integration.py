@@ -215,7 +215,9 @@ class DrivesIntegration:
         self.mark = self.start
         if min((left(0.0, np.array(state)) for left in self._margins), default=1.0) < 0:
             raise ResponseError(
-                Note("the links cannot be assembled at the angles of the drives at the start")
+                Note(
+                    "the links cannot be assembled at the angles of the drives at the start"
+                ).about("links-cannot-be-joined-at-any-crank-angle")
             )
         self._record(0.0, state)
         self._at_mark: list[float] | None = None

@@ -157,6 +157,14 @@ def test_the_mean_of_a_spectrum_has_its_sign() -> None:
     assert box_of(number)[1] >= float(view.y.at(mean)) and box_of(number)[3] <= view.box[3]
 
 
+def test_a_mean_of_rounding_takes_no_room_in_a_spectrum() -> None:
+    """Whatever its sign: frame forces of a cycle without loads have none."""
+    laid = Laid.of(spectrum(eq.analyze(eq.load("yamashita-1"))))
+    for view, _ in laid.panels[:2]:
+        (bars,) = view.panel.bars
+        assert 0 <= bars.size[0] < 1e-9 * bars.size[1] and view.y.low == 0
+
+
 def test_numbers_of_crank_angles_at_one_place_stand_together() -> None:
     """A force that does not turn is the same at all of them; one to and fro at two."""
     (chart,) = joint_polars(eq.analyze(eq.load("knife-drive")))
