@@ -180,18 +180,14 @@ def display_of_totals(analysis: Analysis, output: str) -> Display:
     Shaking forces have one, and those that hold loads another: a cylinder may push a hundred times
     as much as its machine shakes.  So have moments.
     """
-    kind, with_loads = analysis.outputs[output].dimension, _holds_loads(output)
+    own = analysis.outputs[output].declared
     ones = (
         item.figures
         for item in analysis.outputs.summed
-        if item.group in TOTALS and item.dimension == kind and _holds_loads(item.name) == with_loads
-    )
-    return display(kind, [0.0, *(max(item.peak, item.peak_to_peak) for item in ones)])
-
-
-def _holds_loads(output: str) -> bool:
-    """Whether an output is a force of frame or drive, or the moment on the frame."""
-    return output.startswith("frame_") or ("force" in output and "shaking_force" not in output)
+        if item.group in TOTALS and item.dimension == own.dimension
+        and item.declared.with_loads == own.with_loads
+    )  # fmt: skip
+    return display(own.dimension, [0.0, *(max(item.peak, item.peak_to_peak) for item in ones)])
 
 
 def force_blocks(analysis: Analysis) -> Iterator[Block]:

@@ -212,28 +212,34 @@ def _figures(run: Run) -> Iterator[str]:
         )
 
 
+def _lost(run: Run) -> tuple[dict[str, float], float]:
+    """Energy that friction has taken in each joint since the start, and in all, J."""
+    each = {name: float(lost[-1]) for name, lost in run.losses.items()}
+    return each, sum(each.values())
+
+
 def _lossiest(run: Run) -> Iterator[str]:
     """Which joint loses most."""
-    total = sum(float(lost[-1]) for lost in run.losses.values())
+    each, total = _lost(run)
     if not total > 0:
         return
-    name, most = max(run.losses.items(), key=lambda item: float(item[1][-1]))
+    name, most = max(each.items(), key=lambda item: item[1])
     yield say(
         "friction in joints: {energy} since the start, of which {share} % in {joint}",
         energy=format_quantity(total, "energy", "J"),
-        share=percent(float(most[-1]) / total),
+        share=percent(most / total),
         joint=joint_named(name),
     )
 
 
 def _losses(run: Run) -> Iterator[Block]:
     """What each joint has lost since the start."""
-    total = sum(float(lost[-1]) for lost in run.losses.values())
+    each, total = _lost(run)
     if not total > 0:
         return
     rows = [
-        (joint_named(name), Value(float(lost[-1])), f"{percent(float(lost[-1]) / total)} %")
-        for name, lost in run.losses.items()
+        (joint_named(name), Value(lost), f"{percent(lost / total)} %")
+        for name, lost in each.items()
     ]
     columns = ("", Column(say("work"), "energy"), say("share"))
     yield Table.of(say("Friction in joints from the start to the end"), columns, rows)

@@ -286,9 +286,10 @@ PUSHED: dict[str, Any] = {"members": lambda machine: ("",) if machine.drive.push
 EFFORT: dict[str, Any] = {"ordered": True, "compared": TORQUE, "yardstick": "effort",
                           "by_friction": True}  # fmt: skip
 linear("drive_torque", "torque", to_say("drive torque"), **TURNED, **EFFORT)
-linear("drive_force", "force", to_say("drive force"), **PUSHED, **EFFORT)
-linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False))
-linear("frame_moment", "torque", to_say("moment on the frame"), about=True)
+linear("drive_force", "force", to_say("drive force"), with_loads=True, **PUSHED, **EFFORT)
+linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False),
+       with_loads=True)  # fmt: skip
+linear("frame_moment", "torque", to_say("moment on the frame"), about=True, with_loads=True)
 of_space = alike(
     "",
     lambda name, result: getattr(result.forces.across, name),
@@ -355,6 +356,7 @@ of_drive(
     loop=looked_up("drive force"),
     members=lambda machine: _links_of_drives(machine, "force"),
     yardstick="effort",
+    with_loads=True,
 )
 of_drive(
     "power",
@@ -586,7 +588,7 @@ of_rows("yaw_moment", "torque", to_say("yaw moment"), compared=FORCE, yardstick=
 of_rows("drive_torque", "torque", to_say("drive torque"), compared=TORQUE, yardstick="effort",
         by_friction=True, **TURNED)  # fmt: skip
 of_rows("drive_force", "force", to_say("drive force"), compared=TORQUE, yardstick="effort",
-        by_friction=True, **PUSHED)  # fmt: skip
+        by_friction=True, with_loads=True, **PUSHED)  # fmt: skip
 declare_as(
     Declared(
         "gauges.{}",

@@ -93,6 +93,8 @@ class Declared:
     array : whether it stands among the arrays.  summed : whether it stands in the summary.
     ordered : whether it is told by orders.
     compared : measures that are told before and after balancing.
+    with_loads : of frame and drive, whether it holds what loads do, which may be a hundred times
+        what shakes: such outputs have a unit of their own.
     unbounded : whether there are crank angles at which it is infinite, which NaN stands for; it is
         had by its name alone.
     yardstick : against what it is measured to say whether it is large; empty where it is not.
@@ -118,6 +120,7 @@ class Declared:
     summed: bool = True
     ordered: bool = False
     compared: tuple[Measure, ...] = ()
+    with_loads: bool = False
     unbounded: bool = False
     yardstick: Yardstick = ""
     by_friction: bool = False
