@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import re
 from pathlib import Path
@@ -170,6 +171,31 @@ def test_lines_in_a_log_grow_fewer(
         "9990 designs computed in 16 min 39 s, 10 designs/s; best: height 250"
     )
     assert closing.count("\n") == 1
+
+
+class Terminal(io.StringIO):
+    """Standard error that is a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_bar_has_the_rate_the_time_left_the_best_and_the_failures(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As it stands half way; a bar refreshes a few times a second, which a short run may miss."""
+    from rich.console import Console
+
+    monkeypatch.setattr("sys.stderr", Terminal())
+    monkeypatch.setattr(progress_lines, "monotonic", lambda: 50.0)
+    page = Console(file=io.StringIO(), width=120)
+    with swept({"height": unit_named("mm")}) as tell:
+        tell(progress(5000, 50.0))
+        page.print(progress_lines._shown_now)
+    first, *further = page.file.getvalue().splitlines()  # type: ignore[attr-defined]
+    assert first.startswith("50 %, 5000 of 10000 designs")
+    assert first.rstrip().endswith("100 designs/s, 50.0 s left")
+    assert further == ["best so far: height 250.0 mm", "failed: does not turn fully 500"]
 
 
 def test_nothing_is_said_of_what_nothing_is_known_of() -> None:
