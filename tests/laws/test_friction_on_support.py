@@ -8,7 +8,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 
 RIG = eq.load("yamashita-rig")
 JOINTS = tuple(
@@ -61,3 +63,40 @@ def test_a_motor_on_solid_ground_runs_as_in_time() -> None:
     assert steady.drive.speed.mean == pytest.approx(cycle.mean_speed, rel=1e-3)
     without = eq.respond(replace(ground, joints=()), drive=True)
     assert without.drive.speed.mean > 1.01 * steady.drive.speed.mean
+
+
+@pytest.mark.parametrize("coefficient", [0.01, 0.3])
+@pytest.mark.parametrize("kind", ["damper", "friction"])
+def test_a_free_motor_meets_what_viscous_parts_need_at_its_own_speed(
+    kind: str, coefficient: float
+) -> None:
+    """Its line meets that of the resistance at stall / (stall / no load + c), which needs no
+    integration; at the speed of the drive the larger coefficient takes nine times the torque that
+    the motor has at standstill.
+    """
+    stall, no_load = 10.0, 300.0
+    bare = replace(eq.load("slider-crank-engine"), loads=(), balance=None)
+    if kind == "damper":
+        held = replace(bare, torsion_dampers=(TorsionDamper("crank", damping=coefficient),))
+    else:
+        pin = JointProperties("joints.A", radius=0.01, torsional_damping=coefficient)
+        held = replace(bare, joints=(pin,))
+    motor = Motor(no_load, stall, mean_speed="free")
+    machine = held.with_drive(flywheel=50.0, motor=motor, speed=300.0)
+    steady = eq.respond(machine, drive=True)
+    expected = stall / (stall / no_load + coefficient)
+    # the flywheel leaves a fluctuation whose share of the loss is its square
+    assert steady.drive.speed.mean == pytest.approx(expected, rel=1e-7)
+
+
+def test_a_motor_with_a_narrow_top_is_not_taken_for_stalled() -> None:
+    """Its breakdown lies closer to its synchronous speed than any evenly spaced speeds do."""
+    bare = replace(eq.load("slider-crank-engine"), loads=(), balance=None)
+    induction = InductionMotor(300.0, 10.0, 0.004)
+    motor = Motor(induction=induction, mean_speed="free")
+    pin = JointProperties("joints.A", radius=0.01, drag_torque=9.0)
+    machine = replace(bare, joints=(pin,)).with_drive(flywheel=50.0, motor=motor, speed=300.0)
+    steady = eq.respond(machine, drive=True)
+    wanted = induction.speed_at(9.0)
+    assert wanted is not None
+    assert steady.drive.speed.mean == pytest.approx(wanted, rel=1e-6)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from itertools import pairwise
 from math import ceil, copysign, pi
 
 import numpy as np
@@ -277,8 +278,13 @@ def _on_lines(motor: Motor, torque: float) -> float | None:
     return None
 
 
-SPEEDS = 4
-"""Times that friction follows the speed of a motor, and that speed the friction."""
+SPEEDS, SLOWEST = 49, 1e-6
+"""Speeds of the crank between which a motor's is looked for, from the highest down, and the lowest
+of them over the highest."""
+MOST_GROWTH = 10
+"""Times that the highest of them is doubled where loads drive a machine faster than its motor."""
+SAME_SPEED = 1e-12
+"""Tolerance of the speed of a motor, over itself."""
 ROUGH = 12
 """Orders of the linear response that do to start from."""
 
@@ -358,18 +364,67 @@ def motor_setting(machine: Machine, speed: float) -> tuple[float, float]:
     assert motor is not None
     if motor.mean_speed == "held":
         return speed, motor.ratio * abs(speed) - _own_speed(machine, motor, speed)
-    for _ in range(SPEEDS if machine.rubs else 1):
-        speed = float(np.sign(speed)) * _own_speed(machine, motor, speed) / motor.ratio
-    return speed, 0.0
+    return copysign(_free_speed(machine, motor, abs(speed)), speed), 0.0
+
+
+def _free_speed(machine: Machine, motor: Motor, nominal: float) -> float:
+    """Highest speed of the crank, rad/s, at which the mean torque that it needs at that speed comes
+    up to what a motor gives there.
+
+    Raises
+    ------
+    StallError, ResponseError : as of `motor_setting`.
+    """
+    from scipy.optimize import brentq
+
+    sense, given = copysign(1.0, machine.drive.speed), torque_on_crank(motor, machine.drive.speed)
+
+    def missing(speed: float) -> float:
+        own = sense * float(given(np.array(sense * speed), np.zeros(())))
+        return _mean_torque(machine, speed) - own
+
+    high, growth = max(fastest(motor) / motor.ratio, nominal), 0
+    while missing(high) <= 0:  # loads drive the machine, beyond the motor's curve
+        if growth == MOST_GROWTH:
+            speed_at(motor, _mean_torque(machine, nominal) / motor.ratio)  # says what it needs
+            raise ResponseError(NO_STEADY_STATE)
+        high, growth = 2 * high, growth + 1
+    speeds = _tried_speeds(motor, high)
+    deficits = [missing(high)]
+    for fast, slow in pairwise(speeds):
+        deficits.append(missing(slow))
+        if deficits[-1] <= 0:
+            return float(brentq(missing, slow, fast, rtol=SAME_SPEED))
+    worst = speeds[int(np.argmin(deficits))]
+    needed = _mean_torque(machine, worst)
+    raise StallError(mean_stall_note(needed, needed - min(deficits), worst))
+
+
+def _tried_speeds(motor: Motor, high: float) -> list[float]:
+    """Speeds of the crank, rad/s, falling from the highest: evenly, and where the motor's curve has
+    its corners or its top, beside which it may be narrow.
+    """
+    smooth = motor.smooth_curve
+    corners = motor.rows[0] if smooth is None else (smooth.breakdown_speed,)
+    own = [corner / motor.ratio for corner in corners]
+    even = [*np.linspace(high, 0.0, SPEEDS)[:-1].tolist(), high * SLOWEST]
+    return sorted({*even, *(speed for speed in own if 0 < speed < high)}, reverse=True)
 
 
 def _own_speed(machine: Machine, motor: Motor, speed: float) -> float:
     """Speed of a motor, rad/s, at which its curve has the mean torque of a speed of the crank."""
-    sense = float(np.sign(speed))
-    motion = resolved(move(machine, SAMPLES, speed, 0.0))
-    torque = float(motion.mean(forces(motion).drive_torque)) * len(rows_of(machine))
-    own = speed_at(motor, sense * torque / motor.ratio)
+    torque = _mean_torque(machine, abs(speed))
+    own = speed_at(motor, torque / motor.ratio)
     if own < 0:
         most = motor.ratio * motor.largest_torque
-        raise StallError(mean_stall_note(sense * torque, most, abs(speed)))
+        raise StallError(mean_stall_note(torque, most, abs(speed)))
     return own
+
+
+def _mean_torque(machine: Machine, speed: float) -> float:
+    """Mean torque, N m, that the crank needs at a constant speed, rad/s, both as sizes in the sense
+    of the drive; of all rows.
+    """
+    sense = copysign(1.0, machine.drive.speed)
+    motion = resolved(move(machine, SAMPLES, sense * speed, 0.0))
+    return sense * float(motion.mean(forces(motion).drive_torque)) * len(rows_of(machine))

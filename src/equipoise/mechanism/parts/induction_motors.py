@@ -32,6 +32,11 @@ class InductionMotor(Frozen):
         slip, least = 1 - speed / self.synchronous_speed, self.breakdown_slip
         return 2 * self.breakdown_torque * slip * least / (slip * slip + least * least)
 
+    @property
+    def breakdown_speed(self) -> float:
+        """Speed, rad/s, at which its torque is largest."""
+        return self.synchronous_speed * (1 - self.breakdown_slip)
+
     def speed_at(self, torque: float) -> float | None:
         """Speed, rad/s, at which its torque falls through a value; None where it never does."""
         share = torque / self.breakdown_torque
