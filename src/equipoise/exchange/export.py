@@ -19,6 +19,9 @@ from equipoise.schema.files import printable, write
 from equipoise.studies.selection import write_designs
 from equipoise.studies.store import Store
 
+FRICTION = to_say("friction in joints: forces are those without it")
+PRESSED = to_say("friction in joints by what presses there: damping and drag alone are left")
+
 
 def export(
     what: Machine | Balanced | Store,
@@ -147,13 +150,16 @@ def export_content(
     if file_format.turns:
         check_turning(machine, file_format.title)
     _check_joints(machine, file_format)
-    frictionless = machine.rubs and not file_format.rubs
+    frictionless = not file_format.rubs and any(
+        joint.rubs_by_load if file_format.drags else joint.rubs for joint in machine.joints
+    )
     if angles is None and crank_angle is not None:
         angles = [crank_angle]
-    without_friction = machine.without_friction() if frictionless else machine
+    without_friction = machine.without_friction(file_format.drags) if frictionless else machine
     job = Job(without_friction, crank_angle or 0.0, changes, link, angles, sizes)
     if frictionless:
-        job.leave_out(Note("friction in joints: forces are those without it"))
+        left_out = PRESSED if file_format.drags else FRICTION
+        job.leave_out(Note(left_out))
     if not file_format.tightens:
         for coupling in machine.couplings:
             if coupling.preload:

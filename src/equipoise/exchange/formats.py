@@ -30,6 +30,7 @@ class Format:
     joints : that it has beside pins, guides and what turns two links in a fixed ratio, as kinds of
     parts call them (`PartKind.special`); None where it has all but those that it `lacks`.
     rubs : whether it holds friction in joints, or what follows from it.
+    drags : whether it holds damping and drag of joints, which nothing presses on.
     tightens : whether its pins bear the tension of belts and chains.
     worded : whether it has sentences for readers, in their language.
     pushes : whether it holds drives that push, and their strokes.
@@ -49,6 +50,7 @@ class Format:
     lacks: tuple[str, ...] = ()
     module: str = ""
     rubs: bool = True
+    drags: bool = False
     tightens: bool = True
     of_link: bool = False
     pushes: bool = False
@@ -75,11 +77,12 @@ FORMATS: Mapping[str, Format] = {
             ".xml",
             "MuJoCo (MJCF)",
             "bodies, pins, sliders, gears, belts, linear springs, torsion springs and dampers, "
-            "viscous resistances, constant loads, rows, the support on its mounts, the drive at "
-            "constant speed",
+            "bushings, elastic stops, viscous resistances, damping and drag of joints, constant "
+            "loads, rows, the support on its mounts, the drive at constant speed",
             turns=True,
-            joints=("damper", "torsion damper", "resistance"),
+            joints=("damper", "torsion damper", "bushing", "stop", "resistance"),
             rubs=False,
+            drags=True,
             tightens=False,
         ),
         Format(
@@ -98,10 +101,11 @@ FORMATS: Mapping[str, Format] = {
             "urdf",
             ".urdf",
             "robots (URDF)",
-            "the tree: links with masses, hinges, slides, gears and belts of two joints; loops are "
-            "cut",
+            "the tree: links with masses, hinges and slides with their damping and drag, gears and "
+            "belts of two joints; loops are cut",
             joints=(),
             rubs=False,
+            drags=True,
             tightens=False,
         ),
         Format(

@@ -26,9 +26,11 @@ from equipoise.exchange.tree import (
     weighed,
 )
 from equipoise.i18n import Note
+from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import forces
-from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.kinematics.friction_joints import rubbing_joints
+from equipoise.mechanism.kinematics.motion import PlacedBodies, move
 from equipoise.mechanism.parts.links import Link, size_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.support import FREEDOMS, Support, unit_vector
@@ -67,6 +69,9 @@ def export_bytes(job: Job) -> str:
         _springs(root, tree, job)
         _dampers(root, tree, job)
         _resistances(root, tree, job)
+        _bushings(root, tree, job)
+        _stops(root, tree, job)
+        _drags(root, tree)
         _loads(root, world, tree, job)
     _shaft(root, trees_of_links)
     if machine.support is not None:
@@ -93,6 +98,8 @@ def _options(root: ET.Element, machine: Machine) -> None:
     default = ET.SubElement(root, "default")
     softness = {"solref": _row((SOFT * step, SLOW)), "solimp": "0.9999 0.9999 0.001 0.5 2"}
     ET.SubElement(default, "equality", softness)
+    for kind in ("joint", "tendon"):  # so that drag has its full size at any speed worth the name
+        ET.SubElement(default, kind, solreffriction=softness["solref"])
     ET.SubElement(default, "geom", contype="0", conaffinity="0", rgba="0.35 0.5 0.65 1")
 
 
@@ -327,8 +334,77 @@ def _resistances(root: ET.Element, tree: Tree, job: Job) -> None:
         ways = (0.0, np.pi / 2) if item.direction is None else (item.direction,)
         for k, way in enumerate(ways):
             name = f"resistance {number}{' across' if k else ''}{tree.suffix}"
-            gear = (float(np.cos(way)), float(np.sin(way)), 0, 0, 0, 0)
-            _push(root, name, site, other, gear, (0.0, 0.0, -item.damping))
+            _push(root, name, site, other, _along(way), (0.0, 0.0, -item.damping))
+
+
+def _bushings(root: ET.Element, tree: Tree, job: Job) -> None:
+    """Pushes on sites by their way and speed in the axes of the frame, and turning tendons."""
+    motion = move(tree.machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
+    for number, item in enumerate(tree.machine.bushings, 1):
+        if item.on != FRAME or tree.machine.support is not None:
+            job.leave_out(Note("bushings on a body that moves"))
+            continue
+        site, other = _place(tree, item.link, item.point), _place(tree, FRAME, item.to)
+        laws = zip(item.preload, item.stiffness, item.damping, strict=True)
+        for k, (preload, stiffness, damping) in enumerate(laws):
+            if preload or stiffness or damping:
+                name = f"bushing {number}{' across' if k else ''}{tree.suffix}"
+                gear = _along(item.direction + k * pi / 2)
+                _push(root, name, site, other, gear, (preload, -stiffness, -damping))
+        stiffness = item.torsional_stiffness or 0.0
+        rates = {"stiffness": repr(stiffness), "damping": repr(item.torsional_damping or 0.0)}
+        if stiffness:
+            *_, (turned, _) = item.ways(PlacedBodies(motion, f"bushings[{number}]"))
+            rest = item.torque / stiffness - float(np.ravel(turned)[0])
+            rates["springlength"] = _row((rest, rest))
+        elif item.torque:
+            gear = (0.0, 0.0, 0.0, 0.0, 0.0, item.torque)
+            _push(
+                root, f"bushing {number} turning{tree.suffix}", site, other, gear, (1.0, 0.0, 0.0)
+            )
+        if stiffness or item.torsional_damping:
+            _turning(root, tree, (item.link, FRAME), rates)
+
+
+def _stops(root: ET.Element, tree: Tree, job: Job) -> None:
+    """Pushes on sites that never pull; what contacts lose is a product of way and speed, which no
+    actuator has.
+    """
+    for number, item in enumerate(tree.machine.stops, 1):
+        if item.on != FRAME or tree.machine.support is not None:
+            job.leave_out(Note("stops on a body that moves"))
+            continue
+        if item.dissipation is not None:
+            job.leave_out(Note("the restitution of stops: they lose nothing"))
+        site, other = _place(tree, item.link, item.point), _place(tree, FRAME, item.to)
+        push = (0.0, -item.stiffness, 0.0)
+        name = f"stop {number}{tree.suffix}"
+        _push(root, name, site, other, _along(item.direction), push, one_sided=True)
+
+
+def _along(direction: float) -> tuple[float, ...]:
+    """Factors of a push along a direction of the frame."""
+    return float(np.cos(direction)), float(np.sin(direction)), 0.0, 0.0, 0.0, 0.0
+
+
+def _drags(root: ET.Element, tree: Tree) -> None:
+    """What resists in joints whatever presses there: of a slide that of its joint, of a pin, which
+    may close a loop, that of a tendon as long as its angle.
+    """
+    for joint in rubbing_joints(assemble(tree.machine)):
+        given = joint.given
+        if joint.slider is None:
+            rates = given.torsional_damping, given.drag_torque
+        else:
+            rates = given.damping, given.drag_force
+        named = zip(("damping", "frictionloss"), rates, strict=True)
+        numbers = {name: repr(rate) for name, rate in named if rate}
+        if joint.slider is None:
+            _turning(root, tree, (joint.on, joint.by), numbers)
+        else:
+            name = f"{tree.slide_of(joint.slider).name}{tree.suffix}"
+            slides = (item for item in root.iter("joint") if item.get("name") == name)
+            next(slides).attrib.update(numbers)
 
 
 def _loads(root: ET.Element, world: ET.Element, tree: Tree, job: Job) -> None:

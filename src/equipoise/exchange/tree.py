@@ -89,6 +89,12 @@ class Tree:
     def hung(self) -> Mapping[str, Hung]:
         return {link.name: link for link in self.links}
 
+    def slide_of(self, slider: Slider) -> Hung:
+        """The link whose joint is a slider, be it the one that slides or its guide."""
+        ends = {slider.link, slider.on}
+        slides = (link for link in self.links if link.kind == "slide")
+        return next(link for link in slides if {link.name, link.parent} == ends)
+
     def pose(self, body: str) -> tuple[complex, float]:
         """Origin (complex, m) and angle of a body's axes in the axes of the frame."""
         return (0j, 0.0) if body == FRAME else (self.hung[body].place, self.hung[body].angle)

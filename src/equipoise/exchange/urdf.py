@@ -14,6 +14,8 @@ import numpy as np
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import Hung, Tree, tensor_of, trees, weighed
 from equipoise.i18n import Note, to_say
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.friction_joints import rubbing_joints
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.links import size_of
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
@@ -128,10 +130,23 @@ def _joint(root: ET.Element, tree: Tree, link: Hung) -> None:
     ET.SubElement(joint, "child", link=name)
     along = (0.0, 0.0, 1.0) if hinge else (np.cos(link.along), np.sin(link.along), 0.0)
     ET.SubElement(joint, "axis", xyz=_row(*along))
+    _dynamics(joint, tree, link)
     if not hinge:
         way = _way(tree.machine, link)
         limits = {"lower": -way, "upper": way, "effort": EFFORT, "velocity": EFFORT}
         ET.SubElement(joint, "limit", {key: repr(value) for key, value in limits.items()})
+
+
+def _dynamics(joint: ET.Element, tree: Tree, link: Hung) -> None:
+    """What resists in a joint whatever presses there: its damping and its drag."""
+    for own in rubbing_joints(assemble(tree.machine)):
+        given, ends = own.given, {own.on, own.by}
+        if ends != {link.name, link.parent} or (own.slider is None) != (link.kind == "hinge"):
+            continue
+        pin = own.slider is None
+        damping = given.torsional_damping if pin else given.damping
+        drag = given.drag_torque if pin else given.drag_force
+        ET.SubElement(joint, "dynamics", damping=repr(damping), friction=repr(drag))
 
 
 def _way(machine: Machine, link: Hung) -> float:

@@ -20,6 +20,7 @@ OWN = [one for one in FORMATS.values() if not one.of_store]
 
 CAM, RACK, VARYING, SLOT = "cam", "rack", "gears of varying ratio", "pin in a slot"
 FRICTION = "friction in joints"
+PRESSED = "friction in joints by what presses there"
 
 
 def lacking(one: Format) -> list[str]:
@@ -40,7 +41,7 @@ def table() -> str:
             f"`{one.name}`",
             one.title,
             one.holds,
-            ", ".join([*lacking(one), *([] if one.rubs else [FRICTION])]),
+            ", ".join([*lacking(one), *([] if one.rubs else [PRESSED if one.drags else FRICTION])]),
             needs,
         )
         rows.append(f"| {' | '.join(cells)} |")

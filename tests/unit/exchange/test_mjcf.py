@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,10 +12,11 @@ import pytest
 
 import equipoise as eq
 from equipoise.exchange.mjcf import STEPS
+from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.support import unit_vector
 from support.conformance import compared
-from support.rated import LAWS, LINEAR, ON_LINKS, machine_with
-from support.refusals import refused
+from support.rated import HELD, LAWS, LINEAR, ON_LINKS, machine_with
 from support.sources import MUJOCO
 
 START = 0.3
@@ -81,42 +83,120 @@ def put_in_motion(
         joint = model.joint(number)
         body = joint.bodyid[0]
         link, parent = model.body(body).name, model.body(model.body(body).parentid[0]).name
+        if model.jnt_type[number] == mujoco.mjtJoint.mjJNT_SLIDE:
+            name = next(one.name for one in machine.sliders if one.link == link)
+            now, before = (one.sliders[name] for one in (motion, drawn))
+            data.qpos[joint.qposadr[0]] = now.travel[0] - before.travel[0]
+            data.qvel[joint.dofadr[0]] = now.velocity[0]
+            continue
         data.qpos[joint.qposadr[0]] = angles[link] - angles.get(parent, 0.0)
         data.qvel[joint.dofadr[0]] = rates[link] - rates.get(parent, 0.0)
 
 
-def test_dampers_and_viscous_resistances(tmp_path: Path) -> None:
-    """Power that they take in MuJoCo, pose by pose, at the velocities of the package."""
+def power_of(machine: eq.Machine, bare: eq.Machine, crank_angle: float, folder: Path) -> float:
+    """Power, W, that MuJoCo takes with what a machine has beyond another, in a pose and at the
+    velocities of the package.
+    """
+    powers = []
+    for number, item in enumerate((machine, bare)):
+        rig, state = opened(item, folder / f"{number}.xml")
+        put_in_motion(rig, state, machine, crank_angle)
+        state.ctrl[:] = machine.drive.speed  # the servo adds nothing
+        mujoco.mj_forward(rig, state)
+        powers.append((state.qfrc_passive + state.qfrc_actuator) @ state.qvel)
+    return float(powers[1] - powers[0])
+
+
+def losses_in(machine: eq.Machine, tables: Iterable[str], crank_angle: float) -> float:
+    """Power, W, that force elements turn to heat."""
+    pose = eq.move(machine, [crank_angle])
+    return sum(
+        pose.element_values(table, number)["loss"][0]
+        for table in tables
+        for number in range(len(getattr(machine, table)))
+    )
+
+
+@pytest.mark.parametrize("at", np.linspace(0.0, 6.0, 13))
+def test_dampers_and_viscous_resistances(at: float, tmp_path: Path) -> None:
     machine = machine_with(LINEAR)
-    model, data = opened(machine, tmp_path / "model.xml")
-    bare, still = opened(machine_with({}), tmp_path / "bare.xml")
+    taken = power_of(machine, machine_with({}), START + at, tmp_path)
+    assert taken == pytest.approx(losses_in(machine, LINEAR, START + at), rel=1e-9)
+
+
+def energy_rate(machine: eq.Machine, table: str, crank_angle: float) -> float:
+    """Power, W, that goes into force elements, by what they do to the drive torque."""
+    bare = replace(machine, **{table: ()})
+    torques = (eq.forces(eq.move(item, [crank_angle])).drive_torque for item in (machine, bare))
+    return float(np.subtract(*torques)[0] * machine.drive.speed)
+
+
+@pytest.mark.parametrize("at", np.linspace(0.0, 6.0, 7))
+def test_bushings(at: float, tmp_path: Path) -> None:
+    """With preloads, torsional springs and dampers, by the power that they take from the drive."""
+    machine = machine_with(HELD)
+    assert eq.export(machine, tmp_path / "m.xml") == ()
+    taken = power_of(machine, machine_with({}), START + at, tmp_path)
+    assert taken == pytest.approx(energy_rate(machine, "bushings", START + at), rel=1e-9)
+
+
+def test_elastic_stops(tmp_path: Path) -> None:
+    """They push where the point is beyond their line, and nowhere else."""
+    machine = machine_with({"stops": (Stop("coupler", "P", "A", 300.0, 1.2),)})
+    assert eq.export(machine, tmp_path / "m.xml") == ()
+    found = []
     for at in np.linspace(0.0, 6.0, 13):
-        powers = []
-        for rig, state in ((model, data), (bare, still)):
-            put_in_motion(rig, state, machine, START + at)
-            state.ctrl[:] = machine.drive.speed  # the servo adds nothing
-            mujoco.mj_forward(rig, state)
-            powers.append((state.qfrc_passive + state.qfrc_actuator) @ state.qvel)
-        pose = eq.move(machine, [START + at])
-        wanted = sum(
-            pose.element_values(table, number)["loss"][0]
-            for table, items in LINEAR.items()
-            for number in range(len(items))
-        )
-        assert powers[1] - powers[0] == pytest.approx(wanted, rel=1e-9)
+        taken = power_of(machine, machine_with({}), START + at, tmp_path)
+        found.append(energy_rate(machine, "stops", START + at))
+        assert taken == pytest.approx(found[-1], rel=1e-9, abs=1e-12)
+    assert 0 < np.count_nonzero(found) < len(found)
+
+
+@pytest.mark.parametrize("at", [0.5, 2.5, 4.5])
+def test_damping_and_drag_of_joints(at: float, tmp_path: Path) -> None:
+    """Of pins, one of which closes the loop, and of a slider; drag as friction loss, which MuJoCo
+    has among its soft constraints.
+    """
+    engine = replace(eq.load("plunger-pump"), loads=(), joints=())
+    given = (
+        JointProperties("joints.A", radius=0.01, torsional_damping=0.02, drag_torque=0.3),
+        JointProperties("joints.B", torsional_damping=0.01),
+        JointProperties("joints.C", drag_torque=0.2),
+        JointProperties("joints.plunger on frame", damping=30.0, drag_force=12.0),
+    )
+    machine = replace(engine, joints=given)
+    assert eq.export(machine, tmp_path / "m.xml") == ()
+    model, data = opened(machine, tmp_path / "m.xml")
+    put_in_motion(model, data, machine, START + at)
+    data.ctrl[:] = machine.drive.speed
+    mujoco.mj_forward(model, data)
+    friction = data.efc_type == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF
+    friction |= data.efc_type == mujoco.mjtConstraint.mjCNSTR_FRICTION_TENDON
+    jacobian = np.zeros((data.nefc, model.nv))
+    jacobian[:] = np.reshape(data.efc_J, jacobian.shape)
+    taken = -data.qfrc_passive @ data.qvel
+    taken -= (jacobian @ data.qvel)[friction] @ data.efc_force[friction]
+    wanted = eq.forces(eq.move(machine, [START + at])).friction_loss[0]
+    assert taken == pytest.approx(wanted, rel=1e-6)
+    rubbing = replace(machine, joints=(*given[:3], replace(given[3], friction=0.1)))
+    (left_out,) = eq.export(rubbing, tmp_path / "m.xml")
+    assert left_out == "friction in joints by what presses there: damping and drag alone are left"
 
 
 def test_what_a_file_leaves_out_of_force_elements(tmp_path: Path) -> None:
     path = tmp_path / "m.xml"
-    machine = machine_with({**LAWS, "stops": ()})
-    left_out = ("dampers with a table", "dry and one-way parts of resistances")
-    assert eq.export(machine, path) == left_out
-    assert eq.export(machine_with({**ON_LINKS, "stops": (), "bushings": ()}), path) == (
+    left_out = (
+        "dampers with a table",
+        "dry and one-way parts of resistances",
+        "the restitution of stops: they lose nothing",
+    )
+    assert eq.export(machine_with(LAWS), path) == left_out
+    assert eq.export(machine_with(ON_LINKS), path) == (
         "torsion dampers with a table",
         "resistances over a body that moves",
+        "bushings on a body that moves",
+        "stops on a body that moves",
     )
-    with refused(eq.EquipoiseError, special="stop"):
-        eq.export(machine_with(LAWS), path)
 
 
 @compared(MUJOCO, "gauges of the exported file from rest, its constraints soft", 0.02)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pinocchio as pin
 import pytest
 
 import equipoise as eq
+from equipoise.mechanism.parts.joint_properties import JointProperties
 from support.conformance import compared
 from support.sources import PINOCCHIO
 
@@ -71,6 +73,22 @@ def test_gears_follow_each_other(tmp_path: Path) -> None:
     opened(machine, tmp_path / "x.urdf")
     text = (tmp_path / "x.urdf").read_text("utf-8")
     assert f'<mimic joint="{gear.driver}" multiplier="{gear.speed_ratio!r}" />' in text
+
+
+def test_damping_and_drag_of_joints(tmp_path: Path) -> None:
+    """Pinocchio reads them of the joints of the tree; the pin that is cut has none."""
+    given = (
+        JointProperties("joints.A", radius=0.01, torsional_damping=0.02, drag_torque=0.3),
+        JointProperties("joints.B", torsional_damping=0.01, radius=0.015, friction=0.04),
+        JointProperties("joints.C", drag_torque=0.2),
+        JointProperties("joints.plunger on frame", damping=30.0, drag_force=12.0),
+    )
+    machine = replace(eq.load("plunger-pump"), loads=(), joints=given)
+    model, told = opened(machine, tmp_path / "x.urdf")
+    joints = {model.names[k]: model.joints[k].idx_v for k in range(1, model.njoints)}
+    for link, damping, drag in (("crank", 0.02, 0.3), ("plunger", 30.0, 12.0), ("rod", 0.01, 0.0)):
+        assert (model.damping[joints[link]], model.friction[joints[link]]) == (damping, drag)
+    assert "friction in joints by what presses there: damping and drag alone are left" in told
 
 
 def test_what_is_left_out(tmp_path: Path) -> None:

@@ -407,7 +407,7 @@ def test_studies_compute_what_friction_changes_machine_by_machine() -> None:
 @pytest.mark.parametrize("ending", ["fmu", "html", "mo", "xml", "py"])
 def test_formats_say_that_they_leave_friction_out(ending: str, tmp_path: Any) -> None:
     left_out = eq.export(WORN, tmp_path / f"worn.{ending}")
-    assert "friction in joints: forces are those without it" in left_out
+    assert any(sentence.startswith("friction in joints") for sentence in left_out)
     assert not any("friction" in one for one in eq.export(ENGINE, tmp_path / f"p.{ending}"))
 
 

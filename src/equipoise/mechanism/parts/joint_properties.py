@@ -58,6 +58,8 @@ RUBBING = ("friction", "mesh_loss", "damping", "torsional_damping", "drag_force"
 """Keys of which each alone makes a joint resist its motion."""
 APART = ("radius", "width", "bearing", "stiffness")
 """Keys that have nothing to do with friction."""
+UNLOADED = ("damping", "torsional_damping", "drag_force", "drag_torque")
+"""Keys of what resists whatever presses in the joint."""
 
 
 def family_of(kind: str) -> str:
@@ -176,9 +178,17 @@ class JointProperties(Frozen):
         return self.rubs or any(getattr(self, name) is not None for name in APART)
 
     @property
-    def without_friction(self) -> JointProperties:
-        """Properties of this joint if it moved freely."""
-        return JointProperties(self.joint, **{name: getattr(self, name) for name in APART})
+    def rubs_by_load(self) -> bool:
+        """Whether what presses in it makes it resist its motion."""
+        return any(getattr(self, name) for name in ("friction", "static_friction", "mesh_loss"))
+
+    def without_friction(self, drags: bool = False) -> JointProperties:
+        """Properties of this joint if it moved freely.
+
+        drags : whether it keeps what resists whatever presses in it: its damping and its drag.
+        """
+        kept = (*APART, *UNLOADED) if drags else APART
+        return JointProperties(self.joint, **{name: getattr(self, name) for name in kept})
 
 
 def wrong_joint(

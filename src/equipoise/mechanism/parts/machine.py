@@ -591,9 +591,9 @@ class Machine(Driven, Displayed, Frozen):
         """Return the machine with other springs."""
         return self._same_motion(replace(self, springs=tuple(springs)))
 
-    def without_friction(self) -> Machine:
-        """Return the machine whose joints move freely."""
-        free = (joint.without_friction for joint in self.joints)
+    def without_friction(self, drags: bool = False) -> Machine:
+        """Return the machine whose joints move freely, or with their damping and drag alone."""
+        free = (joint.without_friction(drags) for joint in self.joints)
         return self._same_motion(replace(self, joints=tuple(item for item in free if item.says)))
 
     def with_balance(self, balance: Balance | None) -> Machine:
