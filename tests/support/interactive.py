@@ -6,13 +6,8 @@ import json
 import re
 import shutil
 import subprocess
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
-
-import equipoise as eq
-from equipoise import signals
-from equipoise.signals import Figures
 
 NODE = shutil.which("node")
 BLOCK = r'<script[^>]* id="equipoise-{}">(.*?)</script>'
@@ -20,20 +15,14 @@ RUN = """
 import {{ Drawing, Machine, moved, outside, toml, typed, withLength }} from "./page.mjs";
 import {{ readFileSync, writeFileSync }} from "node:fs";
 const data = JSON.parse(readFileSync("machine.json", "utf8"));
-const states = new Function(readFileSync("states.js", "utf8") + "; return states;")();
-const machine = new Machine(data, states);
+const program = readFileSync("states.js", "utf8") + "; return {{ states, extremes }};";
+const {{ states, extremes }} = new Function(program)();
+const machine = new Machine(data, states, extremes);
 const solution = machine.solve(machine.base);
 const given = {given};
 const answer = (() => {{ {body} }})();
 writeFileSync("answer.json", JSON.stringify(answer));
 """
-
-
-def sampled(analysis: eq.Analysis, name: str) -> Figures:
-    """Figures of an output with the extremes of its samples, which such a file shows."""
-    whole, values = analysis.summary[name], analysis.outputs[name].resolved
-    found = signals.figures(*analysis.resolved.motion.shown(values))
-    return replace(found, mean=whole.mean, rms=whole.rms)
 
 
 def block(html: str, name: str) -> str:

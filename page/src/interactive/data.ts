@@ -10,6 +10,18 @@ export type States = (
   out: Float64Array,
 ) => void;
 
+/**
+ * Highest and lowest sample of a signal; its highest value with the crank angle of that, and its
+ * lowest, of the curve through the samples. Where these resolve jumps, first come those shown, at
+ * crank angles `at`, then those of the panels between `edges`.
+ */
+export type Extremes = (
+  values: Float64Array,
+  period: number,
+  at: Float64Array | null,
+  edges: Float64Array | null,
+) => Float64Array;
+
 export interface Output extends Unit {
   name: string;
   label: string;
@@ -112,7 +124,9 @@ export interface MachineData {
   grid: string;
   /** Of each crank angle in a mean; where null, all have the same. */
   shares: string | null;
-  /** Crank angles that extremes are taken from, and those that are equally spaced; null for all. */
+  /** Ends of the panels between jumps; null where there are none. */
+  edges: string | null;
+  /** Crank angles that curves go through, and those that are equally spaced; null for all. */
   shown: number[] | null;
   frames: number[] | null;
   rows: MachineRow[];

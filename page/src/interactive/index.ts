@@ -17,7 +17,7 @@ import { Machine, type Solution } from "./machine";
 import { Inputs, Readout } from "./numbers";
 import { Plots } from "./plot";
 import { Shaking } from "./shaking";
-import type { MachineData, States } from "./data";
+import type { Extremes, MachineData, States } from "./data";
 
 export { toml } from "./changes";
 export { moved, outside, typed, withLength } from "./edits";
@@ -308,12 +308,12 @@ export type { Grip };
 if (typeof document !== "undefined") {
   const root = document.getElementById("equipoise-interactive");
   const text = document.getElementById("equipoise-machine")?.textContent;
-  const { states } = globalThis as unknown as { states?: States };
-  if (root && text && states) {
+  const { states, extremes } = globalThis as unknown as { states?: States; extremes?: Extremes };
+  if (root && text && states && extremes) {
     const data = JSON.parse(text) as MachineData;
     speak(data.language, data.words, data.decimal);
     follow(data.rules);
     measure(data.length);
-    new Page(root, new Machine(data, states));
+    new Page(root, new Machine(data, states, extremes));
   }
 }

@@ -3,19 +3,15 @@
 import { signed } from "../format";
 import type { Pair } from "../protocol";
 import { say } from "../words";
-import type { MachineData, MachineRow, Soil, States } from "./data";
+import type { Extremes, MachineData, MachineRow, Soil, States } from "./data";
 
 /** Cosine of the angle between a link and the base's, beyond which turns cannot be counted. */
 const FAR = -0.5;
-/** Share of a value below which an extreme is no other one. */
-const ROUNDING = 1e-12;
 
 export interface Figures {
   mean: number;
   rms: number;
   peak: number;
-  /** Crank angle of the peak, rad. */
-  peak_at: number;
   max: number;
   min: number;
 }
@@ -25,7 +21,7 @@ export class Machine {
   readonly base: Float64Array;
   /** Crank angles that are equally spaced over the cycle, by their places among all. */
   readonly frames: number[];
-  /** Crank angles that curves go through and extremes are taken from. */
+  /** Crank angles that curves go through. */
   readonly shown: number[];
   readonly place = new Map<string, number>();
   /** Place of a number in a design, by its path. */
@@ -33,10 +29,15 @@ export class Machine {
   private readonly grid: Float64Array;
   private readonly rowGrids: Float64Array[];
   private readonly shares: Float64Array | null;
+  /** Of samples that resolve jumps: places in the order in which extremes are taken, and panels. */
+  private readonly order: number[] | null = null;
+  private readonly at: Float64Array | null = null;
+  private readonly edges: Float64Array | null = null;
 
   constructor(
     readonly data: MachineData,
     private readonly states: States,
+    private readonly extremes: Extremes,
   ) {
     this.theta = floats(data.theta);
     this.grid = floats(data.grid);
@@ -46,6 +47,11 @@ export class Machine {
     const all = Array.from(this.theta, (_, k) => k);
     this.frames = data.frames ?? all;
     this.shown = data.shown ?? all;
+    if (data.edges !== null) {
+      this.order = [...this.shown, ...all.filter((k) => this.shares?.[k])];
+      this.at = Float64Array.from(this.shown, (k) => this.theta[k] as number);
+      this.edges = floats(data.edges);
+    }
     data.names.forEach((name, k) => this.place.set(name, k));
     data.fields.forEach(({ path }, k) => this.numbers.set(path, k));
   }
@@ -73,7 +79,7 @@ export class Machine {
     if (!soil) return null;
     const lowest = soil.heights.map((name) => {
       const values = this.signal(out, name);
-      return values ? trough(this.frames.map((k) => values[k] as number)) : NaN;
+      return values ? this.range(values)[0] : NaN;
     });
     return Math.min(...lowest) + soil.depth;
   }
@@ -84,46 +90,26 @@ export class Machine {
     return place === undefined ? null : out.subarray(place * angles, (place + 1) * angles);
   }
 
+  /** Lowest and highest value of the curve of a signal. */
+  private range(values: Float64Array): Pair {
+    const samples = this.order ? Float64Array.from(this.order, (k) => values[k] as number) : values;
+    const gathered = this.extremes(samples, 2 * Math.PI * this.data.turns, this.at, this.edges);
+    return [gathered[4] as number, gathered[2] as number];
+  }
+
   figures(values: Float64Array): Figures {
     const count = values.length;
     const share = (k: number) => (this.shares ? (this.shares[k] as number) : 1 / count);
-    let [mean, square, max, min, peak, at] = [0, 0, -Infinity, Infinity, 0, this.shown[0] ?? 0];
+    let [mean, square] = [0, 0];
     for (let k = 0; k < count; k++) {
       const value = values[k] as number;
       mean += share(k) * value;
       square += share(k) * value * value;
     }
-    for (const k of this.shown) {
-      const value = values[k] as number;
-      [max, min] = [Math.max(max, value), Math.min(min, value)];
-      const size = Math.abs(value);
-      if (size - peak > ROUNDING * size) at = k;
-      peak = Math.max(peak, size);
-    }
-    return { mean, rms: Math.sqrt(square), peak, peak_at: this.theta[at] as number, max, min };
+    const [min, max] = this.range(values);
+    return { mean, rms: Math.sqrt(square), peak: Math.max(max, -min), max, min };
   }
 }
-
-/** The lowest value of a curve over a cycle: of the polynomial through the five values about the lowest. */
-function trough(values: number[]): number {
-  const count = values.length;
-  const least = values.indexOf(Math.min(...values));
-  const [a, b, c, d, e] = [-2, -1, 0, 1, 2].map((k) => values[(least + k + count) % count] as number) as Five;
-  // its derivatives in the middle
-  const first = (a - 8 * b + 8 * d - e) / 12;
-  const second = (-a + 16 * b - 30 * c + 16 * d - e) / 12;
-  const third = (-a + 2 * b - 2 * d + e) / 2;
-  const fourth = a - 4 * b + 6 * c - 4 * d + e;
-  let x = 0;
-  for (let round = 0; round < 8; round++) {
-    const slope = first + x * (second + x * (third / 2 + (x * fourth) / 6));
-    const bend = second + x * (third + (x * fourth) / 2);
-    if (bend > 0) x = Math.max(-1, Math.min(1, x - slope / bend));
-  }
-  return c + x * (first + x * (second / 2 + x * (third / 6 + (x * fourth) / 24)));
-}
-
-type Five = [number, number, number, number, number];
 
 export class Solution {
   /** Signals of all rows together. */

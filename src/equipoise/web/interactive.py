@@ -18,6 +18,7 @@ import numpy as np
 
 from equipoise.codegen.emit import moves_shared, pose_signals, signals_in_loops
 from equipoise.codegen.javascript import Script, javascript
+from equipoise.codegen.kernel_script import extremes_script
 from equipoise.codegen.steps import SURFACE
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
@@ -76,7 +77,7 @@ def export_bytes(job: Job) -> str:
         '<main id="equipoise-interactive"></main>',
         f"<noscript>{escape(say('This page needs JavaScript.'))}</noscript>",
         data("equipoise-machine", {**page.content, **speech}),
-        script(page.script.text, 'id="equipoise-states"'),
+        script(page.program, 'id="equipoise-states"'),
         script(program, 'type="module" id="equipoise-page"'),
     )
     return document(
@@ -158,6 +159,11 @@ class Interactive:
         known = {path: number.value for path, number in self._candidates.items()}
         return self._with_numbers(names, known) or plain
 
+    @property
+    def program(self) -> str:
+        """Source of the script's ``states``, and of ``extremes`` of their curves."""
+        return self.script.text + extremes_script(jumps=self.motion.sampling is not None)
+
     def _with_numbers(self, names: Sequence[str], numbers: Mapping[str, float]) -> Script | None:
         """A script of as many of the numbers as can be handed to one; None of none."""
         written = [*self._written(names, [*numbers.items()])]
@@ -220,6 +226,7 @@ class Interactive:
             "angles": len(theta),
             "theta": _floats(theta if sampling is None else sampling.at),
             "shares": None if sampling is None else _floats(sampling.shares),
+            "edges": None if sampling is None else _floats(sampling.edges),
             "shown": None if sampling is None else sampling.shown.tolist(),
             "frames": None if sampling is None else sampling.grid.tolist(),
             "grid": _floats(script.grid(theta)),

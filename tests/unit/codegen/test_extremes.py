@@ -10,30 +10,11 @@ from equipoise.codegen.extremes import CurveTops, GridTops, PanelTops, columns_o
 from equipoise.codegen.figures import Gathered
 from equipoise.signals import JumpSampling
 from support.batches import wanted_of
+from support.curves import SHAPES, curve_of
 
 Array = np.ndarray
 COLUMNS = columns_of(Gathered((*(("y", kind) for kind in ("highest", "lowest")), *(
     ("y", kind) for kind in ("top", "top_at", "dip", "dip_at")))))  # fmt: skip
-SHAPES = ("smooth", "size of a vector", "rounded off", "cut off", "constant", "almost constant",
-          "below zero", "two equal tops")  # fmt: skip
-
-
-def drawn(shape: str, theta: Array, turns: int, rng: np.random.Generator) -> Array:
-    """A signal (N,) with some orders, of a shape that is found in its own way."""
-    orders = np.arange(1, rng.integers(2, 9))
-    sizes, phases = rng.normal(size=len(orders)) / orders, rng.uniform(0, 2 * np.pi, len(orders))
-    waves = np.exp(1j * (np.outer(theta, orders) / turns + phases))
-    y, other = (waves.real * sizes).sum(1), (waves.imag * sizes).sum(1)
-    return {
-        "smooth": y,
-        "size of a vector": np.hypot(y, other + 0.2),
-        "rounded off": np.round(y, 1),
-        "cut off": np.maximum(y, 0.1),
-        "constant": np.full(len(theta), sizes[0]),
-        "almost constant": 1e3 + 1e-14 * y,
-        "below zero": -np.hypot(y, 0.5),
-        "two equal tops": np.cos(2 * theta / turns + phases[0]),
-    }[shape]
 
 
 def assert_same(tops: CurveTops, values: Array, period: float) -> None:
@@ -55,7 +36,7 @@ def assert_same(tops: CurveTops, values: Array, period: float) -> None:
 @pytest.mark.parametrize(("count", "turns", "first"), [(9, 1, 0.0), (64, 2, 0.3), (360, 1, 0.0)])
 def test_of_equally_spaced_values(shape: str, count: int, turns: int, first: float) -> None:
     rng, theta = np.random.default_rng(count), np.arange(count * turns) * 2 * np.pi / count
-    values = np.array([drawn(shape, theta, turns, rng) for _ in range(30)])
+    values = np.array([curve_of(shape, theta, turns, rng) for _ in range(30)])
     assert_same(GridTops(2 * np.pi * turns, first), values, 2 * np.pi * turns)
 
 
@@ -67,7 +48,7 @@ def test_of_values_that_jump(shape: str, count: int, turns: int) -> None:
     theta = tops.sampling.crank_angle[tops.order]
     jump = (theta > 1.0) & (theta < 2.5)
     values = np.array(
-        [drawn(shape, theta, turns, rng) + jump * rng.normal() / 3 for _ in range(30)]
+        [curve_of(shape, theta, turns, rng) + jump * rng.normal() / 3 for _ in range(30)]
     )
     assert_same(tops, values, 2 * np.pi * turns)
 
