@@ -206,7 +206,7 @@ def joints(analysis: Analysis) -> Iterator[Chart]:
     analysis = analysis.resolved
     result = joints_of(analysis)
     every = list(result)
-    for suffix, names in groups(every):
+    for suffix, names in groups(every, columns=2):
         what = title(analysis, say("Force in each joint") + continued(names, every), "", True)
         panels = tuple(_over_angle(analysis, result[name], result.values()) for name in names)
         yield Chart(f"joints{suffix}", analysis.machine.title, what, panels, columns=2)
@@ -238,15 +238,15 @@ def joint_polars(analysis: Analysis) -> Iterator[Chart]:
     """The end of the arrow of every joint force, in the frame's axes, nine in a picture."""
     by_name = {name: joint for name, joint in joints_of(analysis).items() if not joint.couple}
     every, unit = list(by_name), display_of_joints(analysis).unit
-    for suffix, names in groups(every, MOST_SQUARES):
+    in_line = 2 if len(every) == 4 else min(len(every), IN_LINE)
+    for suffix, names in groups(every, MOST_SQUARES, in_line):
         axis = Axis.of("", "force", np.concatenate([by_name[name].values for name in names]), unit)
         what = say("Force in each joint along x and y") + continued(names, every)
         remark = say("in {unit}; numbers: crank angle, deg", unit=axis.unit_name)
         text = title(analysis, what, remark, of_one=True)
         panels = tuple(_square(analysis, by_name[name], axis) for name in names)
-        columns = 2 if len(names) == 4 else min(len(names), IN_LINE)
         own = f"joint-polars{suffix}"
-        yield Chart(own, analysis.machine.title, text, panels, columns, stacked=False)
+        yield Chart(own, analysis.machine.title, text, panels, in_line, stacked=False)
 
 
 def _square(analysis: Analysis, joint: JointCurve, axis: Axis) -> Panel:

@@ -118,10 +118,17 @@ def continued(names: Sequence[Any], every: Sequence[Any]) -> str:
     return " " + say("({first} to {last} of {count})", first=first, last=last, count=len(every))
 
 
-def groups(names: Sequence[Item], most: int = MOST_PANELS) -> Iterator[tuple[str, Sequence[Item]]]:
-    """Names by so many for each picture, with what is added to the name of the picture."""
-    for number, start in enumerate(range(0, len(names), most), 1):
-        yield f"-{number}" if number > 1 else "", names[start : start + most]
+def groups(
+    names: Sequence[Item], most: int = MOST_PANELS, columns: int = 1
+) -> Iterator[tuple[str, Sequence[Item]]]:
+    """Names by at most so many for each picture, with what is added to the name of the picture.
+
+    Pictures have as many rows of panels each, rather than the last of them a few panels alone.
+    """
+    pictures = max(-(-len(names) // most), 1)
+    rows = -(-len(names) // (columns * pictures))
+    for number, start in enumerate(range(0, len(names), max(rows * columns, 1)), 1):
+        yield f"-{number}" if number > 1 else "", names[start : start + rows * columns]
 
 
 # -- signals ---------------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from equipoise.errors import UsageError
 from equipoise.figures import analysis as of_joints
 from equipoise.figures import analysis as view
 from equipoise.figures import forces, planting, points
-from equipoise.figures.chart_parts import angle_step
+from equipoise.figures.chart_parts import angle_step, continued, groups
 from equipoise.figures.linkage import cut_at
 from equipoise.figures.pictures import analysis_pictures, planting_pictures
 from equipoise.figures.style import look_of
@@ -465,7 +465,14 @@ def test_a_jump_at_the_beginning_of_a_cycle_stands_at_both_ends() -> None:
             assert np.all(np.diff(curve.x) >= 0) and curve.x[-1] == pytest.approx(tau)
 
 
-def test_the_last_picture_of_several_says_which_joint_it_has() -> None:
+def test_pictures_of_several_have_as_many_rows_and_say_which_joints_they_have() -> None:
+    """Instead of a last one with a single joint, drawn on a scale of its own."""
     charts = charts_of("squeezing-mechanism")
-    assert "(1 to 9 of 10)" in charts["joint-polars"].what
-    assert "(10 of 10)" in charts["joint-polars-2"].what
+    assert "(1 to 6 of 10)" in charts["joint-polars"].what
+    assert "(7 to 10 of 10)" in charts["joint-polars-2"].what
+    shared = [[len(names) for _, names in groups(range(n), 10, 2)] for n in (0, 1, 10, 11, 15, 21)]
+    assert shared == [[], [1], [10], [6, 5], [8, 7], [8, 8, 5]]
+
+
+def test_a_picture_of_one_joint_of_several_says_which() -> None:
+    assert continued(["c"], ["a", "b", "c"]) == " (3 of 3)"
