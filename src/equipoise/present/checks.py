@@ -15,19 +15,16 @@ from equipoise.handheld.shaft import Section
 from equipoise.i18n import Note, all_of, coordinates, listed, said, say, series, to_say
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.loads import work_in_cycle
-from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import body_named
-from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, format_quantity, number
 from equipoise.quantities.numbers import rate_told, time_told
+from equipoise.results.analysis import analyze
 from equipoise.results.blocks import Block, Cell, Column, FileText, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cams_told
-from equipoise.results.lost_contacts import where_lost
+from equipoise.results.lost_contacts import preloads_to_hold
 from equipoise.results.machine_blocks import bodies_tables, driven, place_told
-from equipoise.results.unreached_tables import unreached_tables
 from equipoise.signals import Array
 from equipoise.studies.blocks import Units, in_unit, labelled, spread_told, unit_in
 from equipoise.studies.evaluate import evaluator
@@ -187,7 +184,8 @@ UNUSUAL = 0.5
 def machine_blocks(machine: Machine) -> Iterator[Block]:
     """How the linkage is built up, and what to look at again."""
     linkage = assemble(machine)
-    motion, drive = move(machine), machine.drive  # at the angles of an analysis
+    analysis, drive = analyze(machine), machine.drive
+    motion = analysis.motion
     cycle = motion.linkage.cycle
     text = say(
         "{link} at {speed} rpm about {pivot}",
@@ -226,13 +224,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
             Column(say("work"), "energy"),
         )
         yield Table.of(say("Loads, and their work in a cycle"), heads, _loads(machine))
-    if notes := (
-        *remarks(linkage),
-        *unreached_tables(motion),
-        *where_lost(machine),
-        *idle_parts(machine.support),
-        *_uncarried(machine),
-    ):
+    if notes := (*analysis.notes, *preloads_to_hold(machine), *_uncarried(machine)):
         yield Notes(notes)
     yield Text(say("ready to be analysed"))
 

@@ -14,7 +14,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.limits import check_memory
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.checks import NamedItems
-from equipoise.mechanism.dynamics.assessment import FourBar, four_bar, remarks
+from equipoise.mechanism.dynamics.assessment import FourBar, four_bar
 from equipoise.mechanism.dynamics.bearing_life import BearingLife, bearing_lives
 from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
@@ -28,15 +28,11 @@ from equipoise.mechanism.kinematics.strokes import Dwell, Stroke, dwell, strokes
 from equipoise.mechanism.outputs.declared import DECLARED, OutputSource
 from equipoise.mechanism.parts.machine import Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
-from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension, column_heading
-from equipoise.results.braking import braking_motor
 from equipoise.results.declaring import OWN, Declarations, ResultOutput, values_of
-from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.outputs import AnalysisOutput, AnalysisOutputs, figures_by_name
+from equipoise.results.remarks import remarks_of
 from equipoise.results.result import Result
-from equipoise.results.slender_links import slender_links
-from equipoise.results.unreached_tables import unreached_tables
 from equipoise.signals import Array, Figures, Periodic
 
 if TYPE_CHECKING:
@@ -236,14 +232,7 @@ class Analysis(Result):
     @cached_property
     def notes(self) -> tuple[Note | str, ...]:
         """What to look at again, as `check` asks it: what may not be meant, and where it fails."""
-        lost: tuple[Note, ...] = ()
-        if self.solved is not None:
-            lost = (*lost_contacts(self.solved), *braking_motor(self.motion, self.outputs))
-        bending = slender_links(self.machine.links, self.motion.speed)
-        unreached = unreached_tables(self.motion)
-        parts = (*remarks(self.motion.linkage), *unreached, *lost, *bending)
-        asked = (*parts, *idle_parts(self.machine.support))
-        return tuple(dict.fromkeys(asked))
+        return tuple(dict.fromkeys(remarks_of(self)))
 
     @property
     def has_orders(self) -> bool:

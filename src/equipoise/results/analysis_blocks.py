@@ -10,15 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say
-from equipoise.mechanism.dynamics.assessment import questions
-from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.kinematics.strokes import SHARE, Dwell
 from equipoise.mechanism.outputs.declared import joint_named
-from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension, Display, angle, display, percent
 from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
-from equipoise.results.braking import braking_motor
 from equipoise.results.joint_blocks import elements_tables, joint_blocks, kind_tables
 from equipoise.results.machine_blocks import (
     angles_told,
@@ -33,8 +29,8 @@ from equipoise.results.machine_blocks import (
     span,
 )
 from equipoise.results.outputs import CAUSES, tops_of
+from equipoise.results.remarks import remarks_of
 from equipoise.results.scales import TOTALS, scale_of
-from equipoise.results.unreached_tables import unreached_tables
 from equipoise.signals import EQUAL, Array, Periodic
 
 if TYPE_CHECKING:
@@ -57,9 +53,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     yield from kind_tables(analysis, "motion")
     yield from elements_tables(analysis)
     if analysis.solved is None:
-        missing = massless(machine)
-        assert missing is not None
-        yield Notes((missing, *questions(analysis.motion.linkage)))
+        yield from question_blocks(analysis)
         return
     yield from force_blocks(analysis)
     yield from joint_blocks(analysis)
@@ -69,14 +63,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
 
 def question_blocks(analysis: Analysis) -> Iterator[Block]:
     """What may not be meant as the file gives it."""
-    motion, support = analysis.motion, analysis.machine.support
-    asked = (
-        *questions(motion.linkage),
-        *unreached_tables(motion),
-        *braking_motor(motion, analysis.outputs),
-        *idle_parts(support),
-    )
-    if asked:
+    if asked := (*remarks_of(analysis, "end"),):
         yield Notes(asked)
 
 

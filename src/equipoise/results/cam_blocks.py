@@ -10,8 +10,8 @@ from equipoise.i18n import say
 from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
 from equipoise.quantities import format_quantity
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
-from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.machine_blocks import largest, smallest
+from equipoise.results.remarks import remarks_of
 
 if TYPE_CHECKING:
     from equipoise.mechanism.assembly.joints import Structure
@@ -48,7 +48,7 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
     shown = len(rows[0]) - (len(rows[0]) == len(columns) and not limited)
     title = say("Cams; largest and smallest with the crank angle")
     yield Table.of(title, columns[:shown], (row[:shown] for row in rows))
-    if analysis.solved is not None and (lost := lost_contacts(analysis.solved)):
+    if lost := (*remarks_of(analysis, "cams"),):
         yield Notes(lost)
 
 

@@ -12,8 +12,6 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.reactions import (
     JointForce,
     SliderForce,
-    idle_told,
-    indeterminate_reactions,
 )
 from equipoise.mechanism.outputs.declared import DECLARED, body_named, joint_named
 from equipoise.mechanism.parts.element_kinds import Element, element_kinds, part_kinds
@@ -22,6 +20,7 @@ from equipoise.results.bearing_blocks import bearing_blocks
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.friction_blocks import friction_blocks
 from equipoise.results.machine_blocks import largest, smallest
+from equipoise.results.remarks import remarks_of
 from equipoise.results.scales import scale_of
 from equipoise.results.section_blocks import section_blocks
 
@@ -38,12 +37,8 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces in joints, which of them statics leaves open, friction, bearings, stress in links."""
     if analysis.forces.solved.contacts:
         yield joint_table(analysis)
-    items = [*indeterminate_reactions(analysis.motion.linkage).notes()]
-    items += idle_told(analysis.motion.linkage, analysis.forces.solved.state)
-    if analysis.machine.has_planes:
-        items += analysis.forces.across.statics.notes()
-    if items:
-        yield Notes(tuple(items))
+    if items := (*remarks_of(analysis, "joints"),):
+        yield Notes(items)
     yield from friction_blocks(analysis)
     yield from bearing_blocks(analysis)
     yield from section_blocks(analysis)

@@ -54,14 +54,6 @@ def _limit(speed: float, sprung: bool) -> Note:
     return Note("without [[springs]] it stays there up to {speed:.4g} rpm", speed=rpm)
 
 
-def where_lost(machine: Machine) -> tuple[Note, ...]:
-    """Where springs do not keep followers on their cams, at the file's speed."""
-    if not machine.cams or massless(machine):
-        return ()
-    lost = lost_contacts(forces(move(machine)))
-    return (*lost, *preloads_to_hold(machine)) if lost else ()
-
-
 def preloads_to_hold(machine: Machine) -> Iterator[Note]:
     """Of each follower that lifts off at the file's speed, a preload that holds it there.
 

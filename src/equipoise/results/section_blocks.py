@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import format_quantity
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
+from equipoise.results.remarks import remarks_of
 from equipoise.results.scales import scale_of
-from equipoise.results.slender_links import slender_links
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -52,10 +52,7 @@ def section_blocks(analysis: Analysis) -> Iterator[Block]:
     rows = ([row[k] for k in shown] for row in strength)
     yield Table.of(title, [columns[k] for k in shown], rows)
     yield from _elastic_blocks(analysis)
-    if notes := (
-        *_notes(analysis),
-        *slender_links(analysis.motion.machine.links, analysis.motion.speed),
-    ):
+    if notes := (*_notes(analysis), *remarks_of(analysis, "sections")):
         yield Notes(notes)
 
 

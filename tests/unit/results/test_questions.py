@@ -13,6 +13,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.present.checks import machine_blocks
 from equipoise.results.blocks import Block, Notes
+from support.chosen import DISTINCT, few
 
 
 def noted(blocks: object) -> set[str]:
@@ -143,3 +144,11 @@ def test_a_motor_that_brakes_by_less_than_rounding_is_not_asked_of(
     torque = (share * figures.rms + figures.mean) * (1 if base.drive.speed > 0 else -1)
     machine = replace(base, loads=(eq.Load("crank", torque=torque),))
     assert any("has to brake" in note for note in both(machine)[2]) is brakes
+
+
+@pytest.mark.parametrize("name", few(eq.examples("linkage"), DISTINCT))
+def test_every_surface_has_every_remark(name: str) -> None:
+    machine, analysis = eq.load(name), eq.analyze(eq.load(name))
+    plain = set(analysis.to_dict()["notes"])
+    assert plain <= noted(analysis.blocks())
+    assert plain <= noted(machine_blocks(machine))

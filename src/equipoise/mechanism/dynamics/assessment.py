@@ -193,19 +193,24 @@ def _jerks(machine: Machine) -> Iterator[Note]:
 
 def remarks(linkage: Linkage) -> Iterator[Note | str]:
     """Things worth a second look, each one sentence; none of them keeps a model from running."""
-    machine = linkage.machine
+    yield from mass_remarks(linkage.machine)
+    yield from joint_remarks(linkage)
+    yield from questions(linkage)
+
+
+def joint_remarks(linkage: Linkage) -> Iterator[Note]:
+    """Which forces in joints statics leaves open, in the plane and across it."""
+    yield from indeterminate_reactions(linkage).notes()
+    if linkage.machine.has_planes:
+        yield from statics(linkage).notes()
+
+
+def mass_remarks(machine: Machine) -> Iterator[Note]:
+    """Masses that are missing or assumed, and declared masses that miss what they should keep."""
     if missing := massless(machine):
         yield missing
     if assumed := assumed_masses(machine):
         yield assumed
-    yield from _missed_constraints(machine)
-    yield from indeterminate_reactions(linkage).notes()
-    if machine.has_planes:
-        yield from statics(linkage).notes()
-    yield from questions(linkage)
-
-
-def _missed_constraints(machine: Machine) -> Iterator[Note]:
     bodies = machine.bodies
     for where, constraint in numbered("constraints", machine.constraints):
         if constraint.misses(bodies) > HOLDS:

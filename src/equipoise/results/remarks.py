@@ -1,0 +1,61 @@
+"""What to look at again about a machine: every kind of remark, with where readers come upon it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from equipoise.i18n import Note
+from equipoise.mechanism.dynamics.assessment import joint_remarks, mass_remarks, questions
+from equipoise.mechanism.dynamics.reactions import idle_told
+from equipoise.mechanism.parts.support import idle_parts
+from equipoise.results.braking import braking_motor
+from equipoise.results.lost_contacts import lost_contacts
+from equipoise.results.slender_links import slender_links
+from equipoise.results.unreached_tables import unreached_tables
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
+
+Place = Literal["cams", "joints", "sections", "end"]
+
+
+class RemarkKind(NamedTuple):
+    """A kind of remark.
+
+    place : beside which tables of an analysis it stands, or at their end.
+    of : remarks of a machine that has been analysed, a sentence each.
+    of_forces : whether there are none without masses.
+    """
+
+    place: Place
+    of: Callable[[Analysis], Iterable[Note | str]]
+    of_forces: bool = False
+
+
+KINDS = (
+    RemarkKind("end", lambda analysis: mass_remarks(analysis.machine)),
+    RemarkKind("joints", lambda analysis: joint_remarks(analysis.motion.linkage)),
+    RemarkKind(
+        "joints",
+        lambda analysis: idle_told(analysis.motion.linkage, analysis.forces.solved.state),
+        of_forces=True,
+    ),
+    RemarkKind("end", lambda analysis: questions(analysis.motion.linkage)),
+    RemarkKind("end", lambda analysis: unreached_tables(analysis.motion)),
+    RemarkKind("cams", lambda analysis: lost_contacts(analysis.forces), of_forces=True),
+    RemarkKind(
+        "end", lambda analysis: braking_motor(analysis.motion, analysis.outputs), of_forces=True
+    ),
+    RemarkKind(
+        "sections", lambda analysis: slender_links(analysis.machine.links, analysis.motion.speed)
+    ),
+    RemarkKind("end", lambda analysis: idle_parts(analysis.machine.support)),
+)
+
+
+def remarks_of(analysis: Analysis, place: Place | None = None) -> Iterator[Note | str]:
+    """What may not be meant, and where the machine fails; of one place alone if that is given."""
+    for kind in KINDS:
+        if place in (None, kind.place) and not (kind.of_forces and analysis.solved is None):
+            yield from kind.of(analysis)
