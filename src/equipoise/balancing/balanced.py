@@ -33,7 +33,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.planting.names import dimension_of as of_planting
 from equipoise.quantities import Dimension, format_quantity
-from equipoise.results.analysis import Analysis
+from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.declaring import (
     NOTES,
     TITLE,
@@ -201,7 +201,13 @@ class Balanced(Result):
     @cached_property
     def _shaking(self) -> tuple[dict[str, float], dict[str, float]]:
         """Before and after without planting, which every remedy that is tried would compute."""
-        return comparison.figures_of(self.original), comparison.figures_of(self.machine)
+        before = analyze(self.original, acceleration=0.0)
+        return comparison.figures_of(before), comparison.figures_of(self.analysis)
+
+    @cached_property
+    def analysis(self) -> Analysis:
+        """The balanced machine at constant speed."""
+        return analyze(self.machine, acceleration=0.0)
 
     @cached_property
     def aims(self) -> dict[Objective, comparison.Pair]:

@@ -14,7 +14,7 @@ from equipoise.mechanism.parts.balance import Balance, Measure, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS, WITHIN
 from equipoise.planting.summary import plant
-from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import AnalysisOutput, unit_of_measure
 from equipoise.vibration.forced import respond
 
@@ -164,17 +164,17 @@ def figure_of(objective: Objective, rows: int, figures: Collection[str]) -> str 
 # -- figures before and after ----------------------------------------------------------------------
 
 
-def figures_of(machine: Machine) -> dict[str, float]:
-    """Figures by name, such as ``shaking_force.rms``, but for those of planting; SI units.
+def figures_of(analysis: Analysis) -> dict[str, float]:
+    """Figures at constant speed by name, such as ``shaking_force.rms``, but for those of planting;
+    SI units.
 
     Moments are about the drive's pivot; areas are under the absolute value over 360 deg, in J.
     """
-    analysis = analyze(machine, acceleration=0.0)
-    figures = {"mass": machine.mass}
+    figures = {"mass": analysis.machine.mass}
     for output in analysis.outputs:
         for measure in output.declared.compared if output.declared.is_of_row else ():
             figures[f"{output.name}.{measure}"] = _measured(analysis, output, measure)
-    return figures | _of_rows(analysis) | _of_support(machine)
+    return figures | _of_rows(analysis) | _of_support(analysis.machine)
 
 
 def _measured(analysis: Analysis, output: AnalysisOutput, measure: Measure) -> float:

@@ -36,7 +36,6 @@ from equipoise.balancing.workshop import in_its_plane, phases_told, sentences
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.quantities import change, display, format_quantity, percent
-from equipoise.results.analysis import analyze
 from equipoise.results.blocks import Block, Cell, Column, RelativeChange, Table, Text
 from equipoise.results.lost_contacts import preloads_to_hold
 from equipoise.results.outputs import objective_named, shown_in
@@ -162,8 +161,7 @@ def broken_capacities(balanced: Balanced) -> Iterator[str]:
     if balanced.advice is not None:
         entries = balanced.advice.before
     else:
-        analysis = analyze(balanced.machine, acceleration=0.0)
-        entries = tuple(sorted(capacities(analysis), key=lambda item: -item.excess))
+        entries = tuple(sorted(capacities(balanced.analysis), key=lambda item: -item.excess))
         if balanced.changes:
             template = to_say("With these changes: {sentence}.")
     for item in entries:

@@ -297,7 +297,7 @@ def kinematic(analysis: Analysis, name: str) -> str:
         if analysis.machine.crank_turns and bar is not None:
             low_end, high_end = bar.transmission_min, bar.transmission_max
             if low_end is not None and high_end is not None:
-                ends.append((low_end, high_end))  # at angles between samples
+                ends.append((low_end, high_end))  # a kink where a parallelogram is folded
         low, high = (
             angle(f(pair)) for f, pair in zip((min, max), zip(*ends, strict=True), strict=True)
         )

@@ -36,7 +36,6 @@ ISO 20816-3 ends zone B for machines of 15 to 300 kW on flexible supports.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields
 from functools import cached_property
 from math import hypot, isfinite, pi, radians
 from typing import Any, Protocol
@@ -48,6 +47,7 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.dynamics import applied_loads
 from equipoise.mechanism.dynamics.pin_bearings import joint_properties
+from equipoise.mechanism.kinematics.strokes import declared_figures, least_value
 from equipoise.mechanism.outputs.declared import DECLARED, declared, joint_named, named
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Machine
@@ -635,11 +635,10 @@ def capacities(analysis: Analysis) -> Iterator[FigureAssessment]:
     """
     figures: list[FigureAssessment] = []
     for name, section in analysis.sections.items():
-        figures += _least_figures("sections", name, section)
-        figures += _fatigue(analysis, name)
+        figures += _least_figures("sections", name, section, analysis.machine.links[name].section)
+    joints = joint_properties(analysis.motion) if analysis.rolling_bearings else {}
     for name, bearing in analysis.rolling_bearings.items():
-        figures += _least_figures("rolling_bearings", name, bearing)
-    figures += _lives(analysis)
+        figures += _least_figures("rolling_bearings", name, bearing, joints[name][1].bearing)
     weakest: dict[str, FigureAssessment] = {}
     for assessment in figures:
         kind = assessment.family[1]
@@ -649,67 +648,24 @@ def capacities(analysis: Analysis) -> Iterator[FigureAssessment]:
     yield from _of_motor(analysis)
 
 
-def _least_figures(group: str, name: str, part: Any) -> Iterator[FigureAssessment]:
-    """Figures of a part that are declared with what they have to be at least."""
-    for item in fields(part):
-        least, value = item.metadata.get("at_least"), getattr(part, item.name)
-        if least is not None and value is not None:
-            yield _capacity(
-                group, name, item.name, Note(item.metadata["label"]), value, least,
-                item.metadata["dimension"], Note("required minimum"),
-            )  # fmt: skip
+def _least_figures(group: str, name: str, figures: Any, part: Any) -> Iterator[FigureAssessment]:
+    """Figures of a part that are declared with what they have to be at least.
 
-
-def _fatigue(analysis: Analysis, link: str) -> Iterator[FigureAssessment]:
-    """The life of a link of which one is wanted, where it is not endless; else its safety against
-    fatigue, since what nobody says the life of is to last.
+    part : what the file gives of it.
     """
-    stress, section = analysis.sections[link], analysis.machine.links[link].section
-    assert section is not None
-    against = Note("required minimum")
-    if section.life is None:
-        if (safety := stress.fatigue_safety) is not None:
-            label = Note(to_say("safety against fatigue"))
-            yield _capacity("sections", link, "fatigue_safety", label, safety, 1.0, None, against)
-    elif stress.life is not None:
-        yield _capacity(
-            "sections", link, "life", Note(to_say("life")), stress.life, section.life, "time",
-            against, "h",
+    for item in declared_figures(type(figures)):
+        least, value = least_value(item, part), getattr(figures, item.name)
+        if least is None or value is None:
+            continue
+        dimension = item.metadata["dimension"]
+        what = Note("{what}, {part}", what=Note(item.metadata["label"]), part=joint_named(name))
+        ratio = least / value if value > 0 else float("inf")
+        output = f"{group}.{name}"
+        yield FigureAssessment(
+            f"{output}.{item.name}", what, value, dimension, least, Note("required minimum"), ratio,
+            output, name, is_limit=True, is_capacity=True,
+            shown_unit="h" if dimension == "time" else None,
         )  # fmt: skip
-
-
-def _lives(analysis: Analysis) -> Iterator[FigureAssessment]:
-    """Lives of rolling bearings of which one is wanted."""
-    wanted = {name: item.bearing for name, (_, item) in joint_properties(analysis.motion).items()}
-    for name, life in analysis.rolling_bearings.items():
-        bearing = wanted[name]
-        if bearing is not None and bearing.life is not None and life.rated_life is not None:
-            label = Note(to_say("life at the wanted reliability"))
-            yield _capacity(
-                "rolling_bearings", name, "rated_life", label, life.rated_life, bearing.life,
-                "time", Note("required minimum"), "h",
-            )  # fmt: skip
-
-
-def _capacity(
-    group: str,
-    name: str,
-    figure: str,
-    label: Note,
-    value: float,
-    least: float,
-    dimension: Dimension | None,
-    against: Note,
-    shown_unit: str | None = None,
-) -> FigureAssessment:
-    """A figure of a part that has to be so large at least."""
-    ratio = least / value if value > 0 else float("inf")
-    what = Note("{what}, {part}", what=label, part=joint_named(name))
-    output = f"{group}.{name}"
-    return FigureAssessment(
-        f"{output}.{figure}", what, value, dimension, least, against, ratio, output, name,
-        is_limit=True, is_capacity=True, shown_unit=shown_unit,
-    )  # fmt: skip
 
 
 def _of_motor(analysis: Analysis) -> Iterator[FigureAssessment]:

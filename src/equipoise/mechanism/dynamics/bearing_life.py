@@ -56,7 +56,9 @@ class BearingLife:
     speed: float = figure(to_say("mean speed of one ring against the other"), "angular speed")
     basic_life: float | None = figure(to_say("life that 90 % reach (L10)"), "time")
     basic_turns: float | None = figure(to_say("turns in that life"))
-    rated_life: float | None = figure(to_say("life at the wanted reliability"), "time")
+    rated_life: float | None = figure(
+        to_say("life at the wanted reliability"), "time", at_least="life"
+    )
     reached: float | None = figure(to_say("share that reaches the wanted life"))
     needed_rating: float | None = figure(to_say("dynamic rating needed"), "force")
     static_safety: float | None = figure(to_say("static safety"), at_least=1.0)

@@ -191,9 +191,11 @@ class LinkStress:
     bending_moment: float = figure(to_say("largest bending moment"), "torque")
     safety: float | None = figure(to_say("safety against yielding"), at_least=1.0)
     buckling_safety: float | None = figure(to_say("safety against buckling"), at_least=1.0)
-    fatigue_safety: float | None = figure(to_say("safety against fatigue"))
+    fatigue_safety: float | None = figure(
+        to_say("safety against fatigue"), at_least=1.0, unless="life"
+    )
     cycles_to_failure: float | None = figure(to_say("cycles of the machine to failure"))
-    life: float | None = figure(to_say("life"), "time")
+    life: float | None = figure(to_say("life"), "time", at_least="life")
     rod_mass: float = figure(to_say("mass spread along the line"), "mass")
     least_end_mass: float = figure(to_say("smaller mass at its ends"), "mass")
     natural_frequency: float | None = figure(to_say("first natural frequency"), "frequency")

@@ -36,15 +36,29 @@ def figure(
     dimension: Dimension | None = None,
     own: bool = False,
     default: Any = MISSING,
-    at_least: float | None = None,
+    at_least: float | str | None = None,
+    unless: str = "",
 ) -> Any:
     """A figure: its label for readers, and its dimension, or whether it has that of the stroke.
 
-    at_least : what it has to be for a part not to fail, SI units; None where there is no such
-        value.
+    at_least : what it has to be for a part not to fail, SI units, or the key of the part's table
+        that gives it; None where there is no such value.
+    unless : key of that table with which nothing is asked of this figure.
     """
-    text = {"label": label, "dimension": dimension, "own": own, "at_least": at_least}
-    return field(metadata=text, default=default)
+    text = {"label": label, "dimension": dimension, "own": own}
+    least = {"at_least": at_least, "unless": unless}
+    return field(metadata=text | least, default=default)
+
+
+def least_value(declared: Field[Any], part: Any) -> float | None:
+    """What a figure has to be at least, SI units; None where nothing is asked of it.
+
+    part : what the file gives of the part, such as the section of a link.
+    """
+    least, unless = declared.metadata["at_least"], declared.metadata["unless"]
+    if unless and getattr(part, unless) is not None:
+        return None
+    return getattr(part, least) if isinstance(least, str) else least
 
 
 @dataclass(frozen=True)
