@@ -237,7 +237,7 @@ class _Expressions(ast.NodeVisitor):
             ):
                 return f"{self.visit(array)}{'[0]' * axis}.length"
         places = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
-        return self.visit(node.value) + "".join(map(self._place, places))
+        return "".join([self.visit(node.value), *map(self._place, places)])
 
     def _place(self, node: ast.expr) -> str:
         if not isinstance(node, ast.Slice):

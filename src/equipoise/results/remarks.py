@@ -3,21 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import Literal, NamedTuple, Protocol
 
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.assessment import joint_remarks, mass_remarks, questions
+from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.reactions import idle_told
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.results.braking import braking_motor
 from equipoise.results.lost_contacts import lost_contacts
+from equipoise.results.outputs import AnalysisOutputs
 from equipoise.results.slender_links import slender_links
 from equipoise.results.unreached_tables import unreached_tables
 
-if TYPE_CHECKING:
-    from equipoise.results.analysis import Analysis
-
 Place = Literal["cams", "joints", "sections", "end"]
+
+
+class AnalyzedMachine(Protocol):
+    """What remarks are taken from, as `Analysis` has it."""
+
+    @property
+    def machine(self) -> Machine: ...
+    @property
+    def motion(self) -> Motion: ...
+    @property
+    def solved(self) -> Forces | None: ...
+    @property
+    def forces(self) -> Forces: ...
+    @property
+    def outputs(self) -> AnalysisOutputs: ...
 
 
 class RemarkKind(NamedTuple):
@@ -29,7 +45,7 @@ class RemarkKind(NamedTuple):
     """
 
     place: Place
-    of: Callable[[Analysis], Iterable[Note | str]]
+    of: Callable[[AnalyzedMachine], Iterable[Note | str]]
     of_forces: bool = False
 
 
@@ -54,7 +70,7 @@ KINDS = (
 )
 
 
-def remarks_of(analysis: Analysis, place: Place | None = None) -> Iterator[Note | str]:
+def remarks_of(analysis: AnalyzedMachine, place: Place | None = None) -> Iterator[Note | str]:
     """What may not be meant, and where the machine fails; of one place alone if that is given."""
     for kind in KINDS:
         if place in (None, kind.place) and not (kind.of_forces and analysis.solved is None):
