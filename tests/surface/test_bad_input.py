@@ -137,7 +137,7 @@ ELSEWHERE = {
 }  # fmt: skip
 LOAD = '\n[[loads]]\nlink = "coupler"\n'
 LOADS = {
-    "nothing": ("", "loads[1]", "exactly one of force, torque, table and gas"),
+    "nothing": ("", "loads[1]", "exactly one of force, torque, table, gas and indicator"),
     "force at no point": ('force = ["0 N", "1 N"]', "loads[1].point", "missing"),
     "torque at a point": ('point = "P"\ntorque = "1 N m"', "loads[1].point", "leave it out"),
     "force and torque": ('point = "P"\nforce = ["0 N", "1 N"]\ntorque = "1 N m"', "loads[1]",

@@ -139,7 +139,7 @@ class PhasedRows:
                 def at(theta: Array) -> Array:
                     return np.asarray(levers @ read(move(self.machine, theta, acceleration=0.0)))
 
-                bends = bends_of(self.machine, signal.turns)
+                bends = bends_of(self._motion.linkage, signal.turns)
                 jumping = JumpingRows.of(at, jumps, signal.turns, bends)
             row_signals = RowSignals(amplitudes, signal.turns, jumping)
         return row_signals.with_orders(objective.orders)

@@ -348,7 +348,7 @@ def jumping_designs(effects: Effects, objective: Objective) -> JumpingDesigns | 
         return np.moveaxis(np.stack(parts, axis=2), 1, 0)
 
     turns = effects.motion.turns
-    return JumpingDesigns.of(at, jumps, turns, bends_of(effects.machine, turns))
+    return JumpingDesigns.of(at, jumps, turns, bends_of(effects.motion.linkage, turns))
 
 
 def of_each_row(effects: Effects, objective: Objective, point: LinearizationPoint) -> Array:

@@ -15,7 +15,7 @@ import numpy as np
 
 from equipoise.codegen.backends import processors, run_loop
 from equipoise.codegen.coupled import known_by_crank
-from equipoise.codegen.emit import emit, moves_shared, moves_soil
+from equipoise.codegen.emit import emit, moves_piston, moves_shared, moves_soil
 from equipoise.codegen.extremes import CurveTops, GridTops, PanelTops
 from equipoise.codegen.figures import (
     CHANGE_POINT,
@@ -205,6 +205,13 @@ class Batch:
                     "itself, as its own motion tells where the finger goes in"
                 )
             )
+        if moves_piston(self.base, paths):
+            raise UsageError(
+                Note(
+                    "got numbers that move a piston with an indicator diagram; each design has to "
+                    "be computed by itself, as its own motion tells where the piston is"
+                )
+            )
         self.paths, self.wanted = tuple(paths), tuple(wanted)
         self.angles, self.tolerance = angles, tolerance
         self.threads = threads or processors()
@@ -247,7 +254,7 @@ class Batch:
         ------
         UsageError : designs have jumps of their own, and the number of crank angles is given.
         """
-        if not may_jump(self.base.machine):
+        if not may_jump(self.base):
             return np.empty(0), FIRST
         if not jumps_alike(self.base, self.paths):
             if self.angles is not None:
@@ -258,7 +265,7 @@ class Batch:
         machine = self.base.machine
         if machine.in_soil or any(len(item.jumps) for item in machine.couplings):
             return jumps_of_rows(self.base), FIRST
-        every = np.concatenate([np.empty(0), *declared_jumps(machine, self.turns)])
+        every = np.concatenate([np.empty(0), *declared_jumps(self.base, self.turns)])
         return of_rows(machine, every, self.turns), FIRST
 
     # -- crank angles ------------------------------------------------------------------------------
@@ -298,7 +305,7 @@ class Batch:
         """
         theta = all_angles(count, self.turns) + first
         if self.source.has_shares:
-            bends = bends_of_rows(self.base.machine, self.turns)
+            bends = bends_of_rows(self.base, self.turns)
             sampling = JumpSampling.of(theta, self.turns, self.jumps, bends)
             tops = PanelTops(sampling)
             theta, shares = sampling.crank_angle[tops.order], sampling.shares[tops.order]

@@ -41,6 +41,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import u
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.timed_loads import TimedLoad
 
@@ -221,7 +222,7 @@ class _DriveTrace:
         for table, number, element in machine.force_elements:
             key = self.causes[element.cause] if element.rated else "springs"
             yield from ((key, wrench) for wrench in trace_element(trace, table, number))
-        for k, load in enumerate(machine.loads, 1):
+        for k, load in enumerate(loads_of(trace.linkage), 1):
             yield "loads", trace_load(trace, k, load)
         for k, timed in enumerate(machine.timed_loads):
             factor = trace.graph.argument(f"f{k}", BOTH)

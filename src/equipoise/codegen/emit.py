@@ -376,6 +376,14 @@ def moves_soil(linkage: Linkage, paths: Sequence[str]) -> bool:
     )
 
 
+def moves_piston(linkage: Linkage, paths: Sequence[str]) -> bool:
+    """Whether these numbers change where a piston passes the rows of an indicator diagram."""
+    tables = force_kinds(type(linkage.machine))
+    return any(load.indicator is not None for load in linkage.machine.loads) and not all(
+        _of_forces(KeyPath.parse(path), tables) for path in paths
+    )
+
+
 def _of_forces(path: KeyPath, tables: Collection[str]) -> bool:
     """Whether forces depend on a number and the motion by crank angle does not."""
     if path[0] == "links" and len(path) > 2:
@@ -388,7 +396,7 @@ def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:
     linkage = assemble(machine)
     if not can_emit(linkage) or not all(can_vary(machine, path) for path in paths):
         return False
-    if moves_shared(linkage, paths) or moves_soil(linkage, paths):
+    if any(moves(linkage, paths) for moves in (moves_shared, moves_soil, moves_piston)):
         return False
     try:
         emit(linkage, Gathered.of([figure]), paths)

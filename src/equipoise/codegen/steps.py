@@ -56,6 +56,7 @@ from equipoise.mechanism.dynamics.loads import load_at
 from equipoise.mechanism.dynamics.out_of_plane import contacts, statics
 from equipoise.mechanism.formulas import cam_kernels, kernels
 from equipoise.mechanism.formulas.curves import PlaneCurve
+from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import ROUNDING
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.couplings import coupled
@@ -493,7 +494,7 @@ def trace_demands(trace: Trace) -> None:
         raise MassError(missing)
     machine, state = trace.machine, trace.state
     moving, weights = trace_inertia(trace)
-    loads = [trace_load(trace, k, load) for k, load in enumerate(machine.loads, 1)]
+    loads = [trace_load(trace, k, load) for k, load in enumerate(loads_of(trace.linkage), 1)]
     springs = [
         wrench
         for table, number, _ in machine.force_elements

@@ -231,7 +231,7 @@ def constant_loads(job: Job) -> Iterator[tuple[int, Load]]:
     """Loads that are always the same, by number; others, and soil, are told to be left out."""
     job.leave_out_soil()
     for number, load in enumerate(job.machine.loads, 1):
-        if load.jumps or load.rows is not None:
+        if not load.constant:
             job.leave_out(Note("load {number}, which is not constant", number=number))
             continue
         if load.reaction is not None and job.machine.support is not None:

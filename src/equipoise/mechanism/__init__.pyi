@@ -25,6 +25,7 @@ from .parts.field import SoilTable as SoilTable
 from .parts.force_elements import GasTable as GasTable
 from .parts.force_elements import Motor as Motor
 from .parts.force_elements import MotorTable as MotorTable
+from .parts.indicator_diagrams import IndicatorDiagram as IndicatorDiagram
 from .parts.joint_properties import JointProperties as JointProperties
 from .parts.joint_properties import RollingBearing as RollingBearing
 from .parts.machine import Cam as Cam

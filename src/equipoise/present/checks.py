@@ -17,6 +17,7 @@ from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.loads import work_in_cycle
+from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.outputs.declared import body_named
 from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, format_quantity, number
 from equipoise.quantities.numbers import rate_told, time_told
@@ -290,7 +291,7 @@ MOST_SHOWN = 12
 
 def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
     """Every load: where it acts, from which crank angle to which, its size and its work."""
-    for load in machine.loads:
+    for load in loads_of(assemble(machine)):
         work = work_in_cycle(machine, load)
         kind: Dimension = "torque" if load.point is None else "force"
         place = load.link

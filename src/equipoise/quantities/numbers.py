@@ -122,6 +122,7 @@ _FOLLOWS: dict[Dimension, str] = {
     "bending stiffness": "{force} {length}^2",
     "mass per length": "{mass}/{length}",
     "density": "{mass}/{length}^3",
+    "volume": "{length}^3",
 }
 """Unit of a dimension that follows from others, where all of them are chosen."""
 
@@ -202,6 +203,7 @@ _SHOWN: dict[Dimension, str] = {
     "mass": "g",
     "inertia": "kg mm^2",
     "unbalance": "g mm",
+    "volume": "cm^3",
 }
 """Unit that is shown usually; SI of every other dimension."""
 

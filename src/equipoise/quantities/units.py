@@ -33,6 +33,7 @@ Dimension = Literal[
     "torsional damping",
     "power",
     "density",
+    "volume",
     "energy",
     "bending stiffness",
     "mass per length",
@@ -268,6 +269,20 @@ KINDS: dict[Dimension, QuantityKind] = {
             "lb/in^3": "27679.90471020312119364396209",
         },
         example="7850 kg/m^3",
+    ),
+    "volume": QuantityKind(
+        to_say("a volume"),
+        {
+            "m^3": "1",
+            "mm^3": "0.000000001",
+            "cm^3": "0.000001",
+            "dm^3": "0.001",
+            "l": "0.001",
+            "ml": "0.000001",
+            "in^3": "0.000016387064",
+        },
+        example="196 cm^3",
+        usual=("cm^3", "mm^3", "m^3"),
     ),
     "energy": QuantityKind(
         to_say("an energy"), {"J": "1", "mJ": "0.001", "kJ": "1000"}, example="12 J"

@@ -136,7 +136,7 @@ class CrankEquation:
         linkage = assemble(self.machine)
         turns = linkage.cycle.turns
         grid = np.linspace(0.0, self.period, PIECES * turns + 1)
-        jumps, bends = jumps_of_rows(linkage), bends_of_rows(self.machine, turns)
+        jumps, bends = jumps_of_rows(linkage), bends_of_rows(linkage, turns)
         turned = resisted_back(linkage)
         apart = np.sort(np.concatenate([jumps, bends, turned]))
         apart = apart[np.diff(apart, prepend=-1.0) > CLOSE]

@@ -28,6 +28,7 @@ from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note, all_of, any_of
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.parts.force_elements import GasTable, LoadTable
+from equipoise.mechanism.parts.indicator_diagrams import OVER, IndicatorDiagram
 from equipoise.mechanism.parts.support import TIME_IN_PERIOD
 from equipoise.quantities import (
     FACTORS,
@@ -214,6 +215,7 @@ COLUMNS: dict[str, tuple[Dimension, str]] = {
     "torque": ("torque", "N m"),
     "pressure": ("modulus", "bar"),
     "position": ("length", "mm"),
+    "volume": ("volume", "cm^3"),
     "depth": ("length", "mm"),
     "resistance": ("force", "N"),
     "speed": ("angular speed", "rpm"),
@@ -294,8 +296,9 @@ def columns_of(text: str, forms: Forms, taken: Taken = None) -> Columns:
         raise wrong(number, Note("there are no rows below the header; give at least one"))
     by_name = dict(zip(names, map(tuple, columns), strict=True))
     first = forms[0][0]
-    for line, before, after in zip(lines[1:], by_name[first], by_name[first][1:], strict=False):
-        if after <= before and CsvTable.like(first).rises:
+    rising = by_name[first] if CsvTable.like(first).rises else ()
+    for line, before, after in zip(lines[1:], rising, rising[1:], strict=False):
+        if after <= before:
             plural = {"angle": "angles", "frequency": "frequencies"}
             what = plural.get(COLUMNS[first][0], f"{first}s")
             raise wrong(line, Note("the {what} must rise from row to row", what=what), first)
@@ -358,6 +361,10 @@ def header_of(
             raise wrong(
                 line, Note("got the column {name}; {of_time}", name=name, of_time=OF_TIME), name
             )
+        if name in OVER and forms == GasTable.forms:
+            what = Note("got the column {name}; a diagram over it is the key {key}", name=name,
+                        key="indicator")  # fmt: skip
+            raise wrong(line, what, name)
         if not any(name in form for form in forms):
             raise wrong(
                 line, Note("got the column {given}; {right}", given=shortened(cell), right=right)
@@ -438,6 +445,9 @@ def parse_table(sort: str, text: str, file: str = "") -> CsvTable:
         none = (0.0,) * len(angles)  # of a component that is left out
         parts = tuple(columns.get(name, none) for name in ("force_x", "force_y"))
         return LoadTable(angles, parts, file)
+    if sort == "indicator":
+        over = next(name for name in OVER if name in columns)
+        return IndicatorDiagram(columns[over], columns["pressure"], over, file)
     if "magnitude" in columns:
         pairs = zip(columns["magnitude"], columns["phase"], strict=True)
         resistance, reactance = zip(*(from_polar(*pair) for pair in pairs), strict=True)
@@ -453,6 +463,8 @@ def format_table(table: CsvTable) -> str:
     if isinstance(table, LoadTable):
         form: tuple[str, ...] = LoadTable.forms[0 if len(table.values) == 2 else 1]
         return _text(form, [table.crank_angle, *table.values])
+    if isinstance(table, IndicatorDiagram):
+        return _text((table.over, "pressure"), [table.places, table.pressure])
     form = table.forms[0]
     columns = [getattr(table, item.name) for item in fields(table)]
     return _text(form, columns[: len(form)])

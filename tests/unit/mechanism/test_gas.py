@@ -179,7 +179,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"bore": None}, ".bore: missing; gas acts on the area"),
     ({"bore": -0.1}, ".bore: got -0.1 m"),
     ({"axes": "link"}, ".axes: gas pushes a piston along its slider"),
-    ({"force": (1.0, 0.0)}, ": give exactly one of force, torque, table and gas"),
+    ({"force": (1.0, 0.0)}, ": give exactly one of force, torque, table, gas and indicator"),
     ({"gas": SHORT}, ".outside: missing; the table goes from"),
     ({"gas": UNEQUAL}, ".gas: the table has 1 bar at 0 deg and 4 bar at 360 deg"),
     ({"gas": GasTable((0.0, 1.0), (1e5,))}, ".gas: the columns differ in length"),

@@ -102,7 +102,7 @@ def test_numbers_must_be_those_of_machines(value: float) -> None:
 
 NO_NAME = "a link cannot be called {!r}; choose another name"
 THREE = "driver {!r}, driven link {!r} and carrier {!r} must be three different bodies"
-ONE_OF = "give exactly one of force, torque, table and gas"
+ONE_OF = "give exactly one of force, torque, table, gas and indicator"
 AT_A_POINT = "missing; a force acts at a point of the link"
 NOT_AT_A_POINT = "a torque acts on a link, not at a point; leave it out"
 LINKS: list[tuple[str, str, Any]] = [

@@ -15,6 +15,7 @@ from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.loads import acting_load
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
+from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.field import Soil
@@ -117,7 +118,7 @@ def soil_loads(motion: Motion) -> Iterator[Acting]:
 
 
 def _acting(motion: Motion, reaction: str | None) -> Iterator[Acting]:
-    for load in (item for item in motion.machine.loads if item.reaction == reaction):
+    for load in (item for item in loads_of(motion.linkage) if item.reaction == reaction):
         yield load.link, load.point, *acting_load(motion, load)
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, size_of_links
 from equipoise.mechanism.kinematics.friction_joints import STILL, rubbing_joints
+from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move, move_again
 from equipoise.mechanism.kinematics.tip import crossings, roots, surface_of
 from equipoise.mechanism.parts.couplings import Coupling
@@ -42,9 +43,9 @@ def jumps_of(linkage: Linkage) -> Array:
     known: Array | None = linkage.memory.get("jumps")
     if known is None:
         known = np.empty(0)
-        if may_jump(linkage.machine) or linkage.machine.rubs:
+        if may_jump(linkage) or linkage.machine.rubs:
             turns = linkage.cycle.turns
-            every = [*declared_jumps(linkage.machine, turns), *_jumps_on_the_way(linkage)]
+            every = [*declared_jumps(linkage, turns), *_jumps_on_the_way(linkage)]
             known = _within(every, turns)
         linkage.memory["jumps"] = known
     return known
@@ -62,38 +63,39 @@ def of_rows(machine: Machine, jumps: Array, turns: int) -> Array:
     return _within([np.subtract.outer(jumps, phases).ravel()], turns)
 
 
-def bends_of(machine: Machine, turns: int) -> Array:
+def bends_of(linkage: Linkage, turns: int) -> Array:
     """Crank angles (B,) of one row, rising, rad, at which the slope of a load's table may jump."""
     every = [np.empty(0)]
-    for table in (load.rows for load in machine.loads if load.rows is not None):
+    for table in (load.rows for load in loads_of(linkage) if load.rows is not None):
         again = 2 * pi * np.arange(0, turns, table.turns)
         every.append(np.add.outer(again, table.crank_angle).ravel())
     return _within(every, turns)
 
 
-def bends_of_rows(machine: Machine, turns: int) -> Array:
+def bends_of_rows(linkage: Linkage, turns: int) -> Array:
     """Crank angles (B,) of the first row, rising, rad, at which the slope of a load's table in any
     row may jump.
     """
-    return of_rows(machine, bends_of(machine, turns), turns)
+    return of_rows(linkage.machine, bends_of(linkage, turns), turns)
 
 
-def may_jump(machine: Machine) -> bool:
-    """Whether there is anything that jumps, as far as is known without motion."""
+def may_jump(linkage: Linkage) -> bool:
+    """Whether there is anything that jumps, as far as is known before the motion on its way."""
+    machine = linkage.machine
     return (
         machine.in_soil
-        or any(load.jumps for load in machine.loads)
+        or any(load.jumps for load in loads_of(linkage))
         or any(len(law.jumps(ACCELERATION)) for law in machine.laws.values())
         or any(len(coupling.jumps) for coupling in machine.couplings)
     )
 
 
-def declared_jumps(machine: Machine, turns: int) -> Iterator[Array]:
+def declared_jumps(linkage: Linkage, turns: int) -> Iterator[Array]:
     """Crank angles, rad, in so many turns at which loads and the laws of drives jump."""
-    for load in machine.loads:
+    for load in loads_of(linkage):
         for angle, every in load.jumps:
             yield angle + 2 * pi * np.arange(0, turns, every)
-    for law in machine.laws.values():
+    for law in linkage.machine.laws.values():
         again = 2 * pi * np.arange(0, turns, law.turns)
         yield np.add.outer(again, law.jumps(ACCELERATION)).ravel()
 
@@ -112,7 +114,7 @@ def resolved(motion: Motion) -> Motion:
     jumps = jumps_of_rows(motion.linkage)
     if not len(jumps):
         return motion
-    bends, theta = bends_of_rows(motion.machine, motion.turns), motion.crank_angle
+    bends, theta = bends_of_rows(motion.linkage, motion.turns), motion.crank_angle
     key = len(theta), jumps.tobytes(), bends.tobytes()
     last_key, sampling = motion.linkage.memory.get("sampling", (None, None))
     if key != last_key:

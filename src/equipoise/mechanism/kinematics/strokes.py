@@ -395,6 +395,18 @@ class _Outputs:
         return first * second
 
 
+def dead_positions(linkage: Linkage, slider: str) -> tuple[DeadPosition, ...]:
+    """Where a slider turns back in a cycle, by crank angle; none where it does not.
+
+    Raises
+    ------
+    MotionError : the crank cannot turn fully.
+    """
+    output, theta = _Output(slider, "slider"), _grid(linkage)
+    table = np.array([output.of(_motion(linkage, theta))])
+    return tuple(_dead_positions(_Outputs(linkage, (output,)), theta, table)[0])
+
+
 # -- figures of a machine --------------------------------------------------------------------------
 
 

@@ -36,6 +36,7 @@ from equipoise.mechanism.checks import (
     unknown_point,
 )
 from equipoise.mechanism.parts.dc_motors import DcMotor
+from equipoise.mechanism.parts.indicator_diagrams import IndicatorDiagram, wrong_diagram
 from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.ramps import ramp_value, ramps_of
 from equipoise.mechanism.parts.servo_motors import ServoMotor
@@ -49,7 +50,9 @@ OUTSIDE = ("zero", "hold", "wrap")
 AXES = ("link", "slider")
 SIDES = ("ahead", "behind")
 OF_GAS = ("bore", "back_pressure", "side")
-"""Keys that go with gas alone."""
+"""Keys that go with gas alone, whether over the crank angle or as an indicator diagram."""
+KINDS = ("force", "torque", "table", "gas", "indicator")
+"""Keys of a load of which it has one."""
 BAR = 1e5
 """Pa."""
 TURN = 2 * pi * (1 + 1e-12)
@@ -146,20 +149,23 @@ class Load(Frozen):
     """A force at a point of a link, or a torque on a link: from outside the machine, or between the
     link and the frame.
 
-    Exactly one of force, torque, table and gas.  Without `start` and `stop` it acts always.
+    Exactly one of force, torque, table, gas and indicator.  Without `start` and `stop` it acts
+    always.
     """
 
     called = to_say("{what} of load {number}")
-    file_order = ("link", "point", "force", "torque", "table", "gas", "bore", "back_pressure",
-                  "side", "axes", "outside", "from", "to", "reaction")  # fmt: skip
+    file_order = ("link", "point", "force", "torque", "table", "gas", "indicator", "bore",
+                  "back_pressure", "side", "axes", "outside", "from", "to", "reaction")  # fmt: skip
     conditions: ClassVar[Conditions] = {
-        "oneOf": [{"required": [name]} for name in ("force", "torque", "table", "gas")],
+        "oneOf": [{"required": [name]} for name in KINDS],
         "dependentRequired": {
             "from": ["to"], "to": ["from"], "force": ["point"], "axes": ["point"],
-            "gas": ["bore", "axes"], **{name: ["gas"] for name in OF_GAS},
+            "gas": ["bore", "axes"], "indicator": ["bore", "axes"],
         },
         "dependentSchemas": {
             "outside": {"anyOf": [{"required": [name]} for name in ("table", "gas")]},
+            **{name: {"anyOf": [{"required": ["gas"]}, {"required": ["indicator"]}]}
+               for name in OF_GAS},
         },
     }  # fmt: skip
 
@@ -191,6 +197,14 @@ class Load(Frozen):
         "of a force: `crank_angle [deg],pressure [bar]`",
         default=None,
         example="indicator.csv",
+    )
+    indicator: IndicatorDiagram | None = key(
+        File("indicator"),
+        "CSV file beside this one of an indicator diagram, instead of `gas`: "
+        "`volume [cm^3],pressure [bar]`, or `position [mm],pressure [bar]` over the way of the "
+        "piston",
+        default=None,
+        example="diagram.csv",
     )
     bore: float | None = key(
         "length", "diameter of the area on which `gas` acts", default=None, example="68 mm", above=0
@@ -230,12 +244,31 @@ class Load(Frozen):
 
     @cached_property
     def rows(self) -> LoadTable | None:
-        """Force of a load, in its axes, or torque over the crank angle; None of a constant load."""
-        if self.gas is None or self.bore is None:
+        """Force of a load, in its axes, or torque over the crank angle; None of a constant load,
+        and of an indicator diagram, whose crank angles follow from the motion.
+        """
+        if self.gas is None or self.area is None:
             return self.table
-        area = pi / 4 * self.bore**2 * (-1 if self.side == "ahead" else 1)
+        area = self.area * (-1 if self.side == "ahead" else 1)
         along = tuple(area * (pressure - self.back_pressure) for pressure in self.gas.pressure)
         return LoadTable(self.gas.crank_angle, (along, (0.0,) * len(along)), self.gas.file)
+
+    @property
+    def area(self) -> float | None:
+        """On which gas acts, m2; None without a bore."""
+        return None if self.bore is None else pi / 4 * self.bore**2
+
+    @property
+    def constant(self) -> bool:
+        """Whether it is the same at every crank angle."""
+        return not self.jumps and self.rows is None and self.indicator is None
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank after which it begins anew."""
+        if self.indicator is not None:
+            return self.indicator.turns
+        return 1 if self.rows is None else self.rows.turns
 
     def guides(self, sliders: Iterable[LoadGuide]) -> list[LoadGuide]:
         """Sliders in which its link slides: of several those, if any, whose point it acts at."""
@@ -396,15 +429,16 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
         return
     if load.point is not None:
         yield from unknown_point(f"{where}.point", load.point, load.link, bodies)
-    given = [item is not None for item in (load.force, load.torque, load.table, load.gas)]
-    if sum(given) != 1:
-        yield ModelError(where, Note("give exactly one of force, torque, table and gas"))
+    if sum(getattr(load, name) is not None for name in KINDS) != 1:
+        note = Note("give exactly one of force, torque, table, gas and indicator")
+        yield ModelError(where, note)
         return
     if problem := [*_wrong_gas(where, load)]:
         yield from problem
         return
     rows = load.rows
-    forces = load.force is not None or (rows is not None and len(rows.values) == 2)
+    forces = load.force is not None or load.indicator is not None
+    forces = forces or (rows is not None and len(rows.values) == 2)
     if forces and load.point is None:
         yield ModelError(f"{where}.point", Note("missing; a force acts at a point of the link"))
     if not forces and load.point is not None:
@@ -439,18 +473,20 @@ def _wrong_table(where: str, load: Load, forces: bool) -> Iterator[ModelError]:
 
 def _wrong_gas(where: str, load: Load) -> Iterator[ModelError]:
     """What is wrong with the keys of the pressure of a gas, in a load by it or in others."""
-    if load.gas is None:
+    if load.gas is None and load.indicator is None:
         given_keys = load.bore is not None, bool(load.back_pressure), load.side != "ahead"
         for name, given in zip(OF_GAS, given_keys, strict=True):
             if given:
                 yield ModelError(f"{where}.{name}", Note("goes with gas; leave it out"))
         return
+    if load.indicator is not None:
+        yield from wrong_diagram(f"{where}.indicator", load.indicator)
     if load.bore is None:
         yield ModelError(f"{where}.bore", Note("missing; gas acts on the area of a bore"))
     if load.axes != "slider":
         wrong = Note('gas pushes a piston along its slider; give axes = "slider"')
         yield ModelError(f"{where}.axes", wrong)
-    if len(load.gas.pressure) != len(load.gas.crank_angle):
+    if load.gas is not None and len(load.gas.pressure) != len(load.gas.crank_angle):
         yield ModelError(f"{where}.gas", Note("the columns differ in length"))
 
 

@@ -374,8 +374,7 @@ class Machine(Driven, Displayed, Frozen):
     @property
     def turns_given(self) -> int:
         """Turns of the crank after which all drives and loads are back."""
-        loads = (load.rows.turns for load in self.loads if load.rows is not None)
-        return lcm(*(item.turns for item in self.driven), *loads)
+        return lcm(*(item.turns for item in (*self.driven, *self.loads)))
 
     def cycles_per_minute(self, speed: float) -> float:
         """How often all drives and loads are back in a minute, at a speed of the crank, rad/s."""

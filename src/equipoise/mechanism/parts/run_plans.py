@@ -66,10 +66,11 @@ def _scaled(load: Load, factor: float) -> Load:
         return replace(load, force=(load.force[0] * factor, load.force[1] * factor))
     if load.torque is not None:
         return replace(load, torque=load.torque * factor)
-    if load.gas is not None:
-        beyond = (factor * (pressure - load.back_pressure) for pressure in load.gas.pressure)
-        pressures = tuple(load.back_pressure + pressure for pressure in beyond)
-        return replace(load, gas=replace(load.gas, pressure=pressures))
+    for name, gas in (("gas", load.gas), ("indicator", load.indicator)):
+        if gas is not None:
+            beyond = (factor * (pressure - load.back_pressure) for pressure in gas.pressure)
+            pressures = tuple(load.back_pressure + pressure for pressure in beyond)
+            return replace(load, **{name: replace(gas, pressure=pressures)})
     assert load.table is not None
     columns = tuple(tuple(value * factor for value in column) for column in load.table.values)
     return replace(load, table=replace(load.table, values=columns))

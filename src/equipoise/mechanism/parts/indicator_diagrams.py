@@ -1,0 +1,84 @@
+"""Indicator diagrams: pressure in a cylinder over its volume, or over the way of its piston."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Literal
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.keys import ROW, TextKind, declared, inside
+from equipoise.keys.csv_tables import CsvTable
+
+OVER = ("volume", "position")
+LEAST_ROWS = 3
+TINY = 1e-9
+"""Share of the range of a diagram below which a step back is rounding."""
+
+
+@declared
+class IndicatorDiagram(CsvTable):
+    """A closed loop of pressures, in the order in which the piston passes them; straight lines
+    between its rows, and from the last to the first.
+
+    places : volumes, m3, or ways of the piston, m, each from any origin.  pressure : Pa, as long.
+    over : ``volume`` or ``position``, which the places are.
+    file : name of the CSV file that it came from.
+    """
+
+    sort = "indicator"
+    forms = (("volume", "pressure"), ("position", "pressure"))
+    rises = False
+
+    places: tuple[float, ...] = inside(ROW)
+    pressure: tuple[float, ...] = inside(ROW)
+    over: Literal["volume", "position"] = inside(TextKind(OVER), default="volume")
+    file: str = inside(TextKind(), default="", compare=False)
+
+    @property
+    def span(self) -> float:
+        """Largest less smallest place, m3 or m."""
+        return max(self.places) - min(self.places)
+
+    @property
+    def loop(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Places from the smallest, and pressures, without a last row that is the first again."""
+        places, pressure = self.places, self.pressure
+        if (places[0], pressure[0]) == (places[-1], pressure[-1]):
+            places, pressure = places[:-1], pressure[:-1]
+        low = min(places)
+        return tuple(place - low for place in places), pressure
+
+    @property
+    def ends(self) -> tuple[int, ...]:
+        """Rows of the loop at which it turns back, in their order; of several there the first."""
+        return tuple(sorted(_turns_back(self.loop[0], TINY * self.span)))
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank in which a piston passes it, with two strokes in each."""
+        return max(1, len(self.ends) // 2)
+
+
+def _turns_back(places: Sequence[float], least: float) -> Iterator[int]:
+    """Rows of a closed loop at which its places turn back, without steps of rounding."""
+    count = len(places)
+    steps = [places[(k + 1) % count] - places[k] for k in range(count)]
+    moving = [k for k in range(count) if abs(steps[k]) > least]
+    for before, after in pairwise([moving[-1] - count, *moving] if moving else []):
+        if steps[before] * steps[after] < 0:
+            yield (before + 1) % count
+
+
+def wrong_diagram(where: str, diagram: IndicatorDiagram) -> Iterator[ModelError]:
+    """Everything that is wrong with an indicator diagram."""
+    if len(diagram.places) != len(diagram.pressure):
+        yield ModelError(where, Note("the columns differ in length"))
+    elif len(diagram.places) < LEAST_ROWS:
+        rows = len(diagram.places)
+        wrong = Note("got {rows} rows; a closed diagram has {least} or more", rows=rows,
+                     least=LEAST_ROWS)  # fmt: skip
+        yield ModelError(where, wrong)
+    elif diagram.span <= 0:
+        yield ModelError(where, Note("all rows are at one place; a piston moves"))
