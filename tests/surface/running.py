@@ -14,6 +14,7 @@ import time
 import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from copy import copy
 from dataclasses import dataclass
 from importlib.resources import files
 from multiprocessing import get_context
@@ -23,6 +24,7 @@ from typing import Any
 from unittest import mock
 
 import pytest
+from cyclopts import App, ArgumentCollection
 
 import equipoise as eq
 from equipoise.cli import run
@@ -50,9 +52,40 @@ def equipoise(*arguments: str | Path) -> Result:
     out, err = io.StringIO(), io.StringIO()
     helps = not arguments or {"--help", "-h"} & set(arguments)
     wide = mock.patch.dict(os.environ, {} if helps else {"COLUMNS": str(WIDE)})
-    with wide, redirect_stdout(out), redirect_stderr(err):
+    with wide, _options_read_once(), redirect_stdout(out), redirect_stderr(err):
         status = run([str(argument) for argument in arguments])
     return Result(status, out.getvalue(), err.getvalue())
+
+
+ASSEMBLE = App.assemble_argument_collection
+OPTIONS: dict[int, tuple[App, ArgumentCollection]] = {}
+"""Options of the commands that tests have run, by the application of each, which is kept too."""
+
+
+def _options_read_once() -> Any:
+    """Inside, the options of a command are read off its function at its first call alone.
+
+    In a process of its own a command is called once; here, tests call each hundreds of times, and
+    reading its options takes as long as most refusals do.
+    """
+
+    def assemble(app: App, **options: Any) -> ArgumentCollection:
+        if any(options.values()):  # for the help
+            return ASSEMBLE(app, **options)
+        if id(app) not in OPTIONS:
+            OPTIONS[id(app)] = app, ASSEMBLE(app)
+        return _without_values(OPTIONS[id(app)][1])
+
+    return mock.patch.object(App, "assemble_argument_collection", assemble)
+
+
+def _without_values(options: ArgumentCollection) -> ArgumentCollection:
+    """A copy of options, to which a command line has given nothing yet."""
+    copies = {id(option): copy(option) for option in options}
+    for option in copies.values():
+        option.tokens = []
+        option.children = ArgumentCollection(copies[id(child)] for child in option.children)
+    return ArgumentCollection(copies.values())
 
 
 def command(*arguments: str | Path) -> list[str]:
@@ -220,8 +253,8 @@ def within(seconds: float) -> Iterator[None]:
             signal.signal(name, before[name])
 
 
-def interrupted(words: list[str], ready: Callable[[], bool] | str | float) -> Result:
-    """Run a process and interrupt it once it is ready: after a line, a sign, or so many seconds."""
+def interrupted(words: list[str], ready: Callable[[], bool] | str) -> Result:
+    """Run a process and interrupt it once it is ready: after a line or another sign."""
     pipe = subprocess.PIPE
     with subprocess.Popen(
         words,
@@ -233,12 +266,9 @@ def interrupted(words: list[str], ready: Callable[[], bool] | str | float) -> Re
         assert child.stdout is not None
         if isinstance(ready, str):
             assert child.stdout.readline() == ready
-        elif callable(ready):
-            end = time.monotonic() + 60
-            while not ready() and time.monotonic() < end:
-                time.sleep(0.05)
         else:
-            time.sleep(ready)
+            while not ready() and child.poll() is None:
+                time.sleep(0.05)
         assert child.poll() is None
         child.send_signal(signal.SIGINT)
         out, err = child.communicate(timeout=60)

@@ -16,7 +16,6 @@ from support.chosen import EXHAUSTIVE, few
 from surface.running import (
     READY,
     changed,
-    command,
     equipoise,
     example_text,
     interrupted,
@@ -530,17 +529,40 @@ def test_interruption_leaves_nothing_half_written(module: str, function: str, fo
     assert list(folder.iterdir()) == []
 
 
+COMPUTING = """
+import {module}
+
+real = {module}.{function}
+
+def compute(*given, **options):
+    print("ready", flush=True)
+    while True:  # on a fast machine, too
+        real(*given, **options)
+
+{module}.{function} = compute
+from equipoise.cli import main
+main()
+"""
+
+
 @pytest.mark.parametrize(
-    "words",
+    ("function", "words"),
     [
         pytest.param(
-            ("analyze", "watt-six-bar", "--angles", "400000", "--csv", "x.csv"), marks=EXHAUSTIVE
+            "equipoise.results.analysis.analyze",
+            ("analyze", "watt-six-bar", "--angles", "400000", "--csv", "x.csv"),
+            marks=EXHAUSTIVE,
         ),
-        ("balance", "balance-geared-a", "-o", "new.toml", "--csv", "x.csv", "--plot", "pictures"),
+        (
+            "equipoise.balancing.optimisation.balance",
+            ("balance", "balance-crank", "-o", "new.toml", "--csv", "x.csv", "--plot", "pictures"),
+        ),
     ],
 )
-def test_interruption_of_what_takes_long(words: tuple[str, ...], folder: Path) -> None:
-    result = interrupted(command(*words), 2.5)  # well past the start, far from the end
+def test_interruption_of_what_computes(function: str, words: tuple[str, ...], folder: Path) -> None:
+    module, _, name = function.rpartition(".")
+    program = COMPUTING.format(module=module, function=name)
+    result = interrupted([sys.executable, "-c", program, *words], "ready\n")
     assert (result.status, result.out) == (130, "")
     assert result.err.splitlines()[-1] == "equipoise: interrupted"
     assert list(folder.iterdir()) == []

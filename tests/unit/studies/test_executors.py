@@ -52,7 +52,7 @@ def check(found: list[tuple[range, Block]]) -> None:
         np.testing.assert_array_equal(block.outcome.reason, Formulas()(values).reason)
 
 
-def gone(process: int, patience: float = 10.0) -> bool:
+def gone(process: int, patience: float = 60.0) -> bool:
     """Whether a process ends in time."""
     end = time.monotonic() + patience
     while time.monotonic() < end:
@@ -99,14 +99,14 @@ def test_designs_at_which_processes_always_die_end_the_sweep(tmp_path: Path) -> 
 
 
 def test_processes_stop_at_once_when_they_are_closed(tmp_path: Path) -> None:
-    orders = Orders(STUDY, tmp_path, pause=60.0)
+    orders = Orders(STUDY, tmp_path, pause=600.0)
     pool = Processes(orders.task, 2)
     pool.submit(CHUNKS[0])
     while not orders.processes():
         time.sleep(0.02)
     start = time.monotonic()
     pool.close()
-    assert time.monotonic() - start < 5
+    assert time.monotonic() - start < 60  # a tenth of what a chunk takes
     assert all(map(gone, orders.processes()))
 
 
@@ -145,7 +145,7 @@ def test_processes_end_with_the_one_that_started_them(
             os.killpg(process.pid, number)
         else:
             process.kill()
-        _, told = process.communicate(timeout=10)
+        _, told = process.communicate(timeout=60)
     assert all(map(gone, children))
     if number == signal.SIGINT:
         assert told.count("Traceback") == 1  # that of the script itself
