@@ -670,9 +670,12 @@ class Periodic(Brief):
         return self + -other
 
     def _padded(self, count: int) -> Array:
-        missing = count - self.amplitudes.shape[-1]
-        widths = [(0, 0)] * (self.amplitudes.ndim - 1) + [(0, missing)]
-        return np.pad(self.amplitudes, widths)
+        *shape, known = self.amplitudes.shape
+        if known == count:
+            return self.amplitudes
+        padded = np.zeros((*shape, count), self.amplitudes.dtype)
+        padded[..., :known] = self.amplitudes
+        return padded
 
     @property
     def sizes(self) -> Array:

@@ -118,7 +118,7 @@ def test_tolerances_give_back_the_memory_of_their_machines() -> None:
 
 def test_a_long_sweep_gives_back_the_memory_of_its_speeds() -> None:
     """Each held 39 MB."""
-    words = ("yamashita-rig", "--speed", "20 rpm : 400 rpm", "--speeds", "12", "--model", "exact")
+    words = ("yamashita-rig", "--speed", "20 rpm : 400 rpm", "--speeds", "5", "--model", "exact")
     result, peak = peak_of("respond", *words)
     assert result.status == 0, result.err
     assert peak < 125

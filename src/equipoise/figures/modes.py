@@ -146,10 +146,13 @@ class ModeShape:
         return np.append(around, around[0])
 
     def extent(self, view: View) -> tuple[complex, complex]:
-        """Lower left and upper right corner of all that moves in a view, m."""
-        every = np.concatenate([self.outline(view, phase) for phase in (0, *PHASES[::6])])
-        low = complex(np.min(every.real), np.min(every.imag))
-        return low, complex(np.max(every.real), np.max(every.imag))
+        """Lower left and upper right corner of all outlines that are drawn of a view, m."""
+        phases = (0, *PHASES[::6])
+        every = [projected(self.displaced(self.corners, phase), view) for phase in phases]
+        x, y = np.real(every), np.imag(every)
+        disc = ROUND * self.size * (1 + 1j)
+        low, high = complex(np.min(x), np.min(y)), complex(np.max(x), np.max(y))
+        return low - disc, high + disc
 
 
 def projected(points: Any, view: View) -> Array:

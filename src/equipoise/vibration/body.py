@@ -56,9 +56,9 @@ class SupportBody:
 
     def wrench(self, force: Array, point: Any) -> Array:
         """Generalized force (..., 6) of forces (..., 3), N, at a point (3,) of the support."""
-        arm = np.asarray(point) - self.reference
-        both: Array = np.concatenate([force, np.cross(arm, force)], axis=-1)
-        return both
+        (x, y, z), (fx, fy, fz) = np.asarray(point) - self.reference, np.moveaxis(force, -1, 0)
+        moment = [y * fz - z * fy, z * fx - x * fz, x * fy - y * fx]  # `np.cross` takes far longer
+        return np.concatenate([force, np.stack(moment, axis=-1)], axis=-1)
 
     def row(self, item: Mount | Gauge) -> Array:
         """Row (6,) that reads a displacement, or a rotation, off the coordinates."""

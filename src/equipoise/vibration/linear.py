@@ -10,7 +10,7 @@ the linkage's mass rides at the drive's pivot, in the first it is spread as in t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, reduce
 from math import copysign, pi, sqrt
@@ -739,6 +739,7 @@ def answered(
     UsageError : all of them would take more memory than may be used.
     """
     answers: Answers = {}
+    levels: dict[float, Array] = {}
     wanted = speeds.tolist()
     for _ in range(ROUNDS):
         total = len(answers) + len(wanted)
@@ -752,21 +753,25 @@ def answered(
                 speeds_of = to_say("{count} speeds of a cycle of {turns} turns")
                 what = Note(speeds_of, count=total, turns=answer.turns)
                 check_memory(answer.nbytes * total, what)
+                levels[speed] = levels_of(answer)
             progress(len(answers), total)
         answers = dict(sorted(answers.items(), key=lambda pair: abs(pair[0])))
-        wanted = between(answers)
+        wanted = between([*answers], levels)
     return answers
 
 
-def between(answers: Mapping[float, Response | None]) -> list[float]:
-    """Middles of the pieces that meet where any curve bends."""
-    speeds = np.array([*answers])
-    there = np.array([answer is not None for answer in answers.values()])
+def between(ordered: Sequence[float], levels: Mapping[float, Array]) -> list[float]:
+    """Middles of the pieces that meet where any curve bends.
+
+    ordered : speeds.  levels : of those that have an answer, points (C,) of the curves.
+    """
+    speeds = np.array(ordered)
+    there = np.array([speed in levels for speed in ordered])
     if len(speeds) < 3 or not np.any(there):
         return []
-    levels = [_levels(answer) for answer in answers.values() if answer is not None]
-    curves = np.full((len(levels[0]), len(speeds)), np.nan)
-    curves[:, there] = np.array(levels).T
+    found = [levels[speed] for speed in ordered if speed in levels]
+    curves = np.full((len(found[0]), len(speeds)), np.nan)
+    curves[:, there] = np.array(found).T
     x = np.broadcast_to(ACROSS * speeds / np.ptp(speeds), curves.shape)
     ways = np.diff(x) + 1j * np.diff(curves)
     both = ways[:, 1:] + ways[:, :-1]
@@ -776,7 +781,7 @@ def between(answers: Mapping[float, Response | None]) -> list[float]:
     return [float(speed) for speed in (speeds[1:] + speeds[:-1])[split] / 2]
 
 
-def _levels(answer: Response) -> Array:
+def levels_of(answer: Response) -> Array:
     """RMS of whatever is drawn against speed, (C,), as points of a log axis; NaN where it is 0."""
     read = [
         (gauge.displacement, gauge.velocity, gauge.acceleration) for gauge in answer.gauges.values()

@@ -349,8 +349,10 @@ def _mount_curve(name: str, responses: list[Response], there: Array) -> MountCur
 def _joined(signals: list[Periodic]) -> Periodic:
     """Signals as one, amplitudes (signals, K + 1)."""
     count = max(len(signal.amplitudes) for signal in signals)
-    padded = [np.pad(signal.amplitudes, (0, count - len(signal.amplitudes))) for signal in signals]
-    return Periodic(np.array(padded), signals[0].turns)
+    padded = np.zeros((len(signals), count), complex)
+    for row, signal in zip(padded, signals, strict=True):
+        row[: len(signal.amplitudes)] = signal.amplitudes
+    return Periodic(padded, signals[0].turns)
 
 
 def _spread(there: Array, values: Array) -> Array:

@@ -216,7 +216,7 @@ def test_speed_of_work_is_marked_with_what_is_read_there() -> None:
 
 @pytest.mark.parametrize("sense", few([1, -1], {-1}))
 def test_bands_to_keep_away_from(sense: int) -> None:
-    sweep = sweep_speed(plane(), sense * 3, sense * 60, speeds=10)
+    sweep = sweep_speed(plane(), sense * 3, sense * 60, speeds=6)
     panel = sweep_charts(sweep)["response"].panels[0]
     for resonance in sweep.resonances:
         if resonance.avoid is not None:

@@ -149,7 +149,7 @@ def pictures(kind: str) -> Drawn:
     drawn = pictures_of(respond(machine, SPEEDS.get(kind)))
     slow, fast = (-3.0, -60.0) if SPEEDS.get(kind, 1.0) < 0 else (3.0, 60.0)
     if kind != "falling":
-        sweep = sweep_speed(machine, slow, fast, speeds=16)
+        sweep = sweep_speed(machine, slow, fast, speeds=16 if kind == "rig" else 6)
         drawn |= named("sweep", pictures_of(sweep))
         if kind == "rig":
             drawn |= named("lost", pictures_of(dashed_and_lost(sweep)))
