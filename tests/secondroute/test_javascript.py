@@ -57,7 +57,7 @@ def run(script: Script, numbers: Any, theta: Any, folder: Path) -> Any:
     path = folder / "states.js"
     path.write_text(script.text + RUN.format(given=json.dumps(given)), encoding="utf-8")
     assert NODE is not None
-    told = subprocess.run([NODE, str(path)], check=True, capture_output=True, timeout=60)
+    told = subprocess.run([NODE, str(path)], check=True, capture_output=True, timeout=300)
     return np.frombuffer(told.stdout).reshape(len(script.names), len(theta))
 
 

@@ -14,6 +14,7 @@ from equipoise.errors import MassError
 from equipoise.mechanism.parts.field import PlantingArm, Soil, SoilTable
 from equipoise.mechanism.parts.machine import Machine
 from support import machines_cams, machines_strokes
+from support.chosen import few
 from support.loads import loaded_long, springs_on_links
 from support.machines import KINDS, Case, make
 from support.machines_planes import set_apart
@@ -35,7 +36,9 @@ every_subject = pytest.mark.parametrize("name", [*EXAMPLES, *RANDOM, *PLANTED, *
 over several turns."""
 every_followed = pytest.mark.parametrize("name", [*machines_strokes.PUSHED, *CAMMED])
 """Random machines that are pushed, and such with cams."""
-every_apart = pytest.mark.parametrize("name", APART)
+SLOW = {"pushed arm apart:0", "pushed five-bar apart:0"}
+"""Before a release only: with all links in one plane they are among `every_followed`."""
+every_apart = pytest.mark.parametrize("name", few(APART, {*APART} - SLOW))
 """Random machines whose links lie beside each other."""
 
 

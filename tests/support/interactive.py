@@ -44,7 +44,7 @@ def evaluated(html: str, body: str, folder: Path, given: Any = None) -> Any:
     run.write_text(RUN.format(given=json.dumps(given), body=body), encoding="utf-8")
     assert NODE is not None
     done = subprocess.run(
-        [NODE, run.name], cwd=folder, capture_output=True, text=True, timeout=120, check=False
+        [NODE, run.name], cwd=folder, capture_output=True, text=True, timeout=300, check=False
     )
     assert done.returncode == 0, done.stderr
     return json.loads((folder / "answer.json").read_text(encoding="utf-8"))

@@ -94,13 +94,13 @@ def command(*arguments: str | Path) -> list[str]:
 
 
 def process(*arguments: str | Path, **options: Any) -> Result:
-    """Run a command in a process of its own, for a minute at most."""
+    """Run a command in a process of its own, which does not hang: for five minutes at most."""
     environment = {**os.environ, "COLUMNS": str(WIDE)}
     options = {
         "env": environment,
         "capture_output": True,
         "encoding": "utf-8",
-        "timeout": 60,
+        "timeout": 300,
         **options,
     }
     done = subprocess.run(command(*arguments), check=False, **options)
@@ -271,7 +271,7 @@ def interrupted(words: list[str], ready: Callable[[], bool] | str) -> Result:
                 time.sleep(0.05)
         assert child.poll() is None
         child.send_signal(signal.SIGINT)
-        out, err = child.communicate(timeout=60)
+        out, err = child.communicate(timeout=300)
     return Result(child.returncode, out, err)
 
 

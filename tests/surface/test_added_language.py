@@ -60,7 +60,7 @@ def run(package: Path, *arguments: str) -> str:
     environment = os.environ | {"PYTHONPATH": str(package)}
     done = subprocess.run(
         [sys.executable, *arguments],
-        cwd=package, env=environment, capture_output=True, text=True, check=False, timeout=120,
+        cwd=package, env=environment, capture_output=True, text=True, check=False, timeout=300,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     return done.stdout

@@ -702,7 +702,7 @@ def asked(page: ClientConnection, kind: str, **given: object) -> dict[str, Any]:
     """The first answer that tells how a message of the page has ended."""
     page.send(json.dumps({"type": kind, "seq": 7, **given}))
     while True:
-        data = page.recv(timeout=60)
+        data = page.recv(timeout=300)
         assert isinstance(data, bytes)
         answer: dict[str, Any] = unpacked(data)[0]
         if answer["type"] in {"saved", "refused"}:

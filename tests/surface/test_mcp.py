@@ -107,7 +107,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
 
 
 async def talk(server: StdioServerParameters, folder: Path) -> Session:
-    async with Client(server, read_timeout_seconds=60) as client:
+    async with Client(server, read_timeout_seconds=300) as client:
         known = {one.name: one for one in (await client.list_tools()).tools}
         told = {key: await client.call_tool(*call) for key, call in CALLS.items()}
     return Session(known, told, folder)

@@ -6,7 +6,7 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -104,13 +104,12 @@ def _ticks(pid: int) -> int:
     return int(fields[11]) + int(fields[12])
 
 
-def until(done: Any, seconds: float) -> float:
-    """Wait until something is so; returns after how many s it was."""
+def until(done: Callable[[], bool]) -> None:
+    """Wait until something is so, for five minutes at most."""
     begun = time.monotonic()
     while not done():
-        assert time.monotonic() - begun < seconds, f"not within {seconds} s"
+        assert time.monotonic() - begun < 300
         time.sleep(0.05)
-    return time.monotonic() - begun
 
 
 @pytest.fixture
@@ -129,13 +128,13 @@ def test_a_call_that_is_cancelled_ends_and_others_do_not_wait(
     for number in (1, 2, 3):  # more than are computed at a time
         session.call(number, "sweep", study="slow.toml", out=f"{number}.zarr")
     stored = folder / "1.zarr"
-    until(lambda: stored.exists() and (folder / "2.zarr").exists(), 60)
+    until(lambda: stored.exists() and (folder / "2.zarr").exists())
     assert not (folder / "3.zarr").exists()
     session.call(4, "check", file="machine.toml")
     assert "ready to be analysed" in session.wait(4)["result"]["content"][0]["text"]
     for number in (1, 2, 3):
         session.send("notifications/cancelled", {"requestId": number, "reason": "enough"})
-    until(lambda: session.computing() == [], 120)
+    until(lambda: session.computing() == [])
     chunks = sum(1 for _ in folder.rglob("c/*"))
     session.call(5, "check", file="machine.toml")
     assert "result" in session.wait(5)
@@ -145,21 +144,21 @@ def test_a_call_that_is_cancelled_ends_and_others_do_not_wait(
 
 def test_the_end_of_the_input_ends_everything(session: Session, folder: Path) -> None:
     session.call(1, "sweep", study="slow.toml", out="1.zarr")
-    until((folder / "1.zarr").exists, 60)
+    until((folder / "1.zarr").exists)
     started = _below(session.process.pid)
     assert started
     assert session.process.stdin is not None
     with subprocess.Popen([sys.executable, "-c", CLOCK.format(2)]) as clock:
         session.process.stdin.close()
-        until(lambda: session.process.poll() is not None or clock.poll() is not None, 120)
+        until(lambda: session.process.poll() is not None or clock.poll() is not None)
         assert clock.poll() is None, "the server outlives a process that computes for 2 s"
-        until(lambda: not any(Path(f"/proc/{pid}").exists() for pid in started), 60)
+        until(lambda: not any(Path(f"/proc/{pid}").exists() for pid in started))
         clock.kill()
 
 
 def test_a_worker_that_dies_is_told(session: Session, folder: Path) -> None:
     session.call(1, "sweep", study="slow.toml", out="1.zarr")
-    until((folder / "1.zarr").exists, 60)
+    until((folder / "1.zarr").exists)
     for pid in _children(session.process.pid):  # those below it are only started again
         subprocess.run(["kill", "-9", str(pid)], check=False)
     answer = session.wait(1)["result"]

@@ -81,10 +81,10 @@ def page_until_interrupted(file: str) -> None:
         assert run.stderr is not None
         address = run.stdout.readline().strip()
         assert address.startswith("http://127.0.0.1:")
-        with urllib.request.urlopen(address, timeout=20) as page:
+        with urllib.request.urlopen(address, timeout=300) as page:
             assert "<title>Equipoise</title>" in page.read().decode()
         run.send_signal(signal.SIGINT)
-        assert run.wait(20) == 0
+        assert run.wait(300) == 0
         assert run.stderr.read() == "press Ctrl+C to end\n"
 
 

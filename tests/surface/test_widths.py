@@ -29,8 +29,8 @@ WIDTHS = (40, 57, 80, 120, 200)
 TARGETS = """
 schema = 1
 [search]
-generations = 2
-population = 8
+generations = 1
+population = 5
 [vary]
 crank = ["33 mm", "34 mm"]
 [[goals]]

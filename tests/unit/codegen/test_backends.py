@@ -29,6 +29,7 @@ from equipoise.codegen.terms import BOTH, Graph, VectorTerm, angle_of, reached, 
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from support.batches import by_numpy, every_dyad, wanted_of
+from support.chosen import EXHAUSTIVE
 from support.designs import Array, drawn, numbers_of, paths_of
 from unit.mechanism.build import four_bar, machine
 
@@ -310,11 +311,12 @@ def started(folder: Path) -> subprocess.Popen[str]:
     return subprocess.Popen([sys.executable, "-c", SCRIPT], text=True, env=environment, **pipes)
 
 
+@EXHAUSTIVE  # On every change: `test_threads_that_ask_at_once`, and `test_file_is_written_once`.
 def test_processes_that_start_at_once(tmp_path: Path) -> None:
     """They may all write and compile the same loop; one more finds it done."""
     folder = tmp_path / "loops"
     processes = [started(folder) for _ in range(2)]
-    answers = [process.communicate("go\n", timeout=120) for process in processes]
+    answers = [process.communicate("go\n", timeout=300) for process in processes]
     assert {error for _, error in answers} == {""}
     told = np.array([[0.5**0.5], [2**0.5]])
     (answer,) = {out for out, _ in answers}
@@ -324,7 +326,7 @@ def test_processes_that_start_at_once(tmp_path: Path) -> None:
     assert [one for one in files if one != ".pyc"] == [".nbc", ".nbi", ".py"]
     stamps = {path: path.stat().st_mtime_ns for path in folder.glob("**/*")}
     late = started(folder)
-    assert late.communicate("go\n", timeout=120) == (answer, "")
+    assert late.communicate("go\n", timeout=300) == (answer, "")
     assert {path: path.stat().st_mtime_ns for path in folder.glob("**/*")} == stamps
 
 

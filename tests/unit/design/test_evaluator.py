@@ -52,6 +52,8 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     return parts
 
 
+# Figures in another order fail in `test_a_search_is_the_same_with_any_number_of_workers` too.
+@EXHAUSTIVE
 def test_processes_give_the_figures_in_the_order_of_the_designs(at_once: list[Any]) -> None:
     some = slow("study-of-balance", 64)
     values = samples(some, 0, 23)

@@ -17,6 +17,7 @@ from equipoise.present.composition import build
 from equipoise.present.findings import ToolFindings, find
 from equipoise.present.pages import PRINTED_STRESS, boxed_in_pdf, colored, colors, page, pdf
 from equipoise.present.pictures import pictures
+from support.chosen import EXHAUSTIVE
 from support.findings import findings_of, report_of
 from support.refusals import refused
 from surface.running import equipoise
@@ -87,6 +88,7 @@ def test_the_page_holds_every_picture_and_the_model(found, html):
     assert "equipoise report yamashita-rig" in words
 
 
+@EXHAUSTIVE  # On every change: `test_the_pdf_is_the_same_on_every_run`.
 def test_it_is_the_same_on_every_run_in_another_language():
     text, again = (page(build(find("drag-link"), "ja")) for _ in range(2))
     assert text == again

@@ -52,7 +52,7 @@ def check(found: list[tuple[range, Block]]) -> None:
         np.testing.assert_array_equal(block.outcome.reason, Formulas()(values).reason)
 
 
-def gone(process: int, patience: float = 60.0) -> bool:
+def gone(process: int, patience: float = 300.0) -> bool:
     """Whether a process ends in time."""
     end = time.monotonic() + patience
     while time.monotonic() < end:
@@ -145,7 +145,7 @@ def test_processes_end_with_the_one_that_started_them(
             os.killpg(process.pid, number)
         else:
             process.kill()
-        _, told = process.communicate(timeout=60)
+        _, told = process.communicate(timeout=300)
     assert all(map(gone, children))
     if number == signal.SIGINT:
         assert told.count("Traceback") == 1  # that of the script itself

@@ -43,10 +43,15 @@ console.log(JSON.stringify([before, all()]));
 @pytest.mark.skipif(NODE is None or not ESBUILD.exists(), reason="the page's tools are not here")
 def test_numbers_are_shown_with_a_comma_and_typed_with_either(tmp_path: Path) -> None:
     source, built = PAGE / "src" / "decimals.ts", tmp_path / "decimals.mjs"
-    subprocess.run([str(ESBUILD), str(source), f"--outfile={built}"], check=True, timeout=60)
+    subprocess.run([str(ESBUILD), str(source), f"--outfile={built}"], check=True, timeout=300)
     (tmp_path / "ask.mjs").write_text(ASKED % json.dumps([[*SHOWN], [*TYPED]]), encoding="utf-8")
     told = subprocess.run(
-        [str(NODE), "ask.mjs"], cwd=tmp_path, check=True, capture_output=True, text=True, timeout=60
+        [str(NODE), "ask.mjs"],
+        cwd=tmp_path,
+        check=True,
+        capture_output=True,
+        text=True,
+        timeout=300,
     ).stdout
     before, after = json.loads(told)
     assert before == [[*SHOWN], [text.strip().replace("−", "-") for text in TYPED]]

@@ -69,7 +69,7 @@ class Here:
         """Status, headers and body of a request that is sent as it stands."""
         lines = {"Host": self.host, "Connection": "close", **headers}
         port = int(self.host.rpartition(":")[2])
-        with socket.create_connection(("127.0.0.1", port), timeout=10) as connection:
+        with socket.create_connection(("127.0.0.1", port), timeout=300) as connection:
             head = "".join(f"{key}: {value}\r\n" for key, value in lines.items() if value)
             connection.sendall(f"GET {path} HTTP/1.1\r\n{head}\r\n".encode("latin-1"))
             answer = b""
@@ -87,7 +87,7 @@ class Here:
 
 
 def hear(page: ClientConnection) -> Content:
-    return unpacked(page.recv(timeout=20))[0]  # type: ignore[arg-type]
+    return unpacked(page.recv(timeout=300))[0]  # type: ignore[arg-type]
 
 
 def ask(page: ClientConnection, message: object) -> Content:
@@ -234,7 +234,7 @@ def test_dragging_goes_on_while_something_takes_long(
     dragged, given_back = threading.Event(), threading.Event()
 
     def slowly(design: Design, hold: bool) -> Balanced:
-        assert dragged.wait(20)
+        assert dragged.wait(300)
         return balanced(design, hold)
 
     monkeypatch.setattr(balanced_module, "balanced", slowly)
@@ -250,7 +250,7 @@ def test_dragging_goes_on_while_something_takes_long(
         assert "was changed while" in late["message"]
         rest = iter(lambda: hear(page), {"type": "told", "seq": 2})  # both are answered by now
         assert "told" not in {one["type"] for one in rest}
-        assert given_back.wait(20)
+        assert given_back.wait(300)
 
 
 def test_a_question_too_many_has_all_its_answers_too(
@@ -260,7 +260,7 @@ def test_a_question_too_many_has_all_its_answers_too(
     rested = threading.Event()
 
     def slowly(design: Design, hold: bool) -> Balanced:
-        assert rested.wait(20)
+        assert rested.wait(300)
         return balanced(design, hold)
 
     monkeypatch.setattr(balanced_module, "balanced", slowly)
@@ -334,7 +334,7 @@ def test_a_page_does_not_wait_for_what_others_open(
     answered = threading.Event()
 
     def slowly(name: str) -> Design:
-        assert answered.wait(20)
+        assert answered.wait(300)
         return opened_example(name)
 
     monkeypatch.setattr(session_module, "opened_example", slowly)
@@ -389,7 +389,7 @@ def test_work_ends_though_an_error_is_lost(capfd: pytest.CaptureFixture[str]) ->
 
     with ThreadPoolExecutor(1) as threads:
         computed = threads.submit(work.do, without_end)
-        assert begun.wait(20)
+        assert begun.wait(300)
         work.end()
         with pytest.raises(EndedError):
             computed.result(20)
@@ -416,14 +416,14 @@ def test_work_ends_with_its_page_and_leaves_no_word(
     with here.page() as page:
         hear(page)
         assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
-        assert begun.wait(20)
+        assert begun.wait(300)
         if how == "gone":  # as a program that is killed leaves
             reset = struct.pack("ii", 1, 0)
             page.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, reset)
             for _ in range(30):
                 page.send('{"type":"ready"}')
             page.socket.close()
-    assert ended.wait(20)
+    assert ended.wait(300)
     monkeypatch.undo()
     with here.page() as next_one:
         assert hear(next_one)["type"] == "hello"
@@ -456,7 +456,7 @@ def test_requests_that_do_not_come_to_their_end_are_dropped(
     with ExitStack() as stack:
         page = stack.enter_context(here.page())
         opened = [
-            stack.enter_context(socket.create_connection(("127.0.0.1", port), timeout=10))
+            stack.enter_context(socket.create_connection(("127.0.0.1", port), timeout=300))
             for _ in range(6)
         ]
         for connection, sent in zip(
