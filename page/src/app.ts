@@ -39,7 +39,7 @@ import { language, say, word } from "./words";
 const FIRST = "yamashita-1";
 
 /** How often numbers and words follow a drag, ms. */
-const SELDOM = 180;
+const SELDOM = 280;
 
 export class App {
   private readonly root = h("div", { class: "equipoise", lang: language() });
@@ -451,7 +451,8 @@ export class App {
     this.readings.show(state);
     this.inspector.show(state);
     if (!this.held) this.bench.follow();
-    if (!this.held) {
+    if (this.held) this.charts.read();
+    else {
       this.theme.update();
       this.charts.settle();
     }
@@ -638,6 +639,7 @@ export class App {
   private hold(on: boolean): void {
     this.held = on;
     this.seeing.hold(on);
+    this.charts.hold(on);
     if (on) {
       this.resumes = this.player.playing;
       this.player.playing = false;

@@ -47,6 +47,8 @@ export class Charts {
   private ghost: Numbers | null = null;
   private heard: [ResponseMessage, Numbers] | null = null;
   private at = 0;
+  /** Something is dragged: what is written follows more seldom. */
+  private held = false;
   private width = 0;
   private readonly watcher = new IntersectionObserver((entries) => {
     for (const { target, isIntersecting } of entries) {
@@ -85,6 +87,18 @@ export class Charts {
     return this.whoseRow.hidden ? "" : this.whose.value;
   }
 
+  hold(on: boolean): void {
+    this.held = on;
+  }
+
+  /** Write in the headings what there is at the crank angle that is shown. */
+  read(): void {
+    if (this.asleep) return;
+    this.polar.read();
+    this.path.read();
+    for (const strip of this.strips) strip.read();
+  }
+
   /** Draw what is out of sight too, and tell in words what there is to see. */
   settle(): void {
     for (const strip of this.strips) {
@@ -104,6 +118,7 @@ export class Charts {
     this.path.resize(this.polar.root.hidden ? width : side, height);
   }
 
+  /** Draw a state, before it is pointed at a crank angle. */
   show(state: State, opened: boolean): void {
     const other = opened || this.asleep;
     this.asleep = !state.status.finished;
@@ -140,6 +155,7 @@ export class Charts {
   choose(name: string): void {
     this.declared.get("joint")?.choose(`joint.${name}`);
     this.again(false);
+    this.repoint();
   }
 
   point(k: number, degrees: number): void {
@@ -150,6 +166,7 @@ export class Charts {
     this.outputs.point(degrees, k);
     const share = k / (this.state?.angles ?? 1);
     for (const chart of this.declared.values()) chart.point(share, degrees);
+    if (!this.held) this.read();
   }
 
   repaint(): void {
@@ -194,6 +211,7 @@ export class Charts {
 
   private chosen(): void {
     this.again(false);
+    this.repoint();
     this.answer(false);
     this.settle();
   }
@@ -206,7 +224,12 @@ export class Charts {
     if (!this.polar.root.hidden) this.drawPolar(state);
     this.draw(state.charts, source, this.forces, other);
     this.outputs.show(state);
-    this.point(this.at, (this.at / state.angles) * 360 * state.turns);
+  }
+
+  /** Point at the same crank angle in what has been drawn anew. */
+  private repoint(): void {
+    const { state, at } = this;
+    if (state) this.point(at, (at / state.angles) * 360 * state.turns);
   }
 
   private answer(other: boolean): void {

@@ -79,6 +79,7 @@ export class Plane {
   private readonly dot = s("circle", { class: "dot", r: 3.5 });
   private readonly reading = h("span", { class: "legend" });
   private plot: Plot | null = null;
+  private k = 0;
   private size: [number, number] = [0, 0];
   private scale = 1;
   private middle: [number, number] = [0, 0];
@@ -114,18 +115,22 @@ export class Plane {
 
   /** Show where the curve is at sample k. */
   point(k: number): void {
-    const points = this.now();
-    if (!points || !this.plot) return;
-    const [x, y] = [points[2 * k] ?? NaN, points[2 * k + 1] ?? NaN];
+    this.k = k;
+    const [x, y] = this.here();
     if (!Number.isFinite(x)) return;
     const [px, py] = this.place(x, y);
     set(this.dot, { cx: px.toFixed(1), cy: py.toFixed(1) });
+    if (!this.polar) return;
+    const [ox, oy] = this.place(0, 0);
+    set(this.arrow, { d: `M${ox.toFixed(1)} ${oy.toFixed(1)}L${px.toFixed(1)} ${py.toFixed(1)}` });
+  }
+
+  /** Write in the heading where that is. */
+  read(): void {
+    const [x, y] = this.here();
+    if (!this.plot || !Number.isFinite(x)) return;
     const { factor, unit } = this.plot;
     if (this.polar) {
-      const [ox, oy] = this.place(0, 0);
-      set(this.arrow, {
-        d: `M${ox.toFixed(1)} ${oy.toFixed(1)}L${px.toFixed(1)} ${py.toFixed(1)}`,
-      });
       const [size, turn] = [Math.hypot(x, y), Math.round(degrees(Math.atan2(y, x)))];
       // What nobody sees is rounding, and points nowhere.
       const told = `${shown(size * factor, 3)} ∠ ${plain(turn)}°`;
@@ -135,6 +140,12 @@ export class Plane {
       const [across, up] = [x, y].map((value) => signed((value * factor).toFixed(places)));
       write(this.reading, `${across}, ${up}`);
     }
+  }
+
+  /** The place of the curve at the sample that is shown. */
+  private here(): Spot {
+    const points = this.now();
+    return [points?.[2 * this.k] ?? NaN, points?.[2 * this.k + 1] ?? NaN];
   }
 
   private now(): Float32Array | undefined {

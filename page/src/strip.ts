@@ -48,6 +48,8 @@ export class Strip {
   private levels: number[] = [];
   private width = 0;
   private at = 0;
+  /** The sample there, if it has one. */
+  private k: number | null = null;
   private seen = true;
   private stale = false;
 
@@ -99,12 +101,17 @@ export class Strip {
     return this.content.x.length;
   }
 
-  /** Put the cursor at x; the values there (at sample k) go to the heading. */
+  /** Put the cursor at x, which is at sample k. */
   point(x: number, k: number | null): void {
     this.at = x;
-    if (!this.plot) return;
-    this.cursor.style.transform = `translateX(${this.across(x).toFixed(1)}px)`;
-    if (k === null) return;
+    this.k = k ?? this.k;
+    if (this.plot) this.cursor.style.transform = `translateX(${this.across(x).toFixed(1)}px)`;
+  }
+
+  /** Write the values at the cursor in the heading. */
+  read(): void {
+    const { k } = this;
+    if (!this.plot || k === null) return;
     const { ends, log } = this.scale;
     const largest = log ? 0 : Math.max(-ends[0], ends[1]);
     this.content.curves.forEach((curve, i) => {

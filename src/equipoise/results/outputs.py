@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import Field
 from functools import cached_property
 from itertools import groupby
@@ -180,17 +180,27 @@ class AnalysisOutputs:
     @property
     def arrays(self) -> list[AnalysisOutput]:
         """Outputs that stand among the arrays; the size of a vector is told by its components."""
-        return [item for item in self if item.declared.array]
+        return self._where(lambda declared: declared.array)
 
     @property
     def summed(self) -> list[AnalysisOutput]:
         """Outputs of which the summary has figures."""
-        return [item for item in self if item.declared.summed]
+        return self._where(lambda declared: declared.summed)
 
     @property
     def ordered(self) -> list[AnalysisOutput]:
         """Outputs of which amplitudes by order are given."""
-        return [item for item in self if item.declared.ordered]
+        return self._where(lambda declared: declared.ordered)
+
+    @property
+    def dimensions(self) -> set[Dimension | None]:
+        """Of all of them."""
+        return {declared.dimension for declared, _ in self._items.values()}
+
+    def _where(self, holds: Callable[[Declared], bool]) -> list[AnalysisOutput]:
+        """Outputs of whose declaration something holds; no other is made for that."""
+        names = (name for name, (declared, _) in self._items.items() if holds(declared))
+        return [self[name] for name in names]
 
     def grouped(self) -> dict[str, list[AnalysisOutput]]:
         """Outputs of each group of `GROUPS` that has any."""

@@ -88,7 +88,7 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     items += [*_links(scene), *_pieces(scene, "springs")]
     items += [*_springs(scene), *_cylinder(scene), Piece("pivots", tuple(_pivots(scene)))]
     items += [
-        Piece("blocks", tuple(block()), Hold(guide.point, guide=guide.name), part=_part(guide))
+        Piece("blocks", block(), Hold(guide.point, guide=guide.name), part=_part(guide))
         for guide in scene.guides
     ]
     items += _pieces(scene, "riders")

@@ -8,6 +8,7 @@ are to scale, and pins have one size.  Both are complex, x to the right and y up
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from itertools import groupby
 from typing import Any
 
@@ -28,6 +29,8 @@ FOOT = 22.0
 """How far a pivot's sign reaches below it."""
 APART = 6.0
 """Between two strokes of hatching."""
+KEPT = 128
+"""Signs of a kind that are kept: while one point is dragged, most others stay where they are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +133,8 @@ def _thirds(curve: Array) -> Array:
     return np.array([curve[np.argmin(abs(np.angle(curve / way)))] for way in ways])
 
 
-def pivot(place: complex, grounded: bool = True, way: complex = -1j) -> list[Shape]:
+@lru_cache(KEPT)
+def pivot(place: complex, grounded: bool = True, way: complex = -1j) -> tuple[Shape, ...]:
     """The sign of a point that stands still: a stand, on hatched ground or on what carries it.
 
     way : of length 1, to the ground.
@@ -139,11 +143,11 @@ def pivot(place: complex, grounded: bool = True, way: complex = -1j) -> list[Sha
     foot, side = high * way, half * 1j * way
     shapes = hatching(place, foot + 1.6 * side, foot - 1.6 * side, way) if grounded else []
     reach = 1.6 if grounded else 1.0
-    return [
+    return (
         *shapes,
         sign("stand", place, [0, foot - side, foot + side], closed=True),
         sign("rail", place, [foot - reach * side, foot + reach * side]),
-    ]
+    )
 
 
 def rails(
@@ -174,9 +178,10 @@ def slot(low: complex, high: complex) -> list[Shape]:
     return [_box(role, low, high, *by) for role, by in zip(("rim", "slot"), grown, strict=True)]
 
 
-def block() -> list[Shape]:
+@lru_cache(KEPT)
+def block() -> tuple[Shape, ...]:
     """A sliding block at the origin, along x."""
-    return [_box("block", 0, 0, *BLOCK)]
+    return (_box("block", 0, 0, *BLOCK),)
 
 
 def zigzag(start: complex, end: complex, coils: int, role: str = "spring") -> Shape:
@@ -192,12 +197,13 @@ def coils(length: float, unit: float) -> int:
     return max(5, round(0.7 * length / (16 * unit)))
 
 
-def mass(center: complex) -> list[Shape]:
+@lru_cache(KEPT)
+def mass(center: complex) -> tuple[Shape, ...]:
     """The sign of a centre of mass: two dark quarters of a circle."""
     radius = 4.6
     arc = np.concatenate([[0], radius * np.exp(1j * np.linspace(0, np.pi / 2, 7))])
     quarters = [sign("quarter", center, way * arc, closed=True) for way in (1, -1)]
-    return [circle("mass", center, grown=radius), *quarters]
+    return (circle("mass", center, grown=radius), *quarters)
 
 
 def driver(center: complex, radius: float, angles: Array, both: bool = False) -> list[Shape]:

@@ -101,8 +101,7 @@ def state_of(
 
 def outputs_of(analysis: Analysis) -> list[Values]:
     """What can be drawn over the crank angle."""
-    dimensions = {output.dimension for output in analysis.outputs}
-    units = tuple((dimension, display(dimension)) for dimension in dimensions)
+    units = tuple((dimension, display(dimension)) for dimension in analysis.outputs.dimensions)
     groups = tuple(say(title) for title in GROUPS.values())
     several = len(analysis.machine.rows) > 1
     return _outputs_told(tuple(analysis.outputs.names), several, units, groups, spoken())

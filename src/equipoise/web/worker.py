@@ -30,7 +30,7 @@ from equipoise.web.state_changes import StateChanges
 
 OF_MACHINE = ("balance", "download")
 """Of the questions that take long, those about the machine that is open."""
-SELDOM = 0.2
+SELDOM = 0.3
 """s after which all that follows from an edit is computed in a drag that never pauses, and figures,
 numbers and spectra are written anew."""
 CANCELLED = Note("cancelled; nothing was changed")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
+from functools import cached_property
 from itertools import islice
 
 from equipoise.dataclass import dataclass
@@ -61,7 +62,7 @@ class Structure:
             count -= ends <= both and bool(ends & free)
         return count
 
-    @property
+    @cached_property
     def mobility(self) -> int:
         """Count of free motions; each drive commands one of them."""
         return self.freedom(self.bodies[1:], [FRAME])
