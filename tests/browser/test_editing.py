@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+from collections import Counter
 from collections.abc import Callable
 
 import numpy as np
@@ -50,6 +52,45 @@ def test_a_joint_follows_the_mouse_and_all_others_stay(live: Live) -> None:
     for name, place in still.items():
         live.comes_to(live.joint(name), place, SHOWN)
     live.comes_to(joint, at_start(live.machine(), "B"), SHOWN)
+
+
+INVALIDATIONS = "disabled-by-default-devtools.timeline.invalidationTracking"
+
+
+def test_what_is_beside_a_drawing_has_it_laid_out_once(live: Live) -> None:
+    joint, browser = live.joint("B"), live.page.context.browser
+    assert browser is not None
+    x, y = live.spot(joint)
+    live.page.mouse.move(x, y)
+    live.page.mouse.down()
+    live.page.mouse.move(x - 5, y - 5)
+    live.settled()
+    browser.start_tracing(page=live.page, categories=[INVALIDATIONS])
+    live.page.mouse.move(x - 20, y - 30, steps=8)
+    live.settled()
+    events = json.loads(browser.stop_tracing())["traceEvents"]
+    live.page.mouse.up()
+    seen = Counter[str]()
+    for event in events:
+        if event["name"] == "LayoutInvalidationTracking":
+            seen[event["args"]["data"]["reason"]] += 1
+    assert seen["SVG changed"] + seen["Text changed"] > 0  # it does tell of what it looks at
+    assert not seen["Size changed"]
+
+
+def test_charts_tell_their_values_while_a_joint_is_held(live: Live) -> None:
+    joint, readings = live.joint("B"), live.page.locator(".square .legend").first
+    x, y = live.spot(joint)
+    before = readings.inner_text()
+    live.page.mouse.move(x, y)
+    live.page.mouse.down()
+    live.page.mouse.move(x - 20, y - 30, steps=4)
+    expect(readings).not_to_have_text(before)
+    live.settled()
+    held = readings.inner_text()
+    live.page.mouse.up()
+    live.settled()
+    assert readings.inner_text() == held
 
 
 MOVES = """([x, y]) => new Promise((done) => {
