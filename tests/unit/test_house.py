@@ -106,6 +106,25 @@ def test_numbers_that_decide_have_a_reason(room: str) -> None:
     assert [line for file in files for line in without_reason(file)] == []
 
 
+SMALLEST = 1e-2
+"""Numbers below it are tolerances or shares; those of formulas are larger."""
+
+
+def test_tolerances_of_balancing_have_a_name() -> None:
+    """So that each has its reason, which a number in the middle of a function has not."""
+    unnamed = [
+        f"{named(file)}:{item.lineno}"
+        for file in sorted((ROOT / "balancing").glob("*.py"))
+        for function in nodes(file)
+        if isinstance(function, ast.FunctionDef)
+        for item in ast.walk(function)
+        if isinstance(item, ast.Constant)
+        and isinstance(item.value, float)
+        and 0 < abs(item.value) < SMALLEST
+    ]
+    assert unnamed == []
+
+
 def test_a_class_name_means_one_thing() -> None:
     names = [node.name for file in FILES for node in nodes(file) if isinstance(node, ast.ClassDef)]
     assert {name for name, count in Counter(names).items() if count > 1} == set()

@@ -20,6 +20,7 @@ from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phasing import Phasing
 from equipoise.balancing.problem import ADDED
+from equipoise.balancing.rounding import NEARLY
 from equipoise.balancing.solution import Solution
 from equipoise.balancing.workshop import Change, covers
 from equipoise.dataclass import dataclass
@@ -48,6 +49,11 @@ from equipoise.results.slender_links import slender_links
 from equipoise.signals import Array
 from equipoise.vibration.response import GaugeSignals, of_support
 
+PROVED, UNFINISHED = 1e-3, 1e-7
+"""Gap over the value before up to which a result is called proved, which no workshop could use;
+and the one from which a search ended before its own tolerance."""
+NOWHERE = 1e-12
+"""SI units: a planting figure that is 0, but for rounding."""
 GONE, ROUNDING = 1e-9, 1e-7
 """Share of a figure before below which it is rounding; share of all for a price."""
 
@@ -169,7 +175,7 @@ class Balanced(Result):
     @property
     def proved(self) -> bool:
         """Whether nothing that is allowed is better by a thousandth of the value before."""
-        return self.gap < 1e-3
+        return self.gap < PROVED
 
     @property
     def whole(self) -> float:
@@ -306,7 +312,8 @@ class Balanced(Result):
         old, new = self.before, self.after
         names = [name for name in old if name.startswith("planting.")]
         pairs = ((old[name], new.get(name, np.nan)) for name in names)
-        return all(isclose(*pair, rel_tol=1e-9, abs_tol=1e-12) for pair in pairs) if names else None
+        same = (isclose(*pair, rel_tol=NEARLY, abs_tol=NOWHERE) for pair in pairs)
+        return all(same) if names else None
 
     @property
     def equivalent_speeds(self) -> dict[str, float]:
@@ -596,7 +603,7 @@ def _notes(solution: Solution) -> Iterator[Note]:
             " drive and joints may tell them apart: give them a limit",
             count=solution.ties,
         )
-    if solution.best.nodes >= 1 and solution.best.value - solution.best.bound > 1e-7:
+    if solution.best.nodes >= 1 and solution.best.value - solution.best.bound > UNFINISHED:
         yield Note(
             "the search ended before the optimum was proved; the gap bounds the possible "
             "improvement"

@@ -58,6 +58,8 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
     from equipoise.balancing.phasing import Phasing
 
+OVER = 1e-6
+"""Share by which a limit may be passed that is met exactly: programs keep theirs to 1e-8."""
 MOST_NOTES = 3
 """Notes that stand first; the others follow with all tables."""
 MOST_ORDERS = 8
@@ -256,7 +258,7 @@ def _prices(balanced: Balanced) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for name, price in balanced.limits.items():
         unit = balanced.units[name]
-        over = broken_if(price.used > price.at_most * (1 + 1e-6))
+        over = broken_if(price.used > price.at_most * (1 + OVER))
         used = replace(quantity(price.used, unit), emphasis=over)
         most = quantity(price.at_most, unit)
         rows.append((named.get(name, said(name)), most, used, _saved(balanced, price, unit)))

@@ -540,7 +540,7 @@ class Bounder:
         second, first, each = gram[:, 1:, 1:], gram[:, 1:, 0], np.arange(x.shape[1])
         widths = self.numbers.high - self.numbers.low
         stiff = STIFF * np.max(second[:, each, each] * widths**2, axis=1)[:, None]
-        second = second + 1e-9 * np.eye(len(each)) * stiff[..., None] / np.max(widths**2)
+        second = second + CONVEX * np.eye(len(each)) * stiff[..., None] / np.max(widths**2)
         for _ in range(STEPS):
             pushed = stiff * np.maximum(least - x @ directions.T, 0.0)
             slope = first + np.einsum("bij,bj->bi", second, x) - pushed @ directions
@@ -635,6 +635,9 @@ def _read_in_time(term: PhaseObjective, total: Array) -> tuple[Array, Array]:
     return np.maximum(high, -low)[..., 0], np.where(upper[..., None], rising, -falling)
 
 
+SLACK, CONVEX = 1e-6, 1e-9
+"""Share of the room below the least value that is rounding of its bound; share of the stiffness
+that is added to squares, so that those of a singular Gram matrix are strictly convex."""
 CLOSE = 1e-4
 """Between cost and bound, over the cost before, at which the search ends."""
 MOST_BOXES, HOPELESS, BATCH = 40_000, 10_000, 512
@@ -720,7 +723,7 @@ class _PhaseSearch:
             left = min(left, float(np.min(boxes.bounds[closed], initial=np.inf)))
             boxes = boxes.of(~closed)
         bound = min(least, left, float(np.min(boxes.bounds, initial=np.inf)))
-        return PhaseProof(best, bound, looked, bound >= least - (1 + 1e-6) * room)
+        return PhaseProof(best, bound, looked, bound >= least - (1 + SLACK) * room)
 
     @property
     def numbers(self) -> Numbers:

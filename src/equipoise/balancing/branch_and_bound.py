@@ -32,6 +32,8 @@ MISSED = 1e-8
 """Of a square, scaled numbers, that is taken for rounding."""
 CLOSE = 2e-9
 """Between the bounds, over the scale of the cost, at which the search ends."""
+SHORTEST = 0.1
+"""Share of an interval that each half of it has at least, as cuts at an end would not end it."""
 MOST_NODES = 400
 """Programs that are solved at most: a few seconds; what is left open then stands in the gap."""
 TANGENT_WIDTHS = (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4)
@@ -259,7 +261,8 @@ class _Search:
         worst = int(np.argmax(missed))
         low, high = node.intervals[worst]
         middle, here = (low + high) / 2, self.squares[worst].ratio(node.solved.x)
-        cut = min(max((middle + here) / 2, low + 0.1 * (high - low)), high - 0.1 * (high - low))
+        least = SHORTEST * (high - low)
+        cut = min(max((middle + here) / 2, low + least), high - least)
         before, after = node.intervals[:worst], node.intervals[worst + 1 :]
         return [(*before, half, *after) for half in ((low, cut), (cut, high))]
 

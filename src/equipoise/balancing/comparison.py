@@ -18,6 +18,9 @@ from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import AnalysisOutput, unit_of_measure
 from equipoise.vibration.forced import respond
 
+ALIKE = 9
+"""Digits by which growths are ordered, so that rounding does not decide between figures that grew
+alike, as peak and peak to peak of a signal that reaches as far up as down."""
 WORSE = 0.01
 """Share by which a figure has to grow to be told as worse."""
 SMALL = 0.1
@@ -84,9 +87,7 @@ def worse_of(
             scale = old if old > SMALL * usual[unit] else usual[unit]
             weight = 0.0 if _is_part(item) else (new - old) / scale if scale else float("inf")
             result.append(Worse(item, _group_of(item.output), there, new, weight))
-    # to nine digits, so that rounding does not decide between figures that grew alike, as peak and
-    # peak to peak of a signal that reaches as far up as down
-    result.sort(key=lambda growth: (IMPORTANT.index(growth.group), -round(growth.growth, 9)))
+    result.sort(key=lambda growth: (IMPORTANT.index(growth.group), -round(growth.growth, ALIKE)))
     worses: dict[tuple[str, tuple[float, ...], str | None], Worse] = {}
     for grown in result:
         aim = grown.objective

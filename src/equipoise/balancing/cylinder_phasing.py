@@ -21,6 +21,7 @@ import numpy as np
 from equipoise.balancing.jumping_rows import JumpingRows, smoothed
 from equipoise.balancing.levers import lever, signals_of_row
 from equipoise.balancing.objectives import read_rows
+from equipoise.balancing.rounding import NEARLY, TINY
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
@@ -74,7 +75,7 @@ class RowSignals:
         """Signals with these orders only; with all of them if there are none."""
         if not orders:
             return self
-        wanted = np.any(np.isclose(self.orders[:, None], orders, atol=1e-9), axis=1)
+        wanted = np.any(np.isclose(self.orders[:, None], orders, atol=NEARLY), axis=1)
         return RowSignals(np.where(wanted, self.amplitudes, 0.0), self.turns)
 
     def turned(self, phases: Array) -> Array:
@@ -289,7 +290,7 @@ class PhaseObjective:
     def influenced(self) -> bool:
         """Whether phases change the value: two rows must meet in the same order."""
         sizes = np.max(np.abs(self.signals.amplitudes), axis=(0, 2))
-        loud = sizes[:, 1:] > NOTHING * max(float(np.max(sizes)), 1e-300)
+        loud = sizes[:, 1:] > NOTHING * max(float(np.max(sizes)), TINY)
         if by_orders(self.measure):
             return bool(np.any(np.sum(loud, axis=0) > 1))
         return int(np.sum(np.any(loud, axis=1))) > 1

@@ -22,6 +22,7 @@ from equipoise.balancing.policy import (
     THICK_ROD,
     THIN_ROD,
 )
+from equipoise.balancing.rounding import NEARLY
 from equipoise.dataclass import dataclass
 from equipoise.i18n import say, to_say
 from equipoise.quantities import display, format_quantity, number, percent
@@ -144,7 +145,7 @@ def cylinder_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> C
 
 def _fits(closed: float, most: float, bore: float) -> bool:
     """Whether a cylinder has room for its stroke while it is closed."""
-    return most - closed + DEAD_BORES * bore <= closed * (1 + 1e-9)
+    return most - closed + DEAD_BORES * bore <= closed * (1 + NEARLY)
 
 
 def _usual_rod(bore: float) -> float:

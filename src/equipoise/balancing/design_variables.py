@@ -206,6 +206,9 @@ class MovedCenter(DesignVariables):
 
 NOTHING = 1e-6
 """Over the most: stiffness, and its product with the free length, that are none."""
+REACHED = 1 - 1e-3
+"""Share of a default limit from which a result has come up to it, as programs stop a little short
+of what they minimise."""
 LONGEST = 2.0
 """Free length over the largest distance of points, where none is given: longer and softer springs
 would pull ever more evenly, and have no end."""
@@ -254,7 +257,7 @@ class FreeSpring(DesignVariables):
 
     def stopped(self, numbers: Array) -> Note | None:
         longest = LONGEST * float(numbers[0])
-        if self.choice.free_length is not None or not 0 < 0.999 * longest < float(numbers[1]):
+        if self.choice.free_length is not None or not 0 < REACHED * longest < float(numbers[1]):
             return None
         return Note(
             "the free length of the spring on {link} has reached the default limit of twice the "

@@ -14,6 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from equipoise.balancing.design_variables import DesignVariables, FreeSpring, LinkParameters
+from equipoise.balancing.rounding import NEARLY
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
@@ -79,7 +80,7 @@ class Signal:
         if self.sampling is not None:
             return self._with_orders(lambda n: np.any(np.isclose(n[:, None], orders), axis=1))
         places = np.fft.fftfreq(len(self.start), 1 / len(self.start)) / self.turns
-        wanted = np.any(np.isclose(np.abs(places)[:, None], orders, atol=1e-9), axis=1)
+        wanted = np.any(np.isclose(np.abs(places)[:, None], orders, atol=NEARLY), axis=1)
         return self.filtered(lambda amplitudes: np.where(wanted, amplitudes, 0.0))
 
     def ahead_by(self, phase: float) -> Signal:

@@ -20,6 +20,7 @@ from equipoise.balancing.policy import (
     THICKEST_DISC,
     THINNEST_DISC,
 )
+from equipoise.balancing.rounding import NEARLY
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import say, to_say
@@ -171,10 +172,10 @@ def _turned(inertia: float, widest: float) -> tuple[float, float]:
     per_thickness = STEEL * pi / 32  # of the diameter to the fourth
 
     def least(diameter: float) -> float:
-        return ceil(inertia / (per_thickness * diameter**4) / PLATE_GRID - 1e-9) * PLATE_GRID
+        return ceil(inertia / (per_thickness * diameter**4) / PLATE_GRID - NEARLY) * PLATE_GRID
 
     limit = min(widest, (inertia / (per_thickness * THINNEST_DISC)) ** (1 / 5))
-    diameter = floor(limit / GRID + 1e-9) * GRID or limit
+    diameter = floor(limit / GRID + NEARLY) * GRID or limit
     thickness = least(diameter)
     while diameter > GRID and least(diameter - GRID) <= thickness:  # what rounding up has left
         diameter -= GRID
@@ -183,7 +184,7 @@ def _turned(inertia: float, widest: float) -> tuple[float, float]:
 
 def _rounded_up(value: float) -> float:
     unit = 10.0 ** (floor(log10(value)) - DIGITS + 1)
-    return float(np.ceil(value / unit * (1 - 1e-9)) * unit)
+    return float(np.ceil(value / unit * (1 - NEARLY)) * unit)
 
 
 # -- sentences -------------------------------------------------------------------------------------

@@ -22,6 +22,7 @@ import numpy as np
 
 from equipoise.balancing.design_variables import with_parameters
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.rounding import NEARLY, TINY
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
@@ -42,6 +43,9 @@ GRID, COARSE, WAYS = 33, 13, 24
 directions are looked for too; directions."""
 LARGEST_DENOMINATOR = 3
 """Of the ratios that are tried where the driver turns fully: turns until the shaft is back."""
+SWINGING = 1e-6
+"""Mean speed of a link over that of the crank up to which it swings: that of one that turns is a
+ratio of whole numbers, and so is far larger."""
 TURNS = 720
 """Crank angles at which the way of links past a shaft is looked at."""
 SAME = 2e-5
@@ -97,7 +101,7 @@ class Gearing:
     def turns_fully(self) -> bool:
         """Whether the driver goes round, so that only few ratios bring the shaft back."""
         speed = self.motion.links[self.geared.driver].angular_velocity
-        return bool(abs(np.mean(speed)) > 1e-6 * abs(self.motion.speed))
+        return bool(abs(np.mean(speed)) > SWINGING * abs(self.motion.speed))
 
     @property
     def direction(self) -> float:
@@ -173,7 +177,7 @@ class Gearing:
         low, high = self.geared.direction
         if low == high:
             return [low]
-        whole = high - low >= 2 * pi - 1e-9
+        whole = high - low >= 2 * pi - NEARLY
         return [float(d) for d in np.linspace(low, high, WAYS, endpoint=not whole)]
 
     def _ratios(self) -> list[float]:
@@ -292,7 +296,7 @@ def nearest(motion: Motion, link: str, place: complex) -> float:
     least = min(float(np.min(np.abs(p - place))) for p in points)
     for point, other in combinations(points, 2):
         along = other - point
-        share = np.real((place - point) * np.conj(along)) / np.maximum(np.abs(along) ** 2, 1e-300)
+        share = np.real((place - point) * np.conj(along)) / np.maximum(np.abs(along) ** 2, TINY)
         foot = point + np.clip(share, 0.0, 1.0) * along
         least = min(least, float(np.min(np.abs(foot - place))))
     return least

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
 from equipoise.signals import STEPS_BETWEEN_BENDS, Array, JumpSampling
 
@@ -221,7 +222,7 @@ class JumpingRows:
         size = np.linalg.norm(total, axis=-1)
         along = np.full_like(total, sign)
         if self.is_vector:
-            along = total / np.maximum(size, 1e-300)[:, None]
+            along = total / np.maximum(size, TINY)[:, None]
         by_phase = np.einsum("pmc,pc->pm", slope, along)
         # a side of a jump goes back as its row goes ahead
         carried = np.flatnonzero(row >= 0)

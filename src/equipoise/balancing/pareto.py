@@ -16,6 +16,7 @@ from equipoise.balancing.blocks import shown_unit
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.rounding import NEARLY
 from equipoise.balancing.sentences import gap_told, scope_of
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
@@ -172,7 +173,7 @@ def front_blocks(front: Front) -> Iterator[Block]:
         for label, unit in zip(labels, units, strict=True)
     ]
     values = (column.tolist() for _, _, column in front.columns())
-    rows = tuple(tuple(Value(item, 1e-9) for item in row) for row in zip(*values, strict=True))
+    rows = tuple(tuple(Value(item, NEARLY) for item in row) for row in zip(*values, strict=True))
     yield Table(say("Trade-off"), tuple(columns), rows)
     yield Text(
         say(

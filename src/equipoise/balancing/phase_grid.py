@@ -19,6 +19,7 @@ from math import comb, factorial, prod
 import numpy as np
 
 from equipoise.balancing.cylinder_phasing import Cost, PhaseObjective, RowSignals, by_orders
+from equipoise.balancing.rounding import NEARLY
 from equipoise.dataclass import dataclass
 from equipoise.signals import Array, synthesis
 
@@ -212,7 +213,7 @@ def distinct(candidates: Array, period: float, apart: Sequence[float], most: int
             if len(chosen) >= wanted:
                 break
             off = np.abs((candidates[chosen] - phases + period / 2) % period - period / 2)
-            if not chosen or np.min(np.max(off, axis=1)) > distance * (1 + 1e-9):
+            if not chosen or np.min(np.max(off, axis=1)) > distance * (1 + NEARLY):
                 chosen.append(k)
     return candidates[chosen]
 

@@ -41,10 +41,15 @@ ROUNDS, SMALLEST, GAIN = 40, 1e-4, 1e-12
 CURVED, CURVED_ROUNDS, LEAP = 6, 100, 0.05
 """Times that tops are looked for anew and followed; programs meanwhile, and change of a phase, rad.
 """
-NEWTON_ROUNDS = 200
-"""Steps of Newton's method for each e."""
+NEWTON_ROUNDS, FLAT = 200, 1e-14
+"""Steps of Newton's method for each e; slope at which it ends, where only rounding is left."""
+UNCHANGED = 1e-16
+"""Change of the cost at which SLSQP ends: below rounding, to go on while there is gain."""
 REACH = 0.1
-"""How far a top may move meanwhile, rad."""
+"""How far phases move at first, and a top may meanwhile, rad: far less than a wave of the orders
+that count, so that a top stays the same one."""
+WELL_FORETOLD = 0.1
+"""Share of the gain that was foretold, above which a step is taken, and the region grows."""
 FINEST, MORE_WAYS, MOST_MOVES = 1e-6, 6, 2000
 """rad: least step of a search without slopes; ways by chance that it tries; its steps."""
 
@@ -124,7 +129,7 @@ def _newton(cost: Cost, phases: Array, after: Step) -> Array:
             method="trust-exact",
             jac=lambda x, e: _slopes(cost, x, e)[1],
             hess=lambda x, e: _slopes(cost, x, e)[2],
-            options={"gtol": 1e-14, "maxiter": NEWTON_ROUNDS, "initial_trust_radius": 0.1},
+            options={"gtol": FLAT, "maxiter": NEWTON_ROUNDS, "initial_trust_radius": REACH},
             callback=lambda _: after(),
         )
         free = result.x
@@ -192,7 +197,7 @@ def _linear_programs(cost: Cost, phases: Array, step: float, after: Step) -> Arr
             break
         there = best + np.concatenate([[0.0], move])
         value = float(cost.values(there))
-        if here - value > 0.1 * gain:
+        if here - value > WELL_FORETOLD * gain:
             best, here, region = there, value, min(2 * region, step)
         else:
             region /= 3
@@ -271,7 +276,7 @@ def _curved(cost: Cost, phases: Array, after: Step) -> Array:
         method="SLSQP",
         bounds=[(-LEAP, LEAP)] * free + _peak_bounds(cost, unit),
         constraints={"type": "ineq", "fun": room, "jac": slopes},
-        options={"ftol": 1e-16, "maxiter": CURVED_ROUNDS},
+        options={"ftol": UNCHANGED, "maxiter": CURVED_ROUNDS},
         callback=lambda _: after(),
     )
     return np.concatenate([phases[:1], phases[1:] + result.x[:free]])

@@ -35,6 +35,7 @@ from equipoise.balancing.phase_grid import (
     first_least,
 )
 from equipoise.balancing.phase_polish import Step, most_steps, polished
+from equipoise.balancing.rounding import NEARLY
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
@@ -55,6 +56,8 @@ GUESSES, FEW_LEVELS = 300, 12
 """Random starts over the number of rows, where a turn of the first grid has so few phases."""
 WIDE = pi / 6
 """rad, apart from which cells are in different valleys of the first orders."""
+SAME_PHASE = 1e-6
+"""rad: phases so close count as one, as the flat bottom of a cost tells them to 1e-8 only."""
 MOST_BEST = 8
 """Arrangements that are as good, among which the twist decides."""
 
@@ -103,7 +106,7 @@ class PhaseSearch:
             )
         if not self.objectives:
             raise UsageError(Note("got no objective; give an output to minimize"))
-        if not 0 < step <= pi / 2 * (1 + 1e-12):
+        if not 0 < step <= pi / 2 * (1 + NEARLY):
             raise UsageError(
                 Note(
                     "got a step of {step:g} deg; give more than 0 deg and at most 90 deg",
@@ -169,7 +172,7 @@ class PhaseSearch:
     @cached_property
     def levels(self) -> int:
         """Steps in a period."""
-        return ceil(2 * pi / self.phases.step * (1 - 1e-9)) * self.force.turns
+        return ceil(2 * pi / self.phases.step * (1 - NEARLY)) * self.force.turns
 
     @property
     def step(self) -> float:
@@ -241,7 +244,7 @@ class PhaseSearch:
     def _snapped(self, phases: Array) -> Array:
         """Phases on the grid where they are there but for rounding."""
         snapped = np.round(phases / self.step) * self.step
-        snapped = np.where(np.abs(snapped - phases) < 1e-6, snapped, phases)
+        snapped = np.where(np.abs(snapped - phases) < SAME_PHASE, snapped, phases)
         as_good = self.cost.values(snapped) <= self.cost.values(phases) + NOTHING * self._alone
         return np.asarray((snapped if as_good else phases) % self.cost.period)
 
@@ -262,7 +265,7 @@ class PhaseSearch:
         limit = np.min(values) * (1 + BETTER) + NOTHING * self._alone
         if values[0] <= limit:
             return np.asarray(pool[0])
-        good = distinct(pool[values <= limit], self.cost.period, [1e-6], MOST_BEST)
+        good = distinct(pool[values <= limit], self.cost.period, [SAME_PHASE], MOST_BEST)
         lateral = np.array([row.lateral for row in self.machine.rows])
         twist = Twist(self.force, lateral, alike(self.cost))
         laid = [twist.swapped(phases) for phases in good]

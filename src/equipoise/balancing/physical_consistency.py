@@ -191,7 +191,7 @@ class ConsistentMasses:
         unwanted = self.rows[:, gone].T
         unwanted = np.where(np.abs(unwanted) < PIVOT, 0.0, unwanted)  # no inverse of rounding
         tidied = (y - pinv(unwanted, rcond=PIVOT) @ (unwanted @ y)) @ self.rows
-        gone_too = np.allclose(tidied[gone], 0.0, atol=1e-12)
+        gone_too = np.allclose(tidied[gone], 0.0, atol=ROUNDING)
         return np.where(gone, 0.0, tidied) if gone_too else combination
 
     def _least(self, combination: Array) -> float:

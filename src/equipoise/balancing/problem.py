@@ -24,6 +24,7 @@ from equipoise.balancing.objectives import (
     supports_more,
 )
 from equipoise.balancing.program import Affine, Program
+from equipoise.balancing.rounding import NEARLY
 from equipoise.balancing.weights import AddedWeight
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
@@ -214,7 +215,7 @@ class Problem:
         turns = self.effects.motion.turns
         for objective in self.asked:
             for order in objective.orders:
-                whole = abs(order * turns - round(order * turns)) < 1e-9
+                whole = abs(order * turns - round(order * turns)) < NEARLY
                 if order > HIGHEST or not whole:
                     raise UsageError(
                         Note(

@@ -21,6 +21,7 @@ from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
+from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import Note, to_say
@@ -34,6 +35,10 @@ LOOSE = 1e-5
 """Relative accuracy with which a solution is still called almost solved."""
 MOST_STEPS, STEP = 100, 0.99
 """Iterations, and the share of the way to the boundary of the cones that is gone in each."""
+WORSE, STANDSTILL = 1e4, 1e-10
+"""Times the least error, beyond which rounding has taken over; length of a step that is none."""
+APART = 1e-2
+"""tau over kappa, below which the homogeneous embedding tells of no solution."""
 ENTRY = 120
 """Bytes that Clarabel takes for each entry of the matrix: 75 to 90 were measured."""
 ROUNDS, REFINEMENTS = 8, 2
@@ -249,10 +254,10 @@ class _Embedding:
         rows, columns = self._scales(matrix)
         self.rows, self.columns = rows, columns
         scaled = matrix * rows[:, None] * columns
-        self.factor = 1.0 / max(np.abs(cost * columns).max(initial=0.0), 1e-300)
+        self.factor = 1.0 / max(np.abs(cost * columns).max(initial=0.0), TINY)
         self.c = cost * columns * self.factor
         b = right * rows
-        self.size = 1.0 / max(np.abs(b).max(initial=0.0), 1e-300)
+        self.size = 1.0 / max(np.abs(b).max(initial=0.0), TINY)
         b = b * self.size
         self.a, self.b = scaled[cones.zero], b[cones.zero]
         self.g, self.h = scaled[cones.rest], b[cones.rest]
@@ -286,7 +291,7 @@ class _Embedding:
                 break
             if best is None or error < best[0]:
                 best = error, solution
-            elif error > 1e4 * best[0] and best[0] < LOOSE:  # rounding has taken over
+            elif error > WORSE * best[0] and best[0] < LOOSE:  # rounding has taken over
                 break
             if not self._advance():
                 break
@@ -328,7 +333,7 @@ class _Embedding:
         if against <= 0:
             return False
         left = np.abs(self.a.T @ self.y + self.g.T @ self.z).max(initial=0.0)
-        return bool(left < self.tolerance * against and self.tau < 1e-2 * self.kappa)
+        return bool(left < self.tolerance * against and self.tau < APART * self.kappa)
 
     def _advance(self) -> bool:
         """One predictor and corrector step; tells whether it could be made."""
@@ -363,7 +368,7 @@ class _Embedding:
         turned = square + bent - center * mu * cones.unit
         step = towards(center, turned, tau * kappa + dt * dk - center * mu)
         length = min(1.0, STEP * self._longest(step[3], step[2], step[4], step[5]))
-        if not all(np.all(np.isfinite(part)) for part in step) or length < 1e-10:
+        if not all(np.all(np.isfinite(part)) for part in step) or length < STANDSTILL:
             return False
         dx, dy, dz, ds, dt, dk = (length * part for part in step)
         self.x, self.y, self.z = self.x + dx, self.y + dy, self.z + dz
@@ -383,7 +388,7 @@ class _Embedding:
         kkt = np.zeros((n + m, n + m))
         kkt[:n, :n] = scaled.T @ scaled
         kkt[:n, n:], kkt[n:, :n] = self.a.T, self.a
-        small = REGULAR * max(np.abs(np.diag(kkt)[:n]).max(initial=0.0), 1e-300)
+        small = REGULAR * max(np.abs(np.diag(kkt)[:n]).max(initial=0.0), TINY)
         regular = kkt + np.diag([*[small] * n, *[-small] * m])
         inverse = np.linalg.inv(regular)
 

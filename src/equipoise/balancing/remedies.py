@@ -30,6 +30,7 @@ from equipoise.balancing.policy import (
 )
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import Room, outline_of
+from equipoise.balancing.rounding import NEARLY
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
 from equipoise.dataclass import dataclass
@@ -59,6 +60,8 @@ FINE_DIRECTIONS, FINE_WIDTHS = range(-9, 10), range(-25, 30, 5)
 """Degrees about the best of these."""
 PLATE_SHARES, OUTER_SHARES = (1.0, 0.5, 0.25, 0.125), (1.0, 0.85, 0.7, 0.5)
 """Of the thickest plate and of the largest radius: what is tried."""
+WIDTH_RANGE = (10, 180)
+"""Degrees of sectors: narrower ones are slivers, wider ones balance themselves in part."""
 FEW = 4
 """Of the best shapes, how many are looked at in full."""
 
@@ -290,7 +293,7 @@ def _finer(
     about = [
         replace(best, direction=_turned(best.direction + d), width=best.width + w)
         for d, w in product(FINE_DIRECTIONS, FINE_WIDTHS)
-        if 10 <= best.width + w <= 180
+        if WIDTH_RANGE[0] <= best.width + w <= WIDTH_RANGE[1]
     ]
     return _ranked(comparison, about, most_mass, opposite) or first
 
@@ -338,7 +341,7 @@ def _coarse(rooms: Sequence[Room]) -> Iterator[Sector]:
     largest = min(room.largest for room in rooms)
     thickest = min(room.most_thick for room in rooms)
     grid = GRID if largest >= SMALL else FINE_GRID
-    steps = floor(largest / grid * (1 + 1e-9))
+    steps = floor(largest / grid * (1 + NEARLY))
     if steps < 2:
         return
     thick = sorted({plate_of(thickest * share) for share in PLATE_SHARES}, reverse=True)
@@ -350,7 +353,7 @@ def _coarse(rooms: Sequence[Room]) -> Iterator[Sector]:
 
 def plate_of(most: float) -> float:
     """The thickest plate in stock (m) that is at most so thick."""
-    most *= 1 + 1e-9
+    most *= 1 + NEARLY
     unit = 10.0 ** floor(log10(most))
     return float(max(size * unit for size in PLATES if size * unit <= most))
 
@@ -529,6 +532,9 @@ def _taken_off(
 
 # -- mass that a link has too much of --------------------------------------------------------------
 
+TURNED = range(-60, 65, 5)
+"""Degrees from the way to the centre of mass, to either side, where holes are tried: further off
+they move it more across than back."""
 SHARES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 """Of the first moment that a link has towards a direction: what is taken off."""
 
@@ -552,7 +558,7 @@ def best_cuts(comparison: Comparison) -> Iterator[tuple[complex, float]]:
     middle = round(np.degrees(np.angle(center)))
     arms = [complex(*point) - complex(*link.points[room.at]) for point in link.points.values()]
     items: list[tuple[complex, float]] = []
-    for turn, share in product(range(-60, 65, 5), SHARES):
+    for turn, share in product(TURNED, SHARES):
         way = np.exp(1j * np.radians(middle + turn))
         most = min(link.mass * (center * np.conj(way)).real / radius, MOST_TAKEN * link.mass)
         mass = float(f"{share * most:.2g}")

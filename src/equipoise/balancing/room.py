@@ -31,6 +31,7 @@ from equipoise.balancing.policy import (
     THICKNESS_OF_LINK,
     THICKNESS_OF_REACH,
 )
+from equipoise.balancing.rounding import NEARLY
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import size_of_bodies, size_of_links
 from equipoise.mechanism.checks import bodies_at
@@ -79,7 +80,7 @@ class Room:
     @property
     def is_limited_by_assumption(self) -> bool:
         """Whether nothing is in the way in some direction."""
-        return self.largest >= self.assumed * (1 - 1e-9)
+        return self.largest >= self.assumed * (1 - NEARLY)
 
     @property
     def largest(self) -> float:

@@ -37,6 +37,8 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, WITHIN
 from equipoise.signals import Array, Periodic
 
+BESIDE = 0.1
+"""rad: phases so close lead to the same masses, so that one of them is a beginning."""
 CLOSE = 1e-3
 """Between cost and bound, over the cost before, at which the search ends."""
 BEGINNINGS, FEW, GUESSES, FIRST_ROUNDS, ROUNDS, TRIES = 6, 3, 24, 3, 12, 12
@@ -93,7 +95,7 @@ class JointPhaseMassOptimizer:
         count = FEW if self._bent else BEGINNINGS
         most = (count * FIRST_ROUNDS + ROUNDS) * most_steps(self.search.cost)
         self.after = stepped(progress, 0, most, most)
-        error = self._from_any(distinct(pool, self.period, [0.1], count), first)
+        error = self._from_any(distinct(pool, self.period, [BESIDE], count), first)
         if self.best is None:  # limits that few phases keep
             shape = (GUESSES, len(pool[0]))
             self._from_any(np.random.default_rng(1).uniform(0.0, self.period, shape), first)

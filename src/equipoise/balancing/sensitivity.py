@@ -39,6 +39,9 @@ CHANGES: dict[str, tuple[Dimension, str, str]] = {
 }
 """Mass at a fixed centre of mass, that centre at a fixed mass, inertia about it: what each is, the
 unit in which it is usually shown, and what it is called.  z matters to rocking moments alone."""
+ANGLES, PERCENT = 720, 0.01
+"""Crank angles in a turn, as signs of signals change between them; change of a number of which the
+effect is reported."""
 NOTHING = 1e-10
 """Share of the largest effect below which there is none."""
 SIGN_OFFSET, JUMP = 1e-8, 1e-4
@@ -135,7 +138,7 @@ def known_outputs(machine: Machine) -> list[str]:
 
 
 def sensitivities(
-    machine: Machine, output: str = "shaking_force.y", angles: int = 720
+    machine: Machine, output: str = "shaking_force.y", angles: int = ANGLES
 ) -> Sensitivities:
     """Derivatives of an output by mass, centre of mass and inertia of every link.
 
@@ -180,7 +183,7 @@ def sensitivities(
     for (link, change), (own, rms, at) in zip(product(machine.links, changes), each, strict=True):
         body = machine.links[link]
         step = {"mass": body.mass or 0.0, "inertia": body.inertia or 0.0}.get(change, size)
-        by_name[f"{link}.{change}"] = Sensitivity(link, change, own, rms, at, 0.01 * step * rms)
+        by_name[f"{link}.{change}"] = Sensitivity(link, change, own, rms, at, PERCENT * step * rms)
     return Sensitivities(machine, output, motion.crank_angle, motion.turns, by_name)
 
 

@@ -19,8 +19,9 @@ from math import asin, cos, hypot, isfinite, pi, sin, sqrt
 import numpy as np
 
 from equipoise.balancing.branch_and_bound import Square
-from equipoise.balancing.design_variables import Bound, DesignVariables
+from equipoise.balancing.design_variables import REACHED, Bound, DesignVariables
 from equipoise.balancing.program import Affine, ConeRows, Program, stacked
+from equipoise.balancing.rounding import TINY
 from equipoise.balancing.workshop import SPREAD, Change, pieces_of
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.steps import size_of_bodies
@@ -137,7 +138,7 @@ class AddedWeight(DesignVariables):
 
     def stopped(self, numbers: Array) -> Note | None:
         given = self.weight.mass is not None or self.weight.at_most is not None
-        if given or float(numbers[0]) * self.mass_unit <= self.cap * (1 - 1e-3):
+        if given or float(numbers[0]) * self.mass_unit <= REACHED * self.cap:
             return None
         return Note(
             "the weight on {link} has reached the default limit of ten times the mass of the "
@@ -281,7 +282,7 @@ class AddedWeight(DesignVariables):
         m = float(values[0])
         if self.weight.shape == "sector" and m > 0:
             most = self._bound(min(m, self._full))[0]
-            values[1:] *= min(1.0, most / max(float(np.hypot(*values[1:])), 1e-300))
+            values[1:] *= min(1.0, most / max(float(np.hypot(*values[1:])), TINY))
         for lift, y in (("qx", "x"), ("qy", "y")):
             if lift in at:
                 values[at[lift]] = values[at[y]] ** 2 / m if m > 0 else 0.0

@@ -17,6 +17,7 @@ import numpy as np
 from equipoise.balancing.design_variables import with_parameters
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.problem import ADDED, Problem
+from equipoise.balancing.rounding import NEARLY
 from equipoise.balancing.weights import RADII
 from equipoise.balancing.workshop import Change, Piece
 from equipoise.i18n import Note, said, say
@@ -318,7 +319,7 @@ def _with_mass_beside(
     body = Body("point", at=(place.real, place.imag), mass=mass,
                 inertia=inertia - mass * abs(place) ** 2, plane=plane)  # fmt: skip
     bodies = [
-        body if item.plane == plane and isclose(item.mass or 0.0, was[0], rel_tol=1e-9) else item
+        body if item.plane == plane and isclose(item.mass or 0.0, was[0], rel_tol=NEARLY) else item
         for item in machine.links[name].bodies
     ]
     return machine.with_link(name, bodies=tuple(bodies))

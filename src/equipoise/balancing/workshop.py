@@ -16,6 +16,8 @@ from equipoise.results.machine_blocks import place_told
 
 Piece = dict[str, Any]
 
+DRILL = 1e-3
+"""Step of the diameters of holes that are proposed, m, as drills have it."""
 SPREAD = 1e-7
 """Over the squared distance: inertia beyond that of one point that is taken for rounding."""
 SIZE_OF_0 = 1e-15
@@ -245,7 +247,7 @@ def _taken_off(link: str, values: dict[str, Any]) -> str:
 def _hole_of(mass: float) -> tuple[float, float]:
     """Diameter, in whole millimetres, and depth of a hole in steel, about half as deep as wide."""
     volume = mass / MATERIALS["steel"]
-    diameter = max(1e-3 * ceil(1e3 * (8 * volume / pi) ** (1 / 3)), 1e-3)
+    diameter = DRILL * max(ceil((8 * volume / pi) ** (1 / 3) / DRILL), 1)
     return diameter, 4 * volume / (pi * diameter**2)
 
 
