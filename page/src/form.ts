@@ -3,8 +3,9 @@
 import { cureOf, withCure } from "./cure";
 import { fresh, h, set, write } from "./dom";
 import { type Around, type Input, input, type Picked } from "./inputs";
+import { stepsOf } from "./paths";
 import { demandsOf } from "./rules";
-import type { Control, Plain, Refused, Steps, Tables, Values } from "./protocol";
+import type { Control, Plain, Refused, Tables, Values } from "./protocol";
 import { say } from "./words";
 
 /** What is edited: a table that there is, or a new one. */
@@ -14,7 +15,8 @@ export interface Subject {
   form: string;
   /** Path of the key below which it stands. */
   group: string;
-  place: Steps;
+  /** Its path in the file; of a new one with a name that of what it goes into. */
+  place: string;
   /** Its path, as refusals tell it. */
   where: string;
   /** Of one that has a name: that name, empty where it is new. */
@@ -28,8 +30,8 @@ export interface Subject {
 }
 
 export interface FormEvents {
-  saved(place: Steps, values: Values, name: string | null, files: Record<string, string>): void;
-  deleted(place: Steps): void;
+  saved(place: string, values: Values, name: string | null, files: Record<string, string>): void;
+  deleted(place: string): void;
   closed(): void;
   pick(body: string, named: boolean, taken: (picked: Picked) => void): void;
 }
@@ -178,8 +180,8 @@ export class Form {
   }
 
   private around(tables: Tables): Around {
-    const { place } = this.subject;
-    const body = place[0] === "links" && typeof place[1] === "string" ? place[1] : "frame";
+    const [table, name] = stepsOf(this.subject.place);
+    const body = table === "links" && typeof name === "string" ? name : "frame";
     return {
       bodies: tables.bodies,
       outputs: tables.outputs,

@@ -601,7 +601,8 @@ export interface Refused {
 
 /** A table of the file. */
 export interface TableEntry {
-  place: (string | number)[];
+  /** Its path in the file; empty of the whole file. */
+  place: string;
   /** Its path, as refusals have it. */
   where: string;
   words: string;
@@ -612,7 +613,8 @@ export interface TableEntry {
 
 /** Tables of one sort that a machine has, or can have. */
 export interface Group {
-  place: (string | number)[];
+  /** Its path in the file; empty of the whole file. */
+  place: string;
   where: string;
   form: string;
   many: "one" | "list" | "named";
@@ -864,7 +866,8 @@ export interface CompareRequest {
 export interface EntryRequest {
   type: "entry";
   label: string;
-  place: (string | number)[];
+  /** Its path in the file, such as `springs[1]`; empty of the whole file. */
+  place: string;
   values: Record<string, Plain> | null;
   name?: string;
   /** Texts of CSV files that it names. */

@@ -6,7 +6,8 @@ import { h } from "./dom";
 import { lengths, round } from "./format";
 import { Form, type Subject } from "./form";
 import type { Picked } from "./inputs";
-import type { TableEntry, Group, Pair, State, Steps, Tables, Values } from "./protocol";
+import { keyPath, stepsOf } from "./paths";
+import type { TableEntry, Group, Pair, State, Tables, Values } from "./protocol";
 import { say } from "./words";
 
 /** What of the page it needs. */
@@ -111,9 +112,7 @@ export class Parts {
     const group = tables.groups.find(({ where }) => where === subject.group);
     if (!group || group.needs) return this.close();
     if (!subject.known) {
-      const place = [...subject.place];
-      if (group.many === "list") place.splice(-1, 1, group.entries.length);
-      subject.place = place;
+      if (group.many === "list") subject.place = `${group.place}[${group.entries.length + 1}]`;
     } else {
       const entry = group.entries.find(({ where }) => where === subject.where);
       if (!entry) this.close();
@@ -181,15 +180,14 @@ export class Parts {
     const [held] = group.entries;
     if (group.many === "one" && held) return this.edit(group, held);
     const { many, entries, place, where } = group;
-    const next = many === "list" ? [...place, entries.length] : many === "named" ? [...place, ""] : place;
-    const path = many === "list" ? `${where}[${entries.length + 1}]` : where;
+    const number = many === "list" ? `[${entries.length + 1}]` : "";
     this.open({
       heading: say("New: {what}", { what: titleOf(group) }),
       text: group.text,
       form: group.form,
       group: where,
-      place: next,
-      where: path,
+      place: place + number,
+      where: where + number,
       name: many === "named" ? "" : null,
       values,
       below: [],
@@ -199,7 +197,6 @@ export class Parts {
   }
 
   private edit(group: Group, entry: TableEntry, values: Values = {}, key = ""): void {
-    const last = entry.place[entry.place.length - 1];
     this.open({
       heading: nameOf(group, entry),
       text: group.text,
@@ -207,7 +204,7 @@ export class Parts {
       group: group.where,
       place: entry.place,
       where: entry.where,
-      name: group.many === "named" ? String(last) : null,
+      name: group.many === "named" ? lastOf(entry) : null,
       values: { ...entry.values, ...values },
       below: entry.below,
       known: true,
@@ -241,19 +238,19 @@ export class Parts {
 
   private save(
     subject: Subject,
-    place: Steps,
+    place: string,
     values: Values,
     name: string | null,
     files: Record<string, string>,
   ): void {
     // What is as it was is no step.
     if (subject.known && name === subject.name && same(values, this.original)) return this.close();
-    const at = subject.name === "" ? [...place.slice(0, -1), name ?? ""] : place;
+    const at = subject.name === "" ? `${place}.${keyPath(name ?? "")}` : place;
     const more = { ...(name && { name }), ...(Object.keys(files).length && { files }) };
     this.put(at, values, subject.heading, more);
   }
 
-  private put(place: Steps, values: Values | null, label: string, more: object = {}): void {
+  private put(place: string, values: Values | null, label: string, more: object = {}): void {
     const { talk } = this.page;
     const form = this.form;
     talk.release();
@@ -307,9 +304,13 @@ function titleOf({ word, of }: Group): string {
 }
 
 function nameOf(group: Group, entry: TableEntry): string {
-  const last = entry.place[entry.place.length - 1];
-  if (group.many === "named") return String(last);
-  return group.many === "list" ? `${group.word} ${Number(last) + 1}` : titleOf(group);
+  if (group.many === "named") return lastOf(entry);
+  return group.many === "list" ? `${group.word} ${Number(lastOf(entry)) + 1}` : titleOf(group);
+}
+
+/** The name of an entry, or its number in a list from 0. */
+function lastOf({ place }: TableEntry): string {
+  return String(stepsOf(place).pop());
 }
 
 function same(one: Values, other: Values): boolean {

@@ -1,11 +1,8 @@
 /** What the page does with messages; their types are written from those of the server. */
 
-import type { Arrays, EntryRequest, Sent, StateMessage } from "./messages";
+import type { Arrays, Sent, StateMessage } from "./messages";
 
 export type * from "./messages";
-
-/** Keys, names and numbers from 0 on the way to a table of a model file. */
-export type Steps = EntryRequest["place"];
 
 /** What is heard: from a server, or of the page's own transport. */
 export type Told = Sent | { type: "lost" | "back" };

@@ -110,7 +110,7 @@ def on_the_page(machine: Machine, table: str, keys: Sequence[str], numbers: Sequ
     tables = tables_of(machine)
     (kind,) = {type(one).__name__ for one in getattr(machine, table)}
     assert {one["key"] for one in tables["forms"][kind]["controls"]} == {*keys}
-    (group,) = (one for one in tables["groups"] if one["place"] == [table])
+    (group,) = (one for one in tables["groups"] if one["place"] == table)
     assert len(group["entries"]) == 1
     found = fields_of(Design("mine", machine))
     for number in numbers:

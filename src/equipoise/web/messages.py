@@ -198,13 +198,16 @@ class Message:
         """
         place, values = self.values.get("place"), self.values.get("values")
         name = self.values.get("name")
-        if not isinstance(place, list) or not all(map(_is_step, place)) or len(place) > DEEPEST:
-            _wrong("entry: place", place, Note('a list of keys and numbers such as ["springs", 0]'))
+        if not isinstance(place, str):
+            _wrong("entry: place", place, Note("the path of a table such as springs[1]"))
+        path = KeyPath.parse(place) if place else KeyPath(())  # which is the whole file
+        if len(path) > DEEPEST:
+            _wrong("entry: place", place, Note("the path of a table such as springs[1]"))
         if values is not None and not (isinstance(values, dict) and _is_plain(values, DEEPEST)):
             _wrong("entry: values", values, Note("a table of values as in a file"))
         if name is not None and not isinstance(name, str):
             _wrong("entry: name", name, Note("a text"))
-        return Entry(KeyPath(place), values, name, self.files)
+        return Entry(path, values, name, self.files)
 
     @property
     def files(self) -> Mapping[str, str]:
@@ -258,12 +261,6 @@ def message_of(values: object) -> Message:
     if kind not in KINDS:
         _wrong("type", kind, Note("one of {names}", names=", ".join(KINDS)))
     return Message(kind, seq, values)
-
-
-def _is_step(step: object) -> bool:
-    """Whether it is a key, a name, or a number of a list."""
-    number = isinstance(step, int) and not isinstance(step, bool)
-    return isinstance(step, str) or (number and 0 <= step < HUGE)  # type: ignore[operator]
 
 
 def _is_plain(value: object, deep: int) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, NotRequired, TypedDict
 
-from equipoise.web.table_types import Pair, Steps
+from equipoise.web.table_types import Pair
 
 
 class TypedEdit(TypedDict):
@@ -131,7 +131,7 @@ class EntryRequest(TypedDict):
 
     type: Literal["entry"]
     label: str
-    place: Steps
+    place: Annotated[str, "Its path in the file, such as `springs[1]`; empty of the whole file."]
     values: dict[str, Any] | None
     name: NotRequired[str]
     files: NotRequired[Annotated[dict[str, str], "Texts of CSV files that it names."]]

@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal, NotRequired, TypedDict
 
 Pair = tuple[float, float]
-Steps = list[str | int]
-"""Keys, names and numbers from 0 on the way to a table of a model file."""
 
 
 class AskingValues(TypedDict):
@@ -87,7 +85,7 @@ class FormValues(TypedDict):
 class TableEntryValues(TypedDict):
     """A table of the file."""
 
-    place: Steps
+    place: Annotated[str, "Its path in the file; empty of the whole file."]
     where: Annotated[str, "Its path, as refusals have it."]
     words: str
     values: dict[str, Any]
@@ -97,7 +95,7 @@ class TableEntryValues(TypedDict):
 class GroupValues(TypedDict):
     """Tables of one sort that a machine has, or can have."""
 
-    place: Steps
+    place: Annotated[str, "Its path in the file; empty of the whole file."]
     where: str
     form: str
     many: Literal["one", "list", "named"]

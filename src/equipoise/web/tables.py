@@ -137,7 +137,7 @@ def _groups(
 
 
 def _group(place: KeyPath, of: type[Frozen], many: str, words: Values) -> Values:
-    text = {"place": [*place], "where": place.shown, "form": of.__name__}
+    text = {"place": str(place), "where": place.shown, "form": of.__name__}
     return {**text, "many": many, "needs": "", **words}
 
 
@@ -162,7 +162,7 @@ def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> Values
     shown = ((item, values[name]) for name, item in own.items() if name in values)
     said = [f"{word_of(item)} {_brief(_said(item, value))}" for item, value in shown]
     return {
-        "place": [*place],
+        "place": str(place),
         "where": place.shown,
         "words": ", ".join(said[:MOST_WORDS]),
         "values": values,

@@ -84,7 +84,7 @@ def test_no_table_is_named_that_is_not_there(path: Path) -> None:
     session = session_of(path)
     values = {"link": "coupler", "table": "push.csv"}
     files = {"push.csv": "crank_angle [deg],torque [N m]\n0,1\n180,2\n360,1\n"}
-    ask(session, "entry", label="", place=["loads", 0], values=values, files=files)
+    ask(session, "entry", label="", place="loads[1]", values=values, files=files)
     assert "the table 'push.csv' does not lie beside it" in refusal(ask(session, "save"))
     (model,) = ask(session, "download", kind="model")
     for name, text in model.content["files"].items():

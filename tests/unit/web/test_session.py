@@ -206,7 +206,7 @@ def test_the_plan_of_a_file_outlives_balancing(tmp_path: Path) -> None:
     assert eq.loads(text).balance == plan
     listed = tables_of(own)["groups"]
     assert next(one for one in listed if one["where"] == "balance.masses")["entries"]
-    entry = {"place": ["balance", "objectives", 0], "label": "", "name": ""}
+    entry = {"place": "balance.objectives[1]", "label": "", "name": ""}
     ask(desk.session, "entry", **entry, values={"output": "shaking_force.x", "measure": "rms"})
     _, told, _ = ask(desk.session, "balance")
     assert [one["label"] for one in told.content["aims"]] == ["shaking force x, RMS"]

@@ -405,19 +405,19 @@ def test_locked_lengths_stay_while_a_point_is_dragged() -> None:
 def test_tables_of_a_file_are_added_while_a_machine_is_unfinished() -> None:
     page = four_bar()
     values: Content = {"between": ["crank", "rocker"], "teeth": [20, 40]}
-    told = ask(page.session, "entry", place=["gears", 0], values=values, label="gears")[0]
+    told = ask(page.session, "entry", place="gears[1]", values=values, label="gears")[0]
     assert state(told).content["status"]["text"].startswith("no degree of freedom: overconstrained")
     ask(page.session, "undo")
     values = {"points": {"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]}, "mass": "200 g"}
     values |= {"center_of_mass": ["10 mm", "0 mm"], "inertia": "30 kg mm^2"}
-    told = ask(page.session, "entry", place=["links", "crank"], values=values, label="mass")[0]
+    told = ask(page.session, "entry", place="links.crank", values=values, label="mass")[0]
     assert state(told).content["scene"]["mass_centers"] == ["crank", "coupler", "rocker"]
     assert not page.session.base().design.links["crank"].bodies  # given, and not assumed
     assert page.do("drive", link="crank") == "1 degree of freedom; crank turns fully"
     assert page.machine.links["crank"].mass == 0.2
 
 
-def entered(page: Maker, place: list[str | int], **values: object) -> str:
+def entered(page: Maker, place: str, **values: object) -> str:
     """Fill in a form, and return what is told of the machine."""
     told = ask(page.session, "entry", place=place, values=values, label="x")[0]
     return str(state(told).content["status"]["text"])
@@ -429,13 +429,13 @@ def test_a_cylinder_pushes_from_where_it_is_drawn() -> None:
     page.do("link", **{"from": at(0j, "frame"), "to": at(0.2 + 0.02j)})
     page.do("point", spot=at(0.05 - 0.1j))
     page.do("point", spot=at(0.12 + 0.01j), on="crank")
-    told = entered(page, ["drive"], link="crank", speed="6 rpm", between=["C", "D"])
+    told = entered(page, "drive", link="crank", speed="6 rpm", between=["C", "D"])
     assert told == "cylinder C to D from 130.4 to 143.4 mm and back, 6.000 cycles a minute"
     assert eq.move(page.machine, np.zeros(1)).points["D"].place[0] == pytest.approx(0.12 + 0.01j)
-    told = entered(page, ["drive", "stroke"], between=["130 mm", "150 mm"])
+    told = entered(page, "drive.stroke", between=["130 mm", "150 mm"])
     assert told == "cylinder C to D from 130.0 to 150.0 mm and back, 6.000 cycles a minute"
     assert page.do("drive", link="crank") == "1 degree of freedom; crank turns fully"
-    entered(page, ["drive"], link="crank", speed="6 rpm", between=["C", "D"])
+    entered(page, "drive", link="crank", speed="6 rpm", between=["C", "D"])
     assert page.do("delete", what="point", name="C") == "no drive: choose the driven link (crank)"
 
 
@@ -448,7 +448,7 @@ def test_a_second_drive_goes_with_its_link() -> None:
     page.do("link", **{"from": spot("D"), "to": spot("E")})
     told = page.do("drive", link="crank")
     assert told.endswith("undetermined: add a link, a joint or another drive")
-    assert "rocker turns 2.000 times" in entered(page, ["drives", 0], link="rocker", ratio=2)
+    assert "rocker turns 2.000 times" in entered(page, "drives[1]", link="rocker", ratio=2)
     page.do("delete", what="link", name="rocker")
     assert page.session.base().design.rest["drives"] == ()
 
@@ -600,10 +600,10 @@ def test_masses_that_are_given_take_the_place_of_those_assumed(what: str) -> Non
     if what == "mass":
         values: Content = {"points": {"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]}}
         values |= {"mass": "200 g", "center_of_mass": ["10 mm", "0 mm"], "inertia": "30 kg mm^2"}
-        ask(page.session, "entry", place=["links", "crank"], values=values, label="mass")
+        ask(page.session, "entry", place="links.crank", values=values, label="mass")
     else:
         values = {"shape": "point", "at": "B", "mass": "200 g"}
-        place = ["links", "crank", "bodies", 1]
+        place = "links.crank.bodies[2]"
         ask(page.session, "entry", place=place, values=values, label="body")
     crank = page.machine.links["crank"]
     assert crank.mass == 0.2
@@ -627,7 +627,7 @@ def test_numbers_are_typed_as_sums_and_products() -> None:
     ask(page.session, "edit", commit=True, label="width", edits=edits)
     assert page.machine.links["crank"].bodies[0].width == 0.0085
     values: Content = {"shape": "point", "at": "B", "mass": "2*100 g"}
-    ask(page.session, "entry", place=["links", "crank", "bodies", 0], values=values, label="body")
+    ask(page.session, "entry", place="links.crank.bodies[1]", values=values, label="body")
     assert page.machine.links["crank"].mass == 0.2
     edits = [{"set": "links.crank.bodies[1].mass", "text": "2*100"}]
     assert "has no unit" in refusal(

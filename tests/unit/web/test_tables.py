@@ -41,8 +41,9 @@ def tables(session: Any) -> Content:
     return reply.content
 
 
-def enter(session: Any, place: list[Any], values: Content | None, **more: Any) -> Any:
-    return ask(session, "entry", seq=2, label="entry", place=place, values=values, **more)
+def enter(session: Any, place: str | list[Any], values: Content | None, **more: Any) -> Any:
+    path = place if isinstance(place, str) else str(KeyPath(place))
+    return ask(session, "entry", seq=2, label="entry", place=path, values=values, **more)
 
 
 # -- what there is ---------------------------------------------------------------------------------
@@ -56,7 +57,8 @@ def test_each_entry_put_back_as_its_form_has_it_leaves_the_machine_as_it_was(nam
         known = {control["key"] for control in told["forms"][one["form"]]["controls"]}
         for entry in one["entries"]:
             assert known >= entry["values"].keys()
-            assert document.put(KeyPath(entry["place"]), entry["values"]).machine() == machine
+            place = KeyPath.parse(entry["place"]) if entry["place"] else KeyPath(())
+            assert document.put(place, entry["values"]).machine() == machine
 
 
 def test_each_table_that_a_file_can_have_is_offered() -> None:
@@ -368,14 +370,14 @@ def test_forms_are_refused_in_their_own_words() -> None:
 @pytest.mark.parametrize(
     "asked",
     [
-        {"place": "springs", "values": {}},
-        {"place": ["springs", -1], "values": {}},
-        {"place": ["springs", True], "values": {}},
-        {"place": ["springs", 0], "values": [1]},
-        {"place": ["springs", 0], "values": {"link": None}},
-        {"place": ["springs", 0], "values": {}, "name": 3},
-        {"place": ["springs", 0], "values": {}, "files": {"a": 1}},
-        {"place": ["springs", 0], "values": {"link": [[[[[[[[["deep"]]]]]]]]]}},
+        {"place": ["springs", 0], "values": {}},
+        {"place": ".".join("abcdefghi"), "values": {}},
+        {"values": {}},
+        {"place": "springs[1]", "values": [1]},
+        {"place": "springs[1]", "values": {"link": None}},
+        {"place": "springs[1]", "values": {}, "name": 3},
+        {"place": "springs[1]", "values": {}, "files": {"a": 1}},
+        {"place": "springs[1]", "values": {"link": [[[[[[[[["deep"]]]]]]]]]}},
     ],
 )
 def test_nonsense_is_refused_in_a_sentence(asked: Content) -> None:
@@ -437,7 +439,7 @@ def test_a_link_that_is_drawn_gets_its_mass_by_bodies() -> None:
     ask(session, "make", do="point", spot={"place": [0.0, 0.0]})
     ask(session, "make", do="link", **{"from": {"point": "A"}, "to": {"place": [0.06, 0.0]}})
     (link,) = group(tables(session), "links")["entries"]
-    name = link["place"][-1]
+    name = KeyPath.parse(link["place"])[-1]
     bar = {**BAR, "between": [*link["values"]["points"]]}
     enter(session, ["links", name, "bodies", 0], bar)
     told = group(tables(session), f"links.{name}.bodies")
