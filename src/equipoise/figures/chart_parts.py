@@ -22,6 +22,8 @@ ROOM = 0.17
 """Share of what is drawn that stays free above and below for the numbers at extremes."""
 VARIES = 1e-9
 """Share of a signal below which what varies is rounding."""
+ZERO = 1e-7
+"""Share of the largest value on an axis below which one is 0: roots of rounding are smaller."""
 BESIDE_TEXT = 0.06
 """Share of the crank angles that are shown, to both sides of a value's text."""
 STEPS = (30, 60, 90, 180, 360, 720, 1440, 3600)
@@ -147,15 +149,22 @@ def extremes(
 ) -> tuple[Mark, ...]:
     """Marks at extremes of a signal (N,), or its value where it does not vary and is not 0.
 
+    An angle that runs on with the crank has none: it begins and ends where the picture does.
+
     places : crank angles (rad) and values.
     """
     marks = []
+    steps = np.diff(values)
+    if axis.unit == DEGREES and varies(values) and (np.all(steps > 0) or np.all(steps < 0)):
+        return ()
+    least = ZERO * float(np.max(np.abs(values), initial=0.0))
     if places and not varies(values) and values[0]:
         text = say("{value} at every crank angle", value=axis.format_value(float(values[0])))
         middle = float(np.mean([angle for angle, _ in places]))
         return (Mark(middle, float(values[0]), text, role, sign=False),)
     for angle, value in places if varies(values) else ():
-        text = say("{value} at {angle}", value=axis.format_value(value), angle=degrees_told(angle))
+        shown = axis.format_value(value if abs(value) > least else 0.0)
+        text = say("{value} at {angle}", value=shown, angle=degrees_told(angle))
         wish = 90.0 if value > float(np.mean(values)) else -90.0
         marks.append(Mark(angle, value, text, role, wish))
     return tuple(marks)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import ceil, floor, log10
 from typing import Any
@@ -36,7 +36,7 @@ from equipoise.figures.style import (
 )
 from equipoise.figures.view import View, corners_of
 from equipoise.i18n import decimals
-from equipoise.results.charts import Mark, Outline, Panel, Surface
+from equipoise.results.charts import Bars, Mark, Outline, Panel, Surface
 
 LEVELS = 12
 """Lines at most."""
@@ -393,6 +393,7 @@ def _bar_numbers(view: View) -> None:
     if most > MOST_DECIMALS:
         return
     least = min(most, max(1, most - 1))
+    tops = [top for bars in matching_bars for top in _tops(view, bars)]
     for fewer in range(most, least - 1, -1):
         texts = [
             (
@@ -404,11 +405,34 @@ def _bar_numbers(view: View) -> None:
             for size, at, color in numbers
             if round(size, fewer)
         ]
-        clear = _clear(texts)
+        clear = _clear(_off_bars(texts, tops))
         if len(clear) == len(texts):
             break
     for text, x, y, color in clear:
         view.write(x, y, text, "middle", color=color)
+
+
+def _tops(view: View, bars: Bars) -> Iterator[tuple[float, float, float]]:
+    """Left, right and top of each bar that goes up, on the sheet."""
+    half = np.broadcast_to(np.asarray(bars.width, float) / 2, bars.at.shape)
+    ends = (view.x.at(bars.at - half), view.x.at(bars.at + half), view.y.at(bars.size))
+    for left, right, top in zip(*ends, strict=True):
+        yield float(left), float(right), float(top)
+
+
+def _off_bars(texts: list[Number], tops: list[tuple[float, float, float]]) -> list[Number]:
+    """Numbers that are moved to the side off higher bars beside their own; those without room for
+    that are left out.
+    """
+    moved = []
+    for text, x, y, color in texts:
+        half = width_of(text, SMALL) / 2 + 1
+        higher = [(left, right) for left, right, top in tops if top < y - OVER / 2]
+        start = max((right for _, right in higher if right <= x), default=-np.inf)
+        end = min((left for left, _ in higher if left >= x), default=np.inf)
+        if end - start >= 2 * half:
+            moved.append((text, min(max(x, start + half), end - half), y, color))
+    return moved
 
 
 def _clear(texts: list[Number]) -> list[Number]:

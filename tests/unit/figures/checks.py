@@ -69,6 +69,7 @@ class Laid:
             axes_in_words,
             runs_back,
             bars_afloat,
+            numbers_on_bars,
             panels_left,
             supports_cut,
             machines_small,
@@ -178,6 +179,22 @@ def bars_afloat(laid: Laid) -> Iterator[Fault]:
         lowest = view.y.low / panel.y.unit.factor * (1 + 1e-9)
         if panel.y.scale == "log" and any(np.any(one.low <= lowest) for one in panel.areas):
             yield "area on a logarithmic axis", _told(view)
+
+
+def numbers_on_bars(laid: Laid) -> Iterator[Fault]:
+    """Sizes that stand at bars lie on no higher bar beside their own."""
+    for view, items in laid.panels:
+        numbers = [one for one in items if isinstance(one, Words) and _is_number(one.text)]
+        for bars in view.panel.bars:
+            if bars.across != "x" or view.y.axis.scale == "log":
+                continue
+            ends = (view.x.at(bars.at + side * np.asarray(bars.width) / 2) for side in (-1, 1))
+            for left, right, top in zip(*ends, view.y.at(bars.size), strict=True):
+                for one in numbers:
+                    start, _, end, bottom = box_of(one)
+                    beside = min(right, end) - max(left, start) > 1
+                    if beside and view.box[1] < one.y and bottom - top > 2 * SLACK:
+                        yield "number on a bar", f"{one.text} in {_told(view)}"
 
 
 def _is_number(text: str) -> bool:

@@ -476,3 +476,16 @@ def test_pictures_of_several_have_as_many_rows_and_say_which_joints_they_have() 
 
 def test_a_picture_of_one_joint_of_several_says_which() -> None:
     assert continued(["c"], ["a", "b", "c"]) == " (3 of 3)"
+
+
+def test_an_angle_that_runs_on_has_no_extremes_and_rounding_reads_0() -> None:
+    """The second crank of a straw walker turns with the first one, and both are parallel twice."""
+    names = ("straw-walker", "yamashita-1")
+    analyses = [eq.analyze(eq.load(name)) for name in names]
+    charts, others = ({c.name: c for c in points.main_kinematics(one)} for one in analyses)
+    turning, *_ = charts["kinematics-rear"].panels
+    assert np.ptp(turning.curves[0].y) > 6 and turning.marks == ()
+    (transmission,) = charts["kinematics-transmission"].panels
+    largest, smallest = (mark.text for mark in transmission.marks)
+    assert largest.startswith("179.") and smallest.startswith("0 at ")
+    assert len(others["kinematics-rocker"].panels[0].marks) == 2

@@ -21,6 +21,10 @@ SPOKEN = {
     "P10": "P10을 P10으로 P10과", "71.5 mm": "71.5 mm를 71.5 mm로 71.5 mm와",
     "199 g": "199 g을 199 g으로 199 g과", "12 N": "12 N을 12 N으로 12 N과",
     "3 N m": "3 N m를 3 N m로 3 N m와", "30°": "30°를 30°로 30°와", "5 J": "5 J을 5 J로 5 J과",
+    "5 m/s²": "5 m/s²을 5 m/s²으로 5 m/s²과", "9 rad/s^2": "9 rad/s^2을 9 rad/s^2으로 9 rad/s^2과",
+    "2 h": "2 h을 2 h으로 2 h과", "6 kgf": "6 kgf을 6 kgf으로 6 kgf과",
+    "3 in": "3 in를 3 in로 3 in와", "4 lb": "4 lb를 4 lb로 4 lb와",
+    "8 kg/m³": "8 kg/m³를 8 kg/m³로 8 kg/m³와", "7 m/s": "7 m/s를 7 m/s로 7 m/s와",
     "'coupler'": "'coupler'를 'coupler'로 'coupler'와",
     "lever (2)": "lever (2)를 lever (2)로 lever (2)와",
 }  # fmt: skip
