@@ -495,7 +495,7 @@ def proved_of(solution: Solution) -> Iterator[Note]:
     if problem.flips:
         yield Note("for the flanks of teeth and strands of chains that bear here")
     if problem.rubs:
-        yield Note("without friction in joints")
+        yield Note("for friction in joints as it is here")
     if solution.gears_left or any(geared_range(geared) for geared in problem.plan.geared):
         yield Note("for each of the gears tried")
 
@@ -577,8 +577,9 @@ def _notes(solution: Solution) -> Iterator[Note]:
         yield Note("the acceleration of the drive is ignored: the crank speed is taken as constant")
     if problem.rubs:
         yield Note(
-            "with friction in joints {outputs} is not linear in the masses: the optimum was "
-            "computed without friction; the figures include friction, the bound does not",
+            "friction in joints makes {outputs} nonlinear in the masses: it was taken from the "
+            "machine before and computed anew with each result, until that stayed as it was; the "
+            "bound holds for friction as it is there",
             outputs=all_of([*problem.rubs], commas=True),
         )
     if problem.reads_gauges and problem.supports_more:

@@ -123,6 +123,8 @@ class Effects:
 
     machine : from which the numbers count.  parts : whose numbers they are, K in all.
     like : a machine of the same links, whose couplings are in contact on the flanks that are taken.
+    rubbing : a machine of the same motion, whose friction in joints is taken, as forces are linear
+        in the numbers with friction that is known only; there is none of it if None.
     """
 
     def __init__(
@@ -131,8 +133,10 @@ class Effects:
         parts: Sequence[DesignVariables | LinkParameters],
         motion: Motion | None = None,
         like: Machine | None = None,
+        rubbing: Machine | None = None,
     ) -> None:
         self.machine, self.parts, self.like = machine, tuple(parts), like
+        self.rubbing = rubbing
         usual = move(machine, ANGLES, acceleration=0.0) if motion is None else motion
         self.motion = resolved(usual)
         self.count = sum(part.count for part in parts)
@@ -144,20 +148,20 @@ class Effects:
 
     def at(self, speed: float) -> Effects:
         """Effects at another speed, rad/s."""
-        return Effects(self.machine, self.parts, self.motion.at(speed))
+        return Effects(self.machine, self.parts, self.motion.at(speed), rubbing=self.rubbing)
 
     def at_angles(self, crank_angle: Array) -> Effects:
         """Effects at other crank angles (N,), rad, of one cycle or not."""
         motion = self.motion
         moved = move(self.machine, crank_angle, motion.speed, motion.acceleration)
-        return Effects(self.machine, self.parts, moved, self.like)
+        return Effects(self.machine, self.parts, moved, self.like, self.rubbing)
 
     def of_row(self, phase: float) -> Effects:
         """Of a linkage ahead by a phase, rad, at the same crank angles of the first one."""
         motion = self.motion
         moved = move(self.machine, motion.crank_angle + phase, motion.speed, motion.acceleration)
         turned = replace(moved, whole_cycle=motion.whole_cycle, sampling=motion.sampling)
-        return Effects(self.machine, self.parts, turned, self.like)
+        return Effects(self.machine, self.parts, turned, self.like, self.rubbing)
 
     def signal(self, output: str, about: str | None = None) -> Signal:
         """An output by name; complex where it is a vector.
@@ -199,7 +203,7 @@ class Effects:
     @cached_property
     def start(self) -> Forces:
         """Forces of the machine from which the numbers count; without friction where there are
-        numbers, as forces are linear in these without it only.
+        numbers.
         """
         return replace(forces(self.motion), rubs=not self.parts)
 
@@ -252,19 +256,25 @@ class Effects:
 
     @cached_property
     def present(self) -> JointReactions:
-        """The run over the joints as they are, with teeth on the flanks that count."""
-        return self.start.solved_like(self.flanks)
+        """The run over the joints as they are, with the friction and on the flanks that count."""
+        if self.rubbing is None:
+            return self.start.solved_like(self.flanks)
+        frictions = forces(self._moved_like(self.rubbing)).frictions
+        return self.start.solved_like(self.flanks, frictions)
+
+    def _moved_like(self, machine: Machine) -> Motion:
+        """Another machine at the same crank angles and speed."""
+        motion = self.motion
+        equally = motion.whole_cycle and motion.sampling is None
+        theta = ANGLES if equally else motion.crank_angle
+        return move(machine, theta, acceleration=0.0).at(motion.speed)
 
     @cached_property
     def flanks(self) -> JointReactions:
         """A run whose couplings are in contact on the flanks that count."""
         if self.like is None or not self.machine.couplings:
             return self.start.solved
-        motion = self.motion
-        equally = motion.whole_cycle and motion.sampling is None
-        theta = ANGLES if equally else motion.crank_angle
-        like = forces(move(self.like, theta, acceleration=0.0).at(self.motion.speed))
-        return replace(like, rubs=False).solved
+        return replace(forces(self._moved_like(self.like)), rubs=False).solved
 
     def full(self, columns: Array) -> Array:
         """Columns (K, N), also where the output is the same at every crank angle."""

@@ -87,13 +87,13 @@ class Problem:
         return zip(self.parts, numbers, strict=True)
 
     def linearized_at(self, numbers: list[Array]) -> Problem:
-        """Problem with gauges linearized at the machine of some numbers."""
-        close, effects = (
-            LinearizationPoint(self.machine_with(numbers), np.concatenate(numbers)),
-            self.effects,
-        )
-        if self.flips:
-            effects = Effects(self.start, self.parts, effects.motion, close.machine)
+        """Problem with gauges linearized at the machine of some numbers, and with its friction."""
+        close = LinearizationPoint(self.machine_with(numbers), np.concatenate(numbers))
+        effects = self.effects
+        if self.flips or self.rubs:
+            like = close.machine if self.flips else None
+            rubbing = close.machine if self.rubs else None
+            effects = Effects(self.start, self.parts, effects.motion, like, rubbing)
         return replace(self, close=close, counts=self.before, known=effects)
 
     @property
@@ -185,7 +185,8 @@ class Problem:
 
     @cached_property
     def effects(self) -> Effects:
-        return self.known or Effects(self.start, self.parts)
+        rubbing = self.machine if self.rubs else None
+        return self.known or Effects(self.start, self.parts, rubbing=rubbing)
 
     @cached_property
     def signals(self) -> dict[str, list[Signal]]:

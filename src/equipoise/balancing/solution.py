@@ -36,6 +36,8 @@ solver and as read off the signals."""
 STILL, SETTLED, ROUNDS = 1e-9, 1e-8, 20
 """Changes of cost and of numbers at which gauges have been read near enough; steps from near to
 nearer."""
+SAME_COST = 1e-8
+"""Change of cost, over that before, at which friction is that of the solution."""
 SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.003)
 """Of a step towards the best of a nearby problem that are tried."""
 
@@ -71,7 +73,7 @@ def solve_problem(
     solution = _solve_once(problem, progress, above)
     bent = problem.reads_gauges and problem.supports_more
     if not bent and not problem.flips:
-        return solution
+        return _with_its_friction(solution, progress) if problem.rubs else solution
     cost, limits_gauges = problem.cost_of(solution.machine), bool(_gauged(problem))
     for _ in range(ROUNDS):
         linearized = problem.linearized_at(solution.numbers)
@@ -85,6 +87,19 @@ def solve_problem(
         if better is None:
             return replace(solution, best=towards.best)
         solution, cost = better, problem.cost_of(better.machine)
+    return solution
+
+
+def _with_its_friction(solution: Solution, progress: Progress | None) -> Solution:
+    """The best with the friction of its own forces, from that with the friction of a machine near
+    it, whose limits it keeps with that friction only.
+    """
+    problem = solution.problem
+    for _ in range(ROUNDS):
+        before = problem.cost_of(solution.machine)
+        solution = _solve_once(problem.linearized_at(solution.numbers), progress)
+        if abs(problem.cost_of(solution.machine) - before) <= SAME_COST * problem.whole:
+            break
     return solution
 
 

@@ -22,7 +22,11 @@ from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.steps import Array, p, planar, u
 from equipoise.mechanism.dynamics import applied_loads
 from equipoise.mechanism.dynamics.force_readings import ForceReadings
-from equipoise.mechanism.dynamics.friction import unit_demands, with_friction
+from equipoise.mechanism.dynamics.friction import (
+    unit_demands,
+    with_friction,
+    with_given_friction,
+)
 from equipoise.mechanism.dynamics.out_of_plane import (
     OutOfPlaneMoments,
     apart,
@@ -108,12 +112,20 @@ class Forces(ForceReadings, Displayed):
         """The run over the joints that belongs to all demands together."""
         return self.solved_like(None)
 
-    def solved_like(self, other: JointReactions | None) -> JointReactions:
-        """Forces with the flanks of couplings in contact that are so in another run."""
+    def solved_like(
+        self, other: JointReactions | None, frictions: Mapping[str, JointFriction] | None = None
+    ) -> JointReactions:
+        """Forces with the flanks of couplings in contact that are so in another run.
+
+        frictions : of joints by name, as in a machine of the same motion, instead of those that
+            follow from these forces.
+        """
         total = dict(self.inertia)
         for wrenches in (self.weights, self.loads, self.springs):
             for link, (force, moment) in wrenches.items():
                 total[link] = (total[link][0] + force, total[link][1] + moment)
+        if frictions is not None:
+            return with_given_friction(self.motion, total, frictions, other)
         if self.rubs and self.motion.machine.rubs:
             return with_friction(self.motion, total, other)
         return reactions(self.motion, total, other)

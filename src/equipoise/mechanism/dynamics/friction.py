@@ -416,9 +416,7 @@ def with_friction(
     LockError : the machine locks itself.
     """
     law = law_of(motion)
-    units = _cached(
-        motion, "units of friction", law.joints, lambda: unit_demands(motion, law.joints)
-    )
+    units = _units(motion, law.joints)
     result = like
     if result is None and motion.machine.switches:
         result = reactions(motion, demands)
@@ -448,6 +446,28 @@ def with_friction(
     ]
     names = [joint.name for joint in law.joints]
     return JointReactions(motion, solved.state, dict(zip(names, frictions, strict=True)))
+
+
+def with_given_friction(
+    motion: Motion,
+    demands: Demands,
+    frictions: Mapping[str, JointFriction],
+    like: JointReactions | None = None,
+) -> JointReactions:
+    """Joint forces that meet the demands of all links, and friction that is known, by joint: linear
+    in the demands.
+
+    like : as of `reactions`.
+    """
+    joints = law_of(motion).joints
+    efforts = np.array([frictions[joint.name].effort for joint in joints])
+    solved = reactions(motion, added(demands, _units(motion, joints), efforts), like)
+    return JointReactions(motion, solved.state, frictions)
+
+
+def _units(motion: Motion, joints: tuple[RubbingJoint, ...]) -> list[dict[str, Demand]]:
+    """What holds a unit of friction in each joint; kept with the motion."""
+    return _cached(motion, "units of friction", joints, lambda: unit_demands(motion, joints))
 
 
 def press_of(
