@@ -515,9 +515,9 @@ def test_nothing_is_printed_beside_a_broken_pipe() -> None:
 def test_outputs_of_several_rows_are_taken_by_the_names_that_results_have(row: str) -> None:
     """What `analyze` calls rows.drive_torque is the drive_torque that balancing makes small."""
     words = ("--phases", "--objective", f"rms {row}", "--limit", f"rms {row} <= 100 %")
-    text = succeeded(equipoise("balance", "four-row-transplanter", *words, "--json"))
+    text = succeeded(equipoise("balance", "walking-transplanter", *words, "--json"))
     before = json.loads(text)["objectives"]["rms of drive_torque"]["before"]
-    summary = eq.analyze(eq.load("four-row-transplanter"), acceleration=0.0).summary
+    summary = eq.analyze(eq.load("walking-transplanter"), acceleration=0.0).summary
     assert before == pytest.approx(summary["rows.drive_torque"].rms, rel=1e-9)
 
 

@@ -32,7 +32,8 @@ from support.chosen import few
 from surface.running import example_text
 
 TURNS, ORDERS = 200, 6000
-MANY_ANGLES = 25_000
+MANY_ANGLES = 10_000
+"""Of which an analysis holds 27 MiB."""
 
 
 def amplitudes(*shape: int) -> Array:
