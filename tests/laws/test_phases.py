@@ -117,7 +117,9 @@ def test_nothing_better_is_found_by_evolution(case: str) -> None:
     assert found.combined[1] <= other.fun * (1 + (1e-9 if rms_only else 3e-6))
 
 
-@pytest.mark.parametrize("output", ["shaking_force", "shaking_moment", "roll_moment"])
+@pytest.mark.parametrize(
+    "output", few(["shaking_force", "shaking_moment", "roll_moment"], {"roll_moment"})
+)
 def test_nothing_better_on_a_coarse_grid_in_time(output: str) -> None:
     """Every arrangement of three rows at 20 deg, added sample by sample."""
     machine = side_by_side(TYPE_II, (0.0, 0.4, 0.9))

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from support.chosen import EXHAUSTIVE, few_together
+from support.chosen import EXHAUSTIVE, few, few_together
 from surface.running import cells, changed, equipoise, example_text, read, succeeded, written
 
 PLANAR = ("yamashita-rig", "yamashita-rig-counterweight", "walking-transplanter")
@@ -113,7 +113,7 @@ def test_json_has_the_documented_shape(name: str, model: str) -> None:
     assert ("energy" in content) == (model == "exact")
 
 
-@pytest.mark.parametrize("name", GAUGES)
+@pytest.mark.parametrize("name", few(GAUGES, {"yamashita-rig", "riding-transplanter"}))
 def test_the_default_model_is_force_and_moment(name: str) -> None:
     """However the support is held; in each command that has one."""
     speeds = "--speed", "100:120 rpm", "--speeds", "2"

@@ -24,6 +24,7 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.studies.evaluate import Routes, evaluator
 from support.batches import by_numpy
+from support.chosen import few
 from support.designs import Array, Number, design, drawn, geometry_of, named, paths_of
 from unit.mechanism.test_newton import only_loops, places_of, subject, with_position
 from unit.studies.test_evaluate import study
@@ -107,7 +108,7 @@ def test_a_study_tells_of_every_design_what_its_machine_does() -> None:
     assert len(set(expected)) > 1
 
 
-@pytest.mark.parametrize("angle", [0.3, -2.0, 7.0])
+@pytest.mark.parametrize("angle", few([0.3, -2.0, 7.0], {7.0}))
 def test_the_march_begins_where_the_file_tells_the_pose(angle: float, tmp_path: Path) -> None:
     points = places_of(eq.move(TRIAD, [angle]), "BCPQ")
     moved = replace(TRIAD, position=eq.mechanism.Position(angle, points))

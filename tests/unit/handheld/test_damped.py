@@ -230,9 +230,7 @@ def test_some_of_these_do_not_swing() -> None:
     assert sum(number > 0 for number in real.values()) >= 5
 
 
-@pytest.mark.parametrize(
-    "damping", few([50.0, 150.0, 160.0, 170.0, 200.0, 400.0], {50.0, 160.0, 400.0})
-)
+@pytest.mark.parametrize("damping", few([50.0, 150.0, 160.0, 170.0, 200.0, 400.0], {50.0, 400.0}))
 def test_a_pair_that_becomes_real(damping: float) -> None:
     """About critical damping of the first mode: told as one pair, or as two that do not swing."""
     tool = bare(
