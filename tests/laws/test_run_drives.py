@@ -22,6 +22,7 @@ from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.running.drives_blocks import run_blocks, run_headline, verdict
+from support.machines import make
 
 MASS, ARM, OWN = 2.0, 0.3, 0.05
 INERTIA = OWN + MASS * ARM**2
@@ -196,7 +197,6 @@ def test_links_that_reach_no_start_are_refused() -> None:
     "changes",
     [
         {"rows": (Row(), Row(phase=pi))},
-        {"joints": (JointProperties("joints.C", radius=0.01, friction=0.1),)},
     ],
 )
 def test_what_a_run_of_several_drives_lacks_is_refused(changes: Any) -> None:
@@ -229,3 +229,53 @@ def test_a_motor_of_a_further_drive_without_a_curve_is_refused() -> None:
         cranks(eq.Drive("left", 10.0), FurtherDrive("right", motor=half))
     assert str(first.value).startswith("drive.motor: ")
     assert str(further.value) == "drives[1].motor" + str(first.value).removeprefix("drive.motor")
+
+
+def beside(machine: eq.Machine) -> eq.Machine:
+    """A machine with one crank, and a crank of its own beside it that it does not feel."""
+    lone = eq.Link({"lone pivot": (0.0, 0.0)}, MASS, (ARM, 0.0), OWN)
+    return replace(
+        machine,
+        frame={**machine.frame, "lone pivot": (9.0, 9.0)},
+        links={**machine.links, "lone": lone},
+        drives=(FurtherDrive("lone", free=True),),
+        balance=None,
+        run=None,
+    )
+
+
+WORN = replace(
+    eq.load("slider-crank-engine"),
+    joints=(
+        JointProperties("joints.A", radius=0.02, friction=0.05, torsional_damping=1e-4),
+        JointProperties("joints.B", radius=0.02, friction=0.05),
+        JointProperties("joints.C", radius=0.01, friction=0.1),
+        JointProperties("joints.piston on frame", friction=0.1, guide_length=0.06, damping=2.0),
+    ),
+)
+ALONE = {
+    "worn": (WORN, 1e-6),
+    "loops": (eq.load("class-three"), 1e-8),
+    "couplings behind dyads": (make("geared_coupler", 1).machine, 1e-8),
+    "planet behind a dyad": (make("sun_and_planet", 2).machine, 1e-8),
+    "cam": (eq.load("cam-pusher"), 1e-6),
+}
+
+
+@pytest.mark.parametrize("name", ALONE)
+def test_a_crank_beside_another_runs_as_it_does_alone(name: str) -> None:
+    """By time and at all drives' angles, and by one crank's angle and tables over it."""
+    machine, close = ALONE[name]
+    drive = replace(machine.drive, acceleration=0.0, speeds=(), motor=None)
+    machine = replace(machine, drive=drive, support=None, rows=(), balance=None, run=None)
+    speed = abs(drive.speed)
+    one = eq.run(machine, 2.0 / speed, speed=speed)
+    both = beside(replace(machine, drive=replace(drive, free=True)))
+    found = eq.run(both, 2.0 / speed, speed=speed)
+    course = found.drives[machine.drive.link]
+    assert found.energy_error < 1e-9
+    assert course.angle[-1] == pytest.approx(one.crank_angle[-1], rel=close)
+    assert course.speed[-1] == pytest.approx(one.crank_speed[-1], rel=10 * close)
+    assert {*found.losses} == {*one.losses}
+    for joint, lost in found.losses.items():
+        assert lost[-1] == pytest.approx(one.losses[joint][-1], rel=1e-4)

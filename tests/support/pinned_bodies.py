@@ -2,7 +2,8 @@
 
 Each link has the place of its centre of mass and its angle, each pin two equations; a motion that
 is given is one more.  Multipliers follow from the second derivatives of all of them.  It knows
-nothing of drives, dyads or reduced inertias.
+nothing of drives, dyads or reduced inertias.  Dry friction in pins follows from the multipliers,
+put into itself until it stays.
 """
 
 from __future__ import annotations
@@ -26,8 +27,18 @@ Torques = Callable[
 states change by."""
 
 
+ROUNDS, SAME = 60, 1e-13
+
+
 class PinnedBodies:
-    """A machine of pins alone."""
+    """A machine of pins alone.
+
+    rubbing : pin -> coefficient of friction times radius, m.
+    slow : rad/s, below which friction changes its sense: as s (3 - s^2) / 2 with the share s of it.
+    """
+
+    rubbing: Mapping[str, float] = {}
+    slow = 0.0
 
     def __init__(self, machine: eq.Machine, given: Mapping[str, Given], torques: Torques) -> None:
         self.machine, self.given, self.torques = machine, given, torques
@@ -79,7 +90,28 @@ class PinnedBodies:
         size = len(right)
         whole = np.block([[np.diag(self.mass), jacobian.T], [jacobian, np.zeros((size, size))]])
         solved = np.linalg.solve(whole, np.concatenate([force, right]))
+        for _ in range(ROUNDS if self.rubbing else 0):
+            before = solved
+            pressing = np.linalg.norm(
+                solved[count : count + 2 * len(self.pairs)].reshape(-1, 2), axis=1
+            )
+            added = force + self.friction(pressing, v)
+            solved = np.linalg.solve(whole, np.concatenate([added, right]))
+            if np.max(np.abs(solved - before)) <= SAME * np.max(np.abs(solved)):
+                break
         return np.concatenate([v, solved[:count], changes])
+
+    def friction(self, pressing: Array, v: Array) -> Array:
+        """Generalized forces of friction in pins that are pressed by forces (P,), N."""
+        force = np.zeros(len(v))
+        turning = {name: v[3 * k + 2] for k, name in enumerate(self.names)} | {FRAME: 0.0}
+        for size, (label, first, second) in zip(pressing, self.pairs, strict=True):
+            share = np.clip((turning[first] - turning[second]) / self.slow, -1.0, 1.0)
+            torque = -self.rubbing.get(label, 0.0) * size * share * (3 - share**2) / 2
+            for sign, body in ((1.0, first), (-1.0, second)):
+                if body != FRAME:
+                    force[3 * self.names.index(body) + 2] += sign * torque
+        return force
 
     def start(self, angles: Mapping[str, float], speeds: Mapping[str, float]) -> Array:
         """State with all links at angles, placed from pin to pin, whose speeds meet the pins."""

@@ -11,7 +11,6 @@ handle several at once: `codegen.loops`.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache, cached_property
 from itertools import accumulate, chain, pairwise
@@ -22,7 +21,7 @@ import numpy as np
 from equipoise.codegen.emission import PYTHON, Lines, boundary, without_calls
 from equipoise.codegen.figures import KINDS, Gathered
 from equipoise.codegen.loops import WATCHED
-from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, FOLDED, Term, reached
+from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term, reached
 from equipoise.codegen.trace import AngleFunction, Array, Recurrence, Slot, Trace
 from equipoise.dataclass import dataclass
 
@@ -118,17 +117,6 @@ def on_arrays(outputs: Sequence[Any]) -> Callable[..., tuple[Any, ...]]:
     return _function(flat(outputs, arguments))
 
 
-def on_numbers(
-    outputs: Sequence[Any], arguments: Sequence[str]
-) -> Callable[..., tuple[float, ...]]:
-    """Outputs as a function of plain numbers, in the order of arguments; it raises an
-    `ArithmeticError` or a `ValueError` where there is no such number.
-    """
-    space = dict(PLAIN_NUMBERS)
-    exec(flat(outputs, arguments), space)
-    return space["states"]  # type: ignore[no-any-return]
-
-
 def flat(
     outputs: Sequence[Any], arguments: Iterable[str], names: Mapping[Any, str] = NO_NAMES
 ) -> str:
@@ -152,18 +140,6 @@ NUMPY = {
     for name in ("sqrt", "abs", "floor", "rint", "cos", "sin", "arctan2", "where", "array")
 } | {"min": np.minimum, "max": np.maximum, "pick": pick_from}
 """Functions that lines for arrays call."""
-
-
-PLAIN_NUMBERS: dict[str, Any] = {
-    name: FOLDED[name] for name in ("sqrt", "abs", "floor", "cos", "sin", "min", "max")
-} | {
-    "rint": FOLDED["round"],
-    "arctan2": math.atan2,
-    "where": lambda true, yes, no: yes if true else no,
-    "array": tuple,
-    "pick": lambda table, place: table[min(max(int(place), 0), len(table) - 1)],
-}
-"""Functions that lines for plain numbers call."""
 
 
 @cache

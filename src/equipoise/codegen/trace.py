@@ -90,17 +90,12 @@ class Trace:
         crank angles.
     running : link whose angle is taken from that of the base -> cosine of the angle between.
     alone : whether groups of loops start from the base at each crank angle, and nothing is carried.
-    own_ways : whether driven links go their own ways, so that no crank angle tells their angles.
     groups : of loops that were traced, by their references.
     carried, following : values of the crank angle before, and what they are after this one.
     """
 
     def __init__(
-        self,
-        linkage: Linkage,
-        paths: Collection[str] | None = None,
-        alone: bool = False,
-        own_ways: bool = False,
+        self, linkage: Linkage, paths: Collection[str] | None = None, alone: bool = False
     ) -> None:
         self.alone, self.groups = alone, dict[str, Any]()
         self.linkage, self.machine, self.graph = linkage, linkage.machine, Graph()
@@ -115,9 +110,6 @@ class Trace:
         self.shifted, self.loose = _changed(linkage, paths or ())
         self.varied = {*map(KeyPath.parse, paths or ())}
         self.late = {*_begun_elsewhere(self.machine, self.varied)}
-        if own_ways:
-            self.loose = {coupling.driven for coupling in self.machine.couplings}
-            self.shifted = {*self.machine.bodies}
         self.rotated: set[str] = set()
         steps = any(map(_counts, linkage.motion)) or _drives_on(self.machine)
         steps |= bool(self.loose or self.late)

@@ -16,6 +16,7 @@ from equipoise.running.run import BRAKE, DRIVE
 from equipoise.vibration.coupled import stall_note
 
 if TYPE_CHECKING:
+    from equipoise.running.drives_run import DrivesRun
     from equipoise.running.flywheel import Flywheel
     from equipoise.running.integration import Event
     from equipoise.running.run import Run
@@ -203,7 +204,7 @@ def _figures(run: Run) -> Iterator[str]:
             energy=format_quantity(cycle.energy_per_turn if gives else 0.0, "energy", "J"),
             power=format_quantity(cycle.power if gives else 0.0, "power", "W"),
         )
-    yield from _lossiest(run)
+    yield from lossiest(run)
     if run.electric is not None:
         yield say(
             "current of the motor: up to {most}, {last} at the end",
@@ -212,13 +213,13 @@ def _figures(run: Run) -> Iterator[str]:
         )
 
 
-def _lost(run: Run) -> tuple[dict[str, float], float]:
+def _lost(run: Run | DrivesRun) -> tuple[dict[str, float], float]:
     """Energy that friction has taken in each joint since the start, and in all, J."""
     each = {name: float(lost[-1]) for name, lost in run.losses.items()}
     return each, sum(each.values())
 
 
-def _lossiest(run: Run) -> Iterator[str]:
+def lossiest(run: Run | DrivesRun) -> Iterator[str]:
     """Which joint loses most."""
     each, total = _lost(run)
     if not total > 0:
@@ -232,7 +233,7 @@ def _lossiest(run: Run) -> Iterator[str]:
     )
 
 
-def _losses(run: Run) -> Iterator[Block]:
+def losses_table(run: Run | DrivesRun) -> Iterator[Block]:
     """What each joint has lost since the start."""
     each, total = _lost(run)
     if not total > 0:
@@ -259,7 +260,7 @@ def run_blocks(run: Run) -> Iterator[Block]:
         rows.append((say("heat in the motor"), Value(float(run.electric.heat[-1]))))
     columns = ("", Column(say("work"), "energy"))
     yield Table.of(say("Energy from the start to the end"), columns, rows)
-    yield from _losses(run)
+    yield from losses_table(run)
     error = f"{run.energy_error:.1e}"
     yield Text(say("Kinetic energy and work agree to {error} of the largest.", error=error))
     events = [

@@ -12,8 +12,9 @@ from equipoise.i18n import say, to_say
 from equipoise.quantities import PER_RPM, number
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
 from equipoise.running.blocks import EVENTS as OF_A_RUN
-from equipoise.running.blocks import MOST_EVENTS
+from equipoise.running.blocks import MOST_EVENTS, losses_table, lossiest
 from equipoise.running.drives_run import FREE, GIVEN, MOTOR
+from equipoise.running.friction import FRICTION
 from equipoise.running.sources import sources_of
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def run_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
     alone : whether nothing follows, as on a terminal.
     """
     yield Text(verdict(run), broken_if(run.end.kind in ("stall", "dead")))
-    if alone and (lines := tuple(_speeds(run))):
+    if alone and (lines := (*_speeds(run), *lossiest(run))):
         yield Facts(say("Last cycle"), lines)
 
 
@@ -79,6 +80,7 @@ def run_blocks(run: DrivesRun) -> Iterator[Block]:
         yield Facts(say("Last cycle"), lines)
     yield _drives(run)
     yield _energies(run)
+    yield from losses_table(run)
     error = f"{run.energy_error:.1e}"
     yield Text(say("Kinetic energy and work agree to {error} of the largest.", error=error))
     rows = [
@@ -128,7 +130,7 @@ def _drives(run: DrivesRun) -> Table:
 def _energies(run: DrivesRun) -> Table:
     """Work of everything that has acted, and what became of it."""
     labels = {source.key: say(source.label) for source in sources_of(run.machine)}
-    labels["brake"] = say("brake")
+    labels |= {"brake": say("brake"), FRICTION: say("friction")}
     labels |= {f"drives.{link}": say("drive of {link}", link=link) for link in run.drives}
     rows = [(labels[name], Value(float(work[-1]))) for name, work in run.work.items()]
     energy = run.kinetic_energy

@@ -10,37 +10,52 @@ outside, as a servo motor that follows the crank would: nothing but its own link
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from equipoise.codegen.drive_equations import DriveEquations, DriveState, drive_equations
 from equipoise.dataclass import dataclass
 from equipoise.errors import MassError, UsageError, at_place
 from equipoise.i18n import Note
-from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drivers import Driver
+from equipoise.running.drives_friction import DrivesFriction, FrictionOf
+from equipoise.running.drives_linkage import Applied, DrivesPose, References, pose_of
+from equipoise.running.sources import plus, sources_of
 from equipoise.signals import Array
 
 
 class DriveAngles(NamedTuple):
-    """Angles of all drives (N,), rad, and their rates.
+    """Angles of all drives (N, K), rad, and their rates.
 
-    crank_angle : rad.  speeds : rad/s.  slopes : by the crank angle, of given motions, 0 of others.
-    bends : what given motions accelerate while the crank turns evenly, rad/s2, 0 of others.
+    crank_angle : (K,) rad.  speeds : rad/s.  slopes : by the crank angle, of given motions, 0 of
+    others.  bends : what given motions accelerate while the crank turns evenly, rad/s2, 0 of
+    others.
     """
 
-    crank_angle: Any
-    angles: list[Any]
-    speeds: list[Any]
-    slopes: list[Any]
-    bends: list[Any]
+    crank_angle: Array
+    angles: Array
+    speeds: Array
+    slopes: Array
+    bends: Array
+
+
+class DriveState(NamedTuple):
+    """What acts in K states.
+
+    inertia : (N, N, K) of links and motors, kg m2.  forces : of each source (S, N, K), N m.
+    rubbing : friction in joints; None without.
+    """
+
+    pose: DrivesPose
+    inertia: Array
+    forces: Array
+    rubbing: FrictionOf | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +99,11 @@ class DrivesEquation:
         """Places of the drives whose angles follow from forces."""
         return tuple(k for k, drive in enumerate(self.drives) if drive.moves_freely)
 
+    @property
+    def free(self) -> list[int]:
+        """The same places, for arrays."""
+        return [*self.unknowns]
+
     @cached_property
     def given(self) -> tuple[int, ...]:
         """Places of those that follow their motion."""
@@ -95,18 +115,33 @@ class DrivesEquation:
         return 0 in self.unknowns and self.machine.crank_turns
 
     @cached_property
-    def program(self) -> DriveEquations:
-        """What the machine's steps come to."""
-        causes = {cause: f"{cause}s" for cause in ELEMENTS}
-        return drive_equations(assemble(self.machine), causes)
+    def linkage(self) -> Linkage:
+        """The machine in the order in which it is computed."""
+        return assemble(self.machine)
+
+    @cached_property
+    def sources(self) -> tuple[str, ...]:
+        """Keys of what acts beside the drives and friction in joints."""
+        return tuple(source.key for source in sources_of(self.machine))
+
+    @cached_property
+    def dyads(self) -> Mapping[str, str]:
+        """Inner joints of dyads, and the values in a state that are 0 in their dead positions."""
+        groups = self.linkage.groups
+        return {group.joint: group.margin for group in groups if group.margin and not group.through}
+
+    @cached_property
+    def friction(self) -> DrivesFriction | None:
+        """Friction in joints, where they have some."""
+        if not self.machine.rubs:
+            return None
+        return DrivesFriction(self.linkage, abs(self.machine.drive.speed) or 1.0)
 
     @cached_property
     def rotors(self) -> tuple[float, ...]:
-        """Moment of inertia that turns with each drive, as its link feels it, kg m2."""
+        """Moment of inertia of each drive's motor, as its link feels it, kg m2."""
         motors = (drive.motor for drive in self.drives)
-        each = [0.0 if motor is None else motor.ratio**2 * motor.inertia for motor in motors]
-        each[0] += self.machine.drive.flywheel
-        return tuple(each)
+        return tuple(0.0 if motor is None else motor.ratio**2 * motor.inertia for motor in motors)
 
     @property
     def nominal_speeds(self) -> list[float]:
@@ -123,99 +158,122 @@ class DrivesEquation:
         each = zip(self.drives, self.nominal_speeds, brakes, strict=True)
         return [Driver(drive.motor, speed, brake) for drive, speed, brake in each]
 
-    def placed(self, time: Any, angles: Sequence[Any], speeds: Sequence[Any]) -> DriveAngles:
-        """All drives at a time, s, or times, by the angles and speeds of the unknowns."""
-        pace = speeds[0] if self.by_crank else self.machine.drive.speed
+    def placed(self, time: Array, angles: Array, speeds: Array) -> DriveAngles:
+        """All drives at times (K,), s, by the angles and speeds of the unknowns, each (U, K)."""
+        pace = speeds[0] if self.by_crank else np.full(len(time), self.machine.drive.speed)
         crank = angles[0] if self.by_crank else self.start + pace * time
-        whole = DriveAngles(crank, *([0.0] * len(self.drives) for _ in range(4)))
-        for k, angle, speed in zip(self.unknowns, angles, speeds, strict=True):
-            whole.angles[k], whole.speeds[k] = angle, speed
+        whole = DriveAngles(crank, *np.zeros((4, len(self.drives), len(time))))
+        whole.angles[self.free], whole.speeds[self.free] = angles, speeds
         for k in self.given:
             angle, first, second = self.drives[k].turned(crank)
             whole.angles[k], whole.speeds[k] = angle, first * pace
             whole.slopes[k], whole.bends[k] = first, second * pace**2
         return whole
 
-    def at(self, time: float, since: float, where: DriveAngles) -> DriveState | None:
-        """The equations in a state; None where the machine cannot be.
+    def factors_at(self, time: Array, since: float) -> list[Array]:
+        """Factors (K,) of loads over time at times (K,), s, each on the line that it follows after
+        an instant `since`.
+        """
+        return [load.line_after(since)(time) for load in self.machine.timed_loads]
+
+    def at(self, time: Array, since: float, where: DriveAngles, near: References) -> DriveState:
+        """What acts in K states.
 
         since : an instant, s, after which loads over time follow the line that counts.
+        near : references in these states.
+
+        Raises
+        ------
+        MotionError, ModelError : the machine cannot be there.
         """
-        program = self.program
-        crank = np.array([where.crank_angle if program.loads else 0.0])
-        loads = (float(np.ravel(load(crank))[0]) for load in program.loads)
-        factors = (float(load.line_after(since)(time)) for load in self.machine.timed_loads)
-        numbers = (*where.angles, *where.speeds, *loads, *factors)
-        return program.at(*map(float, numbers))
+        pose = pose_of(self.linkage, where.crank_angle, where.angles, where.speeds, near)
+        pace = where.speeds[0] if self.by_crank else np.full(len(time), self.machine.drive.speed)
+        applied = Applied(pose, pace, self.factors_at(time, since))
+        forces = np.zeros((len(self.sources), len(self.drives), pose.count))
+        for k, key in enumerate(self.sources):
+            forces[k] = applied.force(key)
+        rubbing = None
+        if self.friction is not None:
+            acting = (applied.demands(key) for key in self.sources)
+            rubbing = self.friction.of(pose, plus(pose.turning, *acting))
+        return DriveState(pose, self.with_rotors(pose.inertia), forces, rubbing)
+
+    def with_rotors(self, inertia: Array) -> Array:
+        """Inertia (N, N, K), kg m2, of links with that of motors."""
+        return inertia + np.diag(self.rotors)[:, :, None]
 
     def accelerations(
-        self, state: DriveState, where: DriveAngles, torques: Sequence[float]
-    ) -> list[float]:
-        """Of all drives (N,), rad/s2, with torques (N,) on those that are unknown, N m."""
-        inertia = [[*row] for row in state.inertia]
-        for k, rotor in enumerate(self.rotors):
-            inertia[k][k] += rotor
-        left, right = [], []
-        for row in self.unknowns:
-            acting = sum(force[row] for force in state.forces) + torques[row] - state.bias[row]
-            bent = sum(inertia[row][k] * where.bends[k] for k in self.given)
-            left.append([inertia[row][k] for k in self.unknowns])
-            right.append(acting - bent)
-            if self.by_crank:
-                left[-1][0] += sum(inertia[row][k] * where.slopes[k] for k in self.given)
-        found = _solved(left, right)
-        whole = [*where.bends]
-        for k, value in zip(self.unknowns, found, strict=True):
-            whole[k] = value
+        self, state: DriveState, where: DriveAngles, torques: Array, settled: Array
+    ) -> tuple[Array, Array]:
+        """Of all drives (N, K), rad/s2, with torques (N, K) on those that are unknown, N m; and
+        friction (J, K) in joints, N m or N.
+
+        settled : (J,), as of `DrivesFriction.senses`.
+
+        Raises
+        ------
+        LockError : friction locks the machine.
+        """
+        free, inertia, count = self.free, state.inertia, torques.shape[1]
+        following = np.zeros((len(self.drives), len(free), count))
+        following[free, range(len(free))] = 1.0
         if self.by_crank:
-            for k in self.given:
-                whole[k] += where.slopes[k] * found[0]
-        return whole
+            following[:, 0] += where.slopes
+        left = np.sum(inertia[free][:, :, None] * following[None], axis=1)
+        acting = state.forces.sum(axis=0) + torques - state.pose.bias
+        acting = (acting - np.sum(inertia * where.bends, axis=1))[free]
+        if state.rubbing is None:
+            changes = _eliminated(left, acting[:, None])[:, 0]
+            return where.bends + np.sum(following * changes, axis=1), np.zeros((0, count))
+        ways = state.rubbing.ways[:, free].transpose(1, 0, 2)
+        both = _eliminated(left, np.concatenate([acting[:, None], ways], axis=1))
+        moved = np.sum(following[:, :, None] * both, axis=1)
+        whole, response = where.bends + moved[:, 0], moved[:, 1:]
+        efforts = state.rubbing.efforts(settled, whole, response)
+        return whole + np.sum(response * efforts, axis=1), efforts
 
-    def given_torques(self, state: DriveState, accelerations: Sequence[float]) -> dict[int, float]:
-        """Of the drives with a given motion, N m, by their places."""
-        each = {}
-        for k in self.given:
-            demand = sum(m * a for m, a in zip(state.inertia[k], accelerations, strict=True))
-            demand += self.rotors[k] * accelerations[k] + state.bias[k]
-            each[k] = demand - sum(force[k] for force in state.forces)
-        return each
+    def given_torques(self, state: DriveState, accelerations: Array, efforts: Array) -> Array:
+        """Of the drives with a given motion (G, N m) in K states (G, K)."""
+        given = [*self.given]
+        demand = np.einsum("ijk,jk->ik", state.inertia[given], accelerations)
+        demand = demand + state.pose.bias[given] - state.forces[:, given].sum(axis=0)
+        if state.rubbing is not None:
+            demand = demand - np.einsum("jgk,jk->gk", state.rubbing.ways[:, given], efforts)
+        return np.asarray(demand)
 
-    def energy(self, angles: Array, speeds: Array) -> Array:
-        """Kinetic energy (K,), J, of all drives at angles and speeds (N, K)."""
-        inertia = self.program.inertia(angles)
-        own = np.einsum("ik,ijk,jk->k", speeds, inertia, speeds)
-        return np.asarray((own + np.array(self.rotors) @ speeds**2) / 2)
+    def energy(self, angles: Array, speeds: Array, crank: Array, near: References) -> Array:
+        """Kinetic energy (K,), J, of all drives at angles and speeds (N, K).
+
+        crank : crank angles (K,), rad.  near : references there.
+        """
+        pose = pose_of(self.linkage, crank, angles, speeds, near)
+        inertia = self.with_rotors(pose.inertia)
+        return np.asarray(np.einsum("ik,ijk,jk->k", speeds, inertia, speeds) / 2)
 
 
-def _solved(left: list[list[float]], right: list[float]) -> list[float]:
-    """Solution of few linear equations by elimination, for which an inertia needs no search for
-    pivots.
+def _eliminated(left: Array, right: Array) -> Array:
+    """Solutions (U, R, K) of few equations (U, U, K) for R right-hand sides (U, R, K) by
+    elimination of all states at once, for which an inertia needs no search for pivots.
     """
-    count = len(right)
-    for k in range(count):
-        for row in range(k + 1, count):
-            share = left[row][k] / left[k][k]
-            left[row] = [own - share * other for own, other in zip(left[row], left[k], strict=True)]
-            right[row] -= share * right[k]
-    found = [0.0] * count
+    left, right = left.copy(), right.copy()
+    count = len(left)
+    for k in range(count - 1):
+        share = left[k + 1 :, k] / left[k, k]
+        left[k + 1 :] -= share[:, None] * left[k]
+        right[k + 1 :] -= share[:, None] * right[k]
     for k in reversed(range(count)):
-        rest = sum(left[k][j] * found[j] for j in range(k + 1, count))
-        found[k] = (right[k] - rest) / left[k][k]
-    return found
+        for j in range(k + 1, count):
+            right[k] -= left[k, j] * right[j]
+        right[k] /= left[k, k]
+    return right
 
 
 def _lacking(machine: Machine) -> Any:
     """What a run of several drives does not compute, with its place in the file."""
     if machine.rows:
         yield "rows", Note("a run of several drives computes one row; leave the others out")
-    if machine.rubs:
+    if machine.pushers:
         yield (
-            "joints",
-            Note(
-                "a run of several drives computes no friction in joints; leave it out, or give "
-                "[[resistances]] and [[torsion_dampers]]"
-            ),
+            "drive.stroke" if machine.drive.pushes else "drives",
+            Note("a run of several drives computes no strokes; leave them out"),
         )
-    if machine.in_soil:
-        yield "planting.soil", Note("a run of several drives computes no soil; leave it out")

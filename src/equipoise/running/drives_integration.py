@@ -1,49 +1,62 @@
 """The motion of several drives from a start on, integrated in time.
 
-SciPy's DOP853 goes from event to event: explicit and of order 8, because the equations are smooth
-and not stiff, and tolerances are tight; or Radau, where a motor's current is far quicker than the
-drives.  The work of everything that acts is integrated on the way, so that their sum can be held
-against the kinetic energy of the linkage itself.
+Spans of time follow each other, each as long as polynomials resolve the motion in it, up to what
+happens next: what is watched for are functions that fall below 0, whose zeros are sought on the
+polynomials.  The work of everything that acts is integrated on the way, so that their sum can be
+held against the kinetic energy of the linkage itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from math import inf, nan, pi
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from math import inf, pi
+from typing import NamedTuple
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.errors import ResponseError
+from equipoise.errors import LockError, ModelError, ResponseError
 from equipoise.i18n import Note
-from equipoise.running.drives_equation import DriveAngles, DrivesEquation
+from equipoise.running.drives_equation import DrivesEquation
+from equipoise.running.drives_friction import leaving, settled_at
+from equipoise.running.drives_linkage import References, cannot_be_assembled, references_at
+from equipoise.running.drives_rates import DrivesRates, Others
 from equipoise.running.equation import just_after
 from equipoise.running.integration import Limits
+from equipoise.running.tabulated import NODES, POINTS
+from equipoise.running.time_collocation import Span, Values, solved_span, unresolved
 from equipoise.signals import Array
 
-RELATIVE, ABSOLUTE = 1e-11, 1e-13
-"""Tolerances of a step, over the states and over their usual sizes."""
-BETWEEN = 4
-"""Instants read in a step."""
-MOST_RATES = 200_000
-"""Of the motion, computed in a run: half a minute; a turn takes some thousands."""
+RESOLVED = 1e-9
+"""Share of their sizes that the last coefficients of states, and of works, may be in a span."""
+ORDER = 12
+"""By which power of its width, about, the last coefficients of a span grow."""
+FIRST_WIDTH = 0.05
+"""rad at the usual speed, in the first span."""
+SHORTEST = 1e-12
+"""rad at the usual speed: a span in which nothing moves, over what changes suddenly."""
+MOST_SPANS = 20_000
+"""Of a run: some minutes; a turn takes some ten."""
+ROWS = np.linspace(-1.0, 1.0, 33)[1:]
+"""Places of a span at which the track has its rows, from -1 to 1: lines between them with the right
+angles and speeds at both ends are off by less than the integration is."""
+LOOKED = 48
+"""Parts of a span, in each of which it is seen whether something happens."""
 STEADY = 1e-6
 """Share by which speeds may differ from those a cycle before, in a steady state."""
 AT_REST = 1e-6
 """Share of the usual speed, and of what gives it in a radian, below which a machine stands."""
 DEAD = 1e-6
 """Squared sine of a transmission angle at which the motion is followed no further: the links of the
-dyad run through their dead position so fast that steps become too short."""
-BRAKED = 1e-3
-"""Share of the usual speed near which a brake changes its sense."""
+dyad run through their dead position so fast that spans become too short."""
 AT_EDGE = 1e-9
 """rad, within which crank angles are the same."""
-STIFF = 1e-4
-"""rad at the usual speed within which a motor's current follows the speed, below which an explicit
-method takes thousands of steps in a turn."""
-ELECTRIC = 3
-"""Values of a motor's circuit: its current, and two works."""
+NEAR_REST_TIMES = 3.0
+"""How often the time in which a joint is as fast as near rest fits into a span from there on."""
+ROUNDING = 1e-15
+"""Share of a time within which a span ends at it."""
+INSIDE = 1e-6
+"""Share of the rate near rest, by which a joint has to be slower for it to be known."""
 
 
 @dataclass(frozen=True)
@@ -62,266 +75,308 @@ class DriveEvent:
     of: str = ""
 
 
-class Acting(NamedTuple):
-    """What acts in a state.
+class Instants(NamedTuple):
+    """A span at K places.
 
-    accelerations, torques : of all drives (N,), rad/s2 and N m.  others : torques (N,) on them of
-        each source, and of a brake, N m.
+    times : (K,) s.  states, rates : (n, K) and their rates by time.
     """
 
-    where: DriveAngles
-    accelerations: list[float]
-    torques: list[float]
-    others: list[list[float]]
+    times: Array
+    states: Array
+    rates: Array
+    others: Others
+
+
+class Track(NamedTuple):
+    """Rows of the solution at K instants.
+
+    time : (K,) s.  states : (n, K).  quadratures : (Q, K).  torques : of all drives (N, K), N m.
+    references : (..., K).
+    """
+
+    time: Array
+    states: Array
+    quadratures: Array
+    torques: Array
+    references: References
+
+
+class Watch(NamedTuple):
+    """Something that may happen: its kind, and what of; it does where `left` falls below 0."""
+
+    kind: str
+    of: str
+    left: Callable[[Instants], Array]
 
 
 class DrivesIntegration:
     """Follow the drives of a machine.
 
-    track : time and state at the instants of the solution.  torques : of all drives there, N m.
-    marks : times, s, at which a cycle of the crank began.
+    tracks : the solution, part by part.  marks : times, s, at which a cycle of the crank began.
     on_turns : called with the turns of the crank from the start, as often as these may change.
-
-    The state has angles and speeds of the unknowns, current and two works of each motor with a
-    circuit, and works of all that acts, in the order of `works`.
     """
 
     def __init__(self, equation: DrivesEquation, limits: Limits) -> None:
         self.equation, self.limits = equation, limits
-        self.drivers = equation.drivers()
-        self.usual = abs(equation.machine.drive.speed) or 1.0
-        self.circuits = [k for k, item in enumerate(self.drivers) if item.circuit is not None]
-        braked = ["brake"] if self.drivers[0].brake and 0 in equation.unknowns else []
-        turned = [
-            drive.link
-            for k, drive in enumerate(equation.drives)
-            if drive.motor is not None or k in equation.given
-        ]
-        self.works = (
-            *equation.program.sources, *braked, *(f"drives.{link}" for link in turned)
-        )  # fmt: skip
-        self.track: list[tuple[float, list[float]]] = []
-        self.torques: list[list[float]] = []
+        self.rates = DrivesRates(equation)
+        self.drivers, self.usual = self.rates.drivers, self.rates.usual
+        self.tracks: list[Track] = []
         self.events: list[DriveEvent] = []
         self.marks: list[float] = []
-        self.rates_left = MOST_RATES
-        self.since = 0.0
         self.on_turns: Callable[[float], None] = lambda turns: None
-
-    # -- the state ---------------------------------------------------------------------------------
-
-    @property
-    def _count(self) -> int:
-        return len(self.equation.unknowns)
-
-    def where(self, time: Any, state: Sequence[Any]) -> DriveAngles:
-        """Angles of all drives in a state."""
-        count = self._count
-        return self.equation.placed(time, state[:count], state[count : 2 * count])
-
-    def _crank_angle(self, time: float, state: Sequence[float]) -> float:
-        return float(self.where(time, state).crank_angle)
-
-    def _driving(self, time: float, where: DriveAngles, state: Sequence[float]) -> list[float]:
-        """Torques (N,) of motors, N m; 0 of drives without one."""
-        torques = [0.0] * len(self.drivers)
-        for k, driver in enumerate(self.drivers):
-            if not driver.on:
-                continue
-            if driver.lags:
-                torques[k] = float(driver.torque_of(np.asarray(self._current(k, state))))
-                continue
-            each = (where.speeds[k], where.angles[k], time)
-            torques[k] = float(driver.torque_at(*map(np.asarray, each)))
-        return torques
-
-    def _current(self, drive: int, state: Sequence[float]) -> float:
-        return float(state[self.circuit_place(drive)][0])
-
-    def circuit_place(self, drive: int) -> slice:
-        """Of the values of a motor's circuit in the state."""
-        first = 2 * self._count + ELECTRIC * self.circuits.index(drive)
-        return slice(first, first + ELECTRIC)
-
-    def _braking(self, where: DriveAngles) -> float:
-        """Torque of the brake on the first drive, N m, which changes its sense smoothly."""
-        speed, near = where.speeds[0], BRAKED * self.usual
-        return float(-self.drivers[0].holding() * speed / (speed**2 + near**2) ** 0.5)
-
-    def _acting(self, time: float, state: Sequence[float]) -> Acting | None:
-        """What acts in a state; None where the machine cannot be."""
-        equation, where = self.equation, self.where(time, state)
-        equations = equation.at(time, just_after(self.since), where)
-        if equations is None:
-            return None
-        torques = self._driving(time, where, state)
-        others = [[*force] for force in equations.forces]
-        total = [*torques]
-        if "brake" in self.works:
-            others.append([self._braking(where), *[0.0] * (len(torques) - 1)])
-            total[0] += others[-1][0]
-        accelerations = equation.accelerations(equations, where, total)
-        for k, torque in equation.given_torques(equations, accelerations).items():
-            torques[k] = torque
-        return Acting(where, accelerations, torques, others)
-
-    def rates(self, time: float, state: Any) -> list[float]:
-        """Of the state by time; NaN of what a step tries beyond a dead position."""
-        self.rates_left -= 1
-        if self.rates_left < 0:
-            raise ResponseError(
-                Note("the motion takes too long to be followed; give a shorter time or fewer turns")
-            )
-        values = state.tolist()
-        acting = self._acting(time, values) if np.isfinite(values).all() else None
-        if acting is None:
-            return [nan] * len(values)
-        where, accelerations, torques, others = acting
-        rates = [*values[self._count : 2 * self._count]]
-        rates += [accelerations[k] for k in self.equation.unknowns]
-        for k in self.circuits:
-            driver, speed = self.drivers[k], np.asarray(where.speeds[k])
-            current = self._current(k, values) if driver.lags else float(driver.current(speed))
-            rates += driver.electric_rates(np.asarray(current), speed).tolist()
-        powers = [
-            sum(torque * speed for torque, speed in zip(other, where.speeds, strict=True))
-            for other in others
-        ]
-        powers += [
-            torques[k] * where.speeds[k]
-            for k, drive in enumerate(self.equation.drives)
-            if f"drives.{drive.link}" in self.works
-        ]
-        return [*rates, *powers]
 
     # -- from event to event -----------------------------------------------------------------------
 
     def follow(self, angles: Sequence[float], speeds: Sequence[float]) -> None:
         """Run from angles, rad, and speeds, rad/s, of the unknowns until something ends it."""
-        equation = self.equation
-        state = [*angles, *speeds]
+        equation, rates = self.equation, self.rates
         for place, k in enumerate(equation.unknowns):
             self.drivers[k].begins(angles[place], speeds[place])
-        for k in self.circuits:
-            driver = self.drivers[k]
-            lasting = float(driver.current(np.asarray(speeds[equation.unknowns.index(k)])))
-            state += [0.0 if driver.lags else lasting, 0.0, 0.0]
-        state += [0.0] * len(self.works)
-        self.start = self._crank_angle(0.0, state)
+        state = np.array([*angles, *speeds, *[0.0] * len(rates.lagging)])
         ramps = (driver.ramp_end for driver in self.drivers if driver.on)
         timed = {time for load in equation.machine.timed_loads for time in load.times}
         self.corners = sorted({*ramps, *timed} - {0.0})
+        self._observe(0.0, state)
+        near = references_at(equation.linkage, equation.start)
+        values = self._first_values(state, near)
+        self.sizes, works = rates.sizes(self._usual_energy(state, near))
+        self.works = works
+        self.start = self.mark = self._crank_angle(0.0, state)
         self._mark_span = 2 * pi * equation.machine.turns_given
-        self.mark = self.start
-        if min((left(0.0, np.array(state)) for left in self._margins), default=1.0) < 0:
-            raise ResponseError(
-                Note(
-                    "the links cannot be assembled at the angles of the drives at the start"
-                ).about("links-cannot-be-joined-at-any-crank-angle")
-            )
-        self._record(0.0, state)
-        self._at_mark: list[float] | None = None
+        gained = np.zeros(len(works))
+        self._record(Span(0.0, 1.0, state, gained, values), np.array([-1.0]))
+        self.width = FIRST_WIDTH / self.usual
+        self._at_mark: Array | None = None
         self._begin_cycle(0.0, state)
-        if self._activity(0.0, state) < AT_REST:
+        if self._activity(self._look_at(0.0, state, values))[0] < AT_REST:
             self._note(self._rest, 0.0, state)
             return
-        time: float = 0.0
-        while state:
-            time, state = self._span(time, state)
-            self.since = time
+        self._spans(state, gained, values)
 
-    def _record(self, time: float, state: Sequence[float]) -> None:
-        acting = self._acting(time, state)
-        self.track.append((time, [*state]))
-        self.torques.append([nan] * len(self.drivers) if acting is None else acting.torques)
+    def _spans(self, state: Array, gained: Array, first: Values) -> None:
+        """From a state and quadratures, with what is known there, until something ends the run."""
+        time, before, goes_on = 0.0, (Span(0.0, 1.0, state, gained, first), -1.0), True
+        for _ in range(MOST_SPANS):
+            self.rates.since = time
+            self._observe(time, state)
+            until, last = min((moment, kind) for kind, moment in self._times() if moment > time)
+            span = self._span((time, until), (state, gained), before)
+            place, watch = self._first_in(span)
+            at = np.array([place])
+            self._record(span, np.append(ROWS[place > ROWS], place))
+            self._note_reversals(span, place)
+            ended = place == 1.0 and until - span.time(1.0) <= ROUNDING * span.time(1.0)
+            time = until if ended else float(span.time(place))
+            state, gained = span.states(at)[:, 0], span.quadratures(at)[:, 0]
+            self.on_turns(abs(self._crank_angle(time, state) - self.start) / (2 * pi))
+            before = span, place
+            if watch is None and ended:
+                watch = Watch(last, "", lambda _: np.zeros(0))
+            if watch is not None and watch.kind == "settled":
+                self._settle(self.rates.rubbing.index(watch.of), before)
+            elif watch is not None:
+                goes_on, state = self._happens(watch, time, state, gained)
+            if not goes_on:
+                self.events.sort(key=lambda event: event.time)
+                return
+        raise ResponseError(
+            Note("the motion takes too long to be followed; give a shorter time or fewer turns")
+        )
+
+    def _first_values(self, state: Array, near: References) -> Values:
+        """What is known at the start, at all nodes of a span that does not move."""
+        nodes = {name: np.repeat(value, NODES, axis=-1) for name, value in near.items()}
+        values = self.rates.at(np.zeros(NODES), np.repeat(state[:, None], NODES, axis=1), nodes)
+        if values is None and isinstance(self.rates.failure, ModelError | LockError):
+            raise self.rates.failure
+        if values is None or np.any(self.rates.others(values.others).margins < DEAD):
+            raise cannot_be_assembled()
+        friction = self.equation.friction
+        if friction is not None:
+            slow = friction.slow
+            self.rates.settled = settled_at(
+                self.rates.others(values.others).joint_rates[:, 0], slow
+            )
+        return values
+
+    def _span(
+        self, times: tuple[float, float], start: tuple[Array, Array], before: tuple[Span, float]
+    ) -> Span:
+        """The motion over a span from a time on, up to another at most, s.
+
+        start : states and quadratures.  before : the last span, and its place up to which it went.
+        """
+        time, until = times
+        self._check_settled(before)
+        most = min(until - time, self._time_near_rest(before))
+        shortest, tried = SHORTEST / self.usual, 0
+        while True:
+            width = min(self.width, most)
+            nodes = time + width * (POINTS + 1) / 2
+            gain, near = before[0].beyond(before[1], nodes)
+            guess = start[0][:, None] + gain, near
+            span = solved_span(self.rates.at, (time, width), start, guess, self.sizes)
+            if width <= shortest:
+                return span or self._passed(time, width, start, near)
+            if span is None:
+                self.width = width / 4
+                continue
+            share = RESOLVED / max(unresolved(span, self.sizes, self.works), 1e-30)
+            change = 0.9 * share ** (1 / ORDER)
+            if share >= 1:
+                if width == self.width or change > 1:
+                    self.width = max(self.width * min(change, 1.0), width * min(change, 3.0))
+                return span
+            tried += 1
+            self.width = width * min(max(change, 0.2), 0.7 / tried)
+
+    def _passed(
+        self, time: float, width: float, start: tuple[Array, Array], near: References
+    ) -> Span:
+        """A span so short that nothing moves in it, over what changes suddenly.
+
+        Raises
+        ------
+        ResponseError : the machine cannot be beyond.
+        """
+        state, _ = start
+        values = self.rates.at(
+            time + width * (POINTS + 1) / 2, np.repeat(state[:, None], NODES, axis=1), near
+        )
+        if values is not None:
+            return Span(time, width, *start, values)
+        if isinstance(self.rates.failure, ModelError):
+            raise ResponseError(
+                Note(
+                    "after {time:g} s an element leaves the range for which it is given; give it a "
+                    "wider one, or a shorter time",
+                    time=time,
+                )
+            )
+        if isinstance(self.rates.failure, LockError):
+            raise self.rates.failure
+        raise ResponseError(Note("the motion cannot be integrated beyond {t:g} s", t=time))
+
+    def _first_in(self, span: Span) -> tuple[float, Watch | None]:
+        """Place in a span at which something happens first, and what; 1 where nothing does."""
+        places = np.linspace(-1.0, 1.0, LOOKED + 1)
+        seen = self._look(span, places)
+        result: tuple[float, Watch | None] = (1.0, None)
+        for watch in self._watched():
+            ends = self._fall(span, watch.left, places, watch.left(seen))
+            if ends is not None and ends[0] < result[0]:
+                place = self._zero(span, watch.left, ends)
+                if place < result[0] or result[1] is None:
+                    result = place, watch
+        return result
+
+    def _fall(
+        self, span: Span, left: Callable[[Instants], Array], places: Array, values: Array
+    ) -> Array | None:
+        """Two places of a span between which a function with values (K,) at places (K,) first falls
+        below 0, be it between two of these alone; None where it does not.
+        """
+        falls = (values[1:] < 0) & (values[:-1] >= 0)
+        first = int(np.argmax(falls)) if np.any(falls) else len(falls)
+        before, at, after = values[:-2], values[1:-1], values[2:]
+        curved = before - 2 * at + after
+        dips = (
+            (at >= 0) & (before >= at) & (after >= at) & (8 * at * curved < (after - before) ** 2)
+        )
+        for k in np.flatnonzero(dips[:first]):
+            lowest = places[k + 1] + (before[k] - after[k]) / (2 * curved[k]) * (2 / LOOKED)
+            if left(self._look(span, np.array([lowest])))[0] < 0:
+                return np.array([places[k], lowest])
+        return places[first : first + 2] if first < len(falls) else None
+
+    def _zero(self, span: Span, left: Callable[[Instants], Array], ends: Array) -> float:
+        """Place between two at which a function of the instants of a span is 0."""
+        from scipy.optimize import brentq
+
+        def at(place: float) -> float:
+            return float(left(self._look(span, np.array([place])))[0])
+
+        return float(brentq(at, *ends.tolist(), xtol=1e-15))
+
+    def _note_reversals(self, span: Span, until: float) -> None:
+        """Note where drives turn back in a span, up to a place."""
+        places = np.linspace(-1.0, until, LOOKED + 1)
+        count, unknowns = self.rates.count, self.equation.unknowns
+        speeds = self._look(span, places).states[count : 2 * count]
+        for row, drive in enumerate(unknowns):
+            for k in np.flatnonzero(speeds[row, 1:] * speeds[row, :-1] < 0):
+                at = self._zero(span, _value(count + row), places[k : k + 2])
+                now = self._look(span, np.array([at]))
+                if abs(now.rates[count + row, 0]) > AT_REST * self.usual**2:
+                    link = self.equation.drives[drive].link
+                    self._note("reversal", float(now.times[0]), now.states[:, 0], link)
+
+    def _record(self, span: Span, places: Array) -> None:
+        self.tracks.append(
+            Track(
+                span.time(places),
+                span.states(places),
+                span.quadratures(places),
+                self.rates.others(span.others(places)).torques,
+                span.references(places),
+            )
+        )
+
+    def _look(self, span: Span, places: Array) -> Instants:
+        others = self.rates.others(span.others(places))
+        return Instants(span.time(places), span.states(places), span.rates(places), others)
+
+    def _look_at(self, time: float, state: Array, values: Values) -> Instants:
+        """A state, with values at nodes that are all the same."""
+        others = self.rates.others(values.others[:, :1])
+        return Instants(np.array([time]), state[:, None], values.rates[:, :1], others)
+
+    def _crank_angle(self, time: float, state: Array) -> float:
+        return float(self.rates.where(np.array([time]), state[:, None]).crank_angle[0])
+
+    def _usual_energy(self, state: Array, near: References) -> float:
+        """Kinetic energy at the start with all drives at the usual speed, J."""
+        where = self.rates.where(np.zeros(1), state[:, None])
+        speeds = np.full_like(where.angles, self.usual)
+        return float(self.equation.energy(where.angles, speeds, where.crank_angle, near)[0]) or 1.0
+
+    # -- what may happen ---------------------------------------------------------------------------
 
     @property
     def _rest(self) -> str:
         return "stall" if any(driver.on for driver in self.drivers) else "standstill"
 
-    def _span(self, time: float, state: list[float]) -> tuple[float, list[float]]:
-        """On to what happens next; no state where the run is over."""
-        from scipy.integrate import solve_ivp
+    def _observe(self, time: float, state: Array) -> None:
+        """Set which servo motors are at their limits."""
+        where = self.rates.where(np.array([time]), state[:, None])
+        for k, driver in enumerate(self.drivers):
+            if driver.controlled:
+                driver.observe(float(where.speeds[k, 0]), float(where.angles[k, 0]), time)
 
-        until, last = min((moment, kind) for kind, moment in self._times() if moment > time)
-        kinds, events = zip(*self._watched(time), strict=True)
-        done = solve_ivp(
-            self.rates,
-            (time, until),
-            np.array(state),
-            "Radau" if self._is_stiff else "DOP853",
-            dense_output=True,
-            events=events,
-            rtol=RELATIVE,
-            atol=ABSOLUTE * self._sizes(len(state)),
-        )
-        if not done.success:
-            raise ResponseError(
-                Note("the motion cannot be integrated beyond {t:g} s", t=float(done.t[-1]))
-            )
-        shares = np.arange(1, BETWEEN + 1) / BETWEEN
-        for begin, end in zip(done.t[:-1], done.t[1:], strict=True):
-            for moment in (begin + (end - begin) * shares[:-1]).tolist():
-                self._record(moment, done.sol(moment).tolist())
-            self._record(float(end), done.sol(end).tolist())
-        time, state, kind = float(done.t[-1]), done.y[:, -1].tolist(), last
-        for hits, (name, of) in zip(done.t_events, kinds, strict=True):
-            if name == "reversal":
-                turned = ((moment, done.sol(moment).tolist()) for moment in hits.tolist())
-                self.events += [item for at in turned if (item := self._turned_back(of, *at))]
-            elif hits.size:
-                kind = name
-        self.events.sort(key=lambda event: event.time)
-        self.on_turns(abs(self._crank_angle(time, state) - self.start) / (2 * pi))
-        return time, self._happens(self._reached(kind, state), time, state)
+    def _check_settled(self, before: tuple[Span, float]) -> None:
+        """Joints that are slow are not settled, whatever has been missed."""
+        if (friction := self.equation.friction) is None:
+            return
+        others = self.rates.others(before[0].others(np.array([before[1]])))
+        left = leaving(others.joint_rates, friction.slow, self.rates.settled)[:, 0]
+        slow = (self.rates.settled != 0) & (left < -INSIDE)
+        self.rates.settled = np.where(slow, 0.0, self.rates.settled)
 
-    def _reached(self, kind: str, state: Sequence[float]) -> str:
-        """What happens in a state, where several things do so at the same crank angle."""
-        if kind != "mark" or not self.equation.by_crank:
-            return kind
-        return next(
-            (
-                name
-                for name, way, origin in self._crank_ways()
-                if name != "mark" and way - abs(state[0] - origin) < AT_EDGE
-            ),
-            kind,
-        )
-
-    def _turned_back(self, link: str, time: float, state: Sequence[float]) -> DriveEvent | None:
-        """That a drive turns back; None of one that starts, or stands still but for rounding."""
-        acting = self._acting(time, state)
-        place = [drive.link for drive in self.equation.drives].index(link)
-        if time == 0.0 or acting is None:
-            return None
-        if abs(acting.accelerations[place]) <= AT_REST * self.usual**2:
-            return None
-        return DriveEvent("reversal", time, float(acting.where.crank_angle), link)
-
-    def _sizes(self, count: int) -> Array:
-        """Usual sizes of a state."""
-        energy = float(self.equation.energy(*self._arrays()).max()) or 1.0
-        sizes = [1.0] * self._count + [self.usual] * self._count
-        for k in self.circuits:
-            circuit = self.drivers[k].circuit
-            assert circuit is not None
-            sizes += [circuit.voltage / circuit.resistance, energy, energy]
-        return np.array([*sizes, *[energy] * (count - len(sizes))])
-
-    def _arrays(self) -> tuple[Array, Array]:
-        """Angles of the first instant, and usual speeds, of all drives (N, 1)."""
-        where = self.where(*self.track[0])
-        return np.array(where.angles)[:, None], np.full((len(where.angles), 1), self.usual)
-
-    @property
-    def _is_stiff(self) -> bool:
-        return min(driver.current_lag for driver in self.drivers) * self.usual < STIFF
+    def _time_near_rest(self, before: tuple[Span, float]) -> float:
+        """How long a span may be, s, to see how friction of joints near rest changes its sense."""
+        friction, near_rest = self.equation.friction, self.rates.settled == 0
+        if friction is None or not np.any(near_rest):
+            return inf
+        changes = self.rates.others(before[0].changes(before[1])[:, None]).joint_rates[:, 0]
+        times = friction.slow / np.maximum(np.abs(changes), 1e-300)
+        return NEAR_REST_TIMES * float(np.min(times[near_rest]))
 
     def _times(self) -> Iterator[tuple[str, float]]:
         """Moments, s, at which something is to happen."""
         limits, pace = self.limits, abs(self.equation.machine.drive.speed)
         yield "time", limits.time
-        yield "corner", next((time for time in self.corners if time > self.since), inf)
+        since = self.rates.since
+        yield "corner", next((time for time in self.corners if time > since), inf)
         on = any(driver.on for driver in self.drivers)
         yield "off", limits.off_time if on else inf
         if self.equation.by_crank or not pace:
@@ -331,21 +386,45 @@ class DrivesIntegration:
         if self.equation.given:
             yield "mark", (abs(self.mark - self.start) + self._mark_span) / pace
 
-    def _watched(self, time: float) -> Iterator[tuple[tuple[str, str], Any]]:
-        """What may happen on the way: its kind and what of, and a function that is 0 there."""
-        count, equation = self._count, self.equation
-        for k, place in enumerate(equation.unknowns, count):
-            yield ("reversal", equation.drives[place].link), _value(k)
-        for joint, left in zip(equation.program.dyads, self._margins, strict=True):
-            yield ("dead", joint), _ending(left)
-        for k, what in enumerate(equation.program.ranges):
-            yield ("range", what), _ending(self._left(k, ranges=True))
+    def _watched(self) -> Iterator[Watch]:
+        """What may happen on the way."""
+        equation = self.equation
+        for k, joint in enumerate(equation.dyads):
+            yield Watch("dead", joint, lambda now, k=k: now.others.margins[k] - DEAD)  # type: ignore[misc]
+        for k, driver in enumerate(self.drivers):
+            if driver.controlled:
+                yield Watch("limit", equation.drives[k].link, self._below_limit(k))
+        for k, joint in enumerate(self.rates.rubbing):
+            yield Watch("settled", joint, self._settled_left(k))
         if not equation.given:
-            yield ("rest", ""), _ending(lambda t, y: self._activity(t, y.tolist()) - AT_REST)
-        if not equation.by_crank:
-            return
-        for kind, way, origin in self._crank_ways():
-            yield (kind, ""), _ending(_way_left(way, origin))
+            yield Watch("rest", "", lambda now: self._activity(now) - AT_REST)
+        if equation.by_crank:
+            for kind, way, origin in self._crank_ways():
+                yield Watch(kind, "", _way_left(way, origin))
+
+    def _below_limit(self, drive: int) -> Callable[[Instants], Array]:
+        """How far a servo motor is from where it comes to its limit of torque, or from it."""
+
+        def left(now: Instants) -> Array:
+            where = self.rates.where(now.times, now.states)
+            beyond = self.drivers[drive].beyond(where.speeds[drive], where.angles[drive], now.times)
+            return -beyond
+
+        return left
+
+    def _settled_left(self, joint: int) -> Callable[[Instants], Array]:
+        """How far a joint with friction is from where the sense of its motion begins to change, or
+        has changed.
+        """
+        friction = self.equation.friction
+        assert friction is not None
+        own, slow = slice(joint, joint + 1), friction.slow
+
+        def left(now: Instants) -> Array:
+            rates = now.others.joint_rates[own]
+            return np.asarray(leaving(rates, slow[own], self.rates.settled[own])[0])
+
+        return left
 
     def _crank_ways(self) -> Iterator[tuple[str, float, float]]:
         """What is to happen after a way of the crank, rad, from an angle on."""
@@ -356,120 +435,125 @@ class DrivesIntegration:
         if on and self.limits.off_turns < inf:
             yield "off", self.limits.off_turns * 2 * pi, self.start
 
-    @property
-    def _margins(self) -> list[Callable[[float, Any], float]]:
-        """How far each dyad is from its dead position."""
-        return [self._left(number) for number in range(len(self.equation.program.dyads))]
-
-    def _left(self, number: int, ranges: bool = False) -> Callable[[float, Any], float]:
-        """How far a dyad is from its dead position, or a range from its end."""
-
-        def left(time: float, state: Any) -> float:
-            where = self.where(time, state.tolist())
-            equations = self.equation.at(time, just_after(self.since), where)
-            if equations is None:
-                return -1.0
-            return equations.ranges[number] if ranges else equations.margins[number] - DEAD
-
-        return left
-
-    def _activity(self, time: float, state: Sequence[float]) -> float:
-        """How far a machine is from a rest that lasts: speeds and accelerations over usual ones, or
-        what a current is still to grow; 1 while a load or a reference changes with time.
+    def _activity(self, now: Instants) -> Array:
+        """How far a machine is (K,) from a rest that lasts: speeds and accelerations over usual
+        ones, or what a current is still to grow; 1 while a load or a reference changes with time.
         """
-        acting = self._acting(time, state)
-        if acting is None or self.equation.given or (self.corners and self.corners[-1] > time):
-            return 1.0
-        speeds = acting.where.speeds
-        sizes: list[float] = [abs(speed) / self.usual for speed in speeds]
-        sizes += [abs(value) / self.usual**2 for value in acting.accelerations]
-        for k in self.circuits:
+        if self.equation.given or (self.corners and self.corners[-1] > now.times[0]):
+            return np.ones(len(now.times))
+        count = self.rates.count
+        sizes = [*np.abs(now.states[count : 2 * count]) / self.usual]
+        sizes += [*np.abs(now.rates[count : 2 * count]) / self.usual**2]
+        where = self.rates.where(now.times, now.states)
+        for k in self.rates.lagging:
             driver = self.drivers[k]
             if driver.lags and driver.circuit is not None:
-                lasting = float(driver.current(np.asarray(speeds[k])))
-                short = abs(lasting - self._current(k, state))
+                lasting = driver.current(where.speeds[k])
+                short = np.abs(lasting - self.rates.current(k, now.states, where))
                 sizes.append(short * driver.circuit.resistance / driver.circuit.voltage)
-        return max(sizes)
+        return np.asarray(np.max(sizes, axis=0))
 
-    def _happens(self, kind: str, time: float, state: list[float]) -> list[float]:
-        """Change what an event changes; the state to go on from, empty where the run is over."""
+    # -- what happens ------------------------------------------------------------------------------
+
+    def _happens(
+        self, watch: Watch, time: float, state: Array, gained: Array
+    ) -> tuple[bool, Array]:
+        """Change what an event changes; whether the run goes on, and from which state."""
+        kind = self._reached(watch.kind, state)
         if kind == "corner":
             self.corners = [corner for corner in self.corners if corner > just_after(time)]
-            return state
+            return True, state
+        if kind == "limit":
+            self._limited(watch.of, time, state)
+            return True, state
         if kind in ("mark", "turns") and abs(self._since_mark(time, state)) < AT_EDGE:
             goes_on = self._begin_cycle(time, state)
             if kind == "mark":
-                return state if goes_on else []
-        if kind == "range":
-            raise ResponseError(
-                Note(
-                    "after {time:g} s an element leaves the range for which it is given; give it a "
-                    "wider one, or a shorter time",
-                    time=time,
-                )
-            )
+                return goes_on, state
         if kind == "off":
-            return self._switch_off(time, state)
-        of = ""
-        if kind == "dead":
-            equations = self.equation.at(time, just_after(self.since), self.where(time, state))
-            margins = [-1.0] if equations is None else [*equations.margins]
-            of = self.equation.program.dyads[margins.index(min(margins))]
-        self._note(self._rest if kind == "rest" else kind, time, state, of)
-        return []
+            return True, self._switch_off(time, state, gained)
+        self._note(self._rest if kind == "rest" else kind, time, state, watch.of)
+        return False, state
 
-    def _since_mark(self, time: float, state: Sequence[float]) -> float:
+    def _reached(self, kind: str, state: Array) -> str:
+        """What happens in a state, where several things do so at the same crank angle."""
+        if kind != "mark" or not self.equation.by_crank:
+            return kind
+        ways = ((name, way - abs(state[0] - origin)) for name, way, origin in self._crank_ways())
+        return next((name for name, left in ways if name != "mark" and left < AT_EDGE), kind)
+
+    def _limited(self, link: str, time: float, state: Array) -> None:
+        """A servo motor comes to its limit of torque, or from it."""
+        place = [drive.link for drive in self.equation.drives].index(link)
+        where = self.rates.where(np.array([time]), state[:, None])
+        each = float(where.speeds[place, 0]), float(where.angles[place, 0])
+        self.drivers[place].observe(*each, time, reached=True)
+
+    def _settle(self, joint: int, at: tuple[Span, float]) -> None:
+        """The sense of a joint's motion begins to change, or has changed, at a place of a span."""
+        others = self.rates.others(at[0].others(np.array([at[1]])))
+        settled = self.rates.settled.copy()
+        settled[joint] = 0.0 if settled[joint] else np.sign(others.joint_rates[joint, 0])
+        self.rates.settled = settled
+
+    def _since_mark(self, time: float, state: Array) -> float:
         """What is left of a cycle, rad."""
         return self._mark_span - abs(self._crank_angle(time, state) - self.mark)
 
-    def _switch_off(self, time: float, state: list[float]) -> list[float]:
+    def _switch_off(self, time: float, state: Array, gained: Array) -> Array:
         """Without motors: what the field of their coils holds turns into heat."""
         self._note("off", time, state)
-        for k in self.circuits:
-            current, supply, heat = state[self.circuit_place(k)]
-            if self.drivers[k].lags:
-                heat += float(self.drivers[k].stored(np.asarray(current)))
-            state[self.circuit_place(k)] = [0.0, supply, heat]
+        state = state.copy()
+        for row, k in enumerate(self.rates.lagging, 2 * self.rates.count):
+            heat = 2 * self.rates.circuits.index(k) + 1
+            gained[heat] += float(self.drivers[k].stored(state[row]))
+            state[row] = 0.0
         for driver in self.drivers:
             driver.on = False
         return state
 
-    def _begin_cycle(self, time: float, state: list[float]) -> bool:
+    def _begin_cycle(self, time: float, state: Array) -> bool:
         """Note the begin of a cycle; whether the run goes on, as it does before a steady state."""
         self.marks.append(time)
         self.mark = self._crank_angle(time, state)
-        before, self._at_mark = self._at_mark, [*state[: 2 * self._count]]
+        count = self.rates.count
+        before, self._at_mark = self._at_mark, state[: 2 * count].copy()
         switched = min(self.limits.off_time, self.limits.off_turns) < inf
         on = any(driver.on for driver in self.drivers)
         if before is None or not self.limits.steady or self.corners or (switched and on):
             return True
-        changes = [after - now for after, now in zip(self._at_mark, before, strict=True)]
-        turned = [abs((change + pi) % (2 * pi) - pi) for change in changes[: self._count]]
-        gained = [abs(change) / self.usual for change in changes[self._count :]]
+        changes = self._at_mark - before
+        turned = np.abs((changes[:count] + pi) % (2 * pi) - pi)
+        gained = np.abs(changes[count:]) / self.usual
         if max(*turned, *gained) > STEADY:
             return True
         self._note("steady", time, state)
         return False
 
-    def _note(self, kind: str, time: float, state: Sequence[float], of: str = "") -> None:
+    def _note(self, kind: str, time: float, state: Array, of: str = "") -> None:
         self.events.append(DriveEvent(kind, time, self._crank_angle(time, state), of))
 
 
-def _value(place: int) -> Callable[[float, Any], float]:
+def _value(place: int) -> Callable[[Instants], Array]:
     """A value of the state."""
-    return lambda _, state: float(state[place])
+    return lambda now: now.states[place]
 
 
-def _way_left(way: float, origin: float) -> Callable[[float, Any], float]:
+def _way_left(way: float, origin: float) -> Callable[[Instants], Array]:
     """What is left of a way of the crank from an angle, rad."""
-    return lambda _, state: way - abs(float(state[0]) - origin)
+    return lambda now: way - np.abs(now.states[0] - origin)
 
 
-def _ending(function: Callable[[float, Any], float]) -> Any:
-    """A function whose fall below 0 ends a span of the integration."""
+def joined(tracks: Sequence[Track]) -> Track:
+    """All parts of a track, one after the other."""
 
-    def event(time: float, state: Any) -> float:
-        return function(time, state)
+    def whole(parts: Iterable[Array]) -> Array:
+        return np.concatenate([*parts], axis=-1)
 
-    event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
-    return event
+    return Track(
+        whole(track.time for track in tracks),
+        whole(track.states for track in tracks),
+        whole(track.quadratures for track in tracks),
+        whole(track.torques for track in tracks),
+        {name: whole(track.references[name] for track in tracks) for name in tracks[0].references},
+    )

@@ -12,9 +12,10 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.result import Result
-from equipoise.running.drives_equation import DrivesEquation
-from equipoise.running.drives_integration import DriveEvent, DrivesIntegration
+from equipoise.running.drives_equation import DriveAngles, DrivesEquation
+from equipoise.running.drives_integration import DriveEvent, DrivesIntegration, Track, joined
 from equipoise.running.electric import Electric
+from equipoise.running.friction import FRICTION
 from equipoise.running.integration import Limits
 from equipoise.signals import Array
 
@@ -79,6 +80,9 @@ class DrivesRun(Result):
         ``drives.LINK``.
     events : what happened; the last one ended the run.
     cycle_begins : times at which a cycle of the crank began, s.
+    losses : joint with friction -> energy that it has taken since the start (M,), J.
+    references : about what running angles (..., M), and unknowns of loops, are, by their names in
+        the linkage.
     """
 
     machine: Machine
@@ -89,6 +93,8 @@ class DrivesRun(Result):
     work: Mapping[str, Array]
     events: tuple[DriveEvent, ...]
     cycle_begins: tuple[float, ...]
+    losses: Mapping[str, Array]
+    references: Mapping[str, Array]
     blocks_in = "running.drives_blocks.run_blocks"
     pictures_in = "figures.running.drives_charts"
     headline_in: ClassVar[str] = "running.drives_blocks.run_headline"
@@ -108,7 +114,9 @@ class DrivesRun(Result):
         """(M,), J, from the linkage itself and not from what was integrated."""
         courses = self.drives.values()
         angles, speeds = ([getattr(each, name) for each in courses] for name in ("angle", "speed"))
-        return self.equation.energy(np.array(angles), np.array(speeds))
+        return self.equation.energy(
+            np.array(angles), np.array(speeds), self.crank_angle, self.references
+        )
 
     @cached_property
     def energy_error(self) -> float:
@@ -151,7 +159,8 @@ class DrivesRun(Result):
                     for name, unit, values in course.electric.columns()
                 ]
         columns.append(("kinetic_energy", "J", self.kinetic_energy))
-        return columns + [(f"work.{name}", "J", values) for name, values in self.work.items()]
+        columns += [(f"work.{name}", "J", values) for name, values in self.work.items()]
+        return columns + [(f"losses.{name}", "J", values) for name, values in self.losses.items()]
 
     def to_dict(self) -> dict[str, Any]:
         """The machine-readable output, in SI units."""
@@ -166,6 +175,7 @@ class DrivesRun(Result):
             "crank_angle": self.crank_angle,
             "kinetic_energy": self.kinetic_energy,
             "work": dict(self.work),
+            "losses": dict(self.losses),
         }
 
 
@@ -175,42 +185,49 @@ def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> Drives
     integration = DrivesIntegration(equation, limits)
     integration.on_turns = start.on_turns
     integration.follow([start.angles[k] for k in unknowns], [start.speeds[k] for k in unknowns])
-    time = np.array([moment for moment, _ in integration.track])
-    state = np.array([values for _, values in integration.track]).T
-    where = integration.where(time, [*state])
-    torques = np.array(integration.torques).T
+    track, rates = joined(integration.tracks), integration.rates
+    where = rates.where(track.time, track.states)
     courses = {
         drive.link: DriveCourse(
             drive.link,
             MOTOR if drive.motor else FREE if k in unknowns else GIVEN,
-            where.angles[k] + 0.0 * time,
-            where.speeds[k] + 0.0 * time,
-            torques[k],
-            _electric(integration, k, time, state, where.speeds[k]),
+            where.angles[k],
+            where.speeds[k],
+            track.torques[k],
+            _electric(integration, k, track, where),
         )
         for k, drive in enumerate(equation.drives)
     }
+    works = dict(zip(rates.works, track.quadratures[2 * len(rates.circuits) :], strict=True))
+    rubbed = {name: works.pop(f"{FRICTION}.{name}") for name in rates.rubbing}
+    if rubbed:
+        works[FRICTION] = np.sum([*rubbed.values()], axis=0)
     return DrivesRun(
         equation.machine,
         equation,
-        time,
-        where.crank_angle + 0.0 * time,
+        track.time,
+        where.crank_angle,
         courses,
-        dict(zip(integration.works, state[len(state) - len(integration.works) :], strict=True)),
+        works,
         tuple(integration.events),
         tuple(integration.marks),
+        {name: -values for name, values in rubbed.items()},
+        track.references,
     )
 
 
 def _electric(
-    integration: DrivesIntegration, drive: int, time: Array, state: Array, speed: Array
+    integration: DrivesIntegration, drive: int, track: Track, where: DriveAngles
 ) -> Electric | None:
     """The circuit of a drive's motor; None of one without."""
-    if drive not in integration.circuits:
+    rates = integration.rates
+    if drive not in rates.circuits:
         return None
-    current, supply, heat = state[integration.circuit_place(drive)]
-    motor = integration.equation.drivers()[drive]
-    if not motor.lags:
+    place = 2 * rates.circuits.index(drive)
+    if drive in rates.lagging:
+        current = rates.current(drive, track.states, where)
+    else:
         off = next((event.time for event in integration.events if event.kind == "off"), inf)
-        current = np.where(time <= off, motor.current(speed), 0.0)
-    return Electric(current, supply, heat)
+        motor = integration.equation.drivers()[drive]
+        current = np.where(track.time <= off, motor.current(where.speeds[drive]), 0.0)
+    return Electric(current, *track.quadratures[place : place + 2])

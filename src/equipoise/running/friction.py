@@ -20,7 +20,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -47,7 +46,7 @@ from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.running.sources import Factors, Motions, OfSoil, Source, timed_units
+from equipoise.running.sources import Factors, Motions, OfSoil, Source, plus, timed_units
 from equipoise.signals import Array
 
 FRICTION = "friction"
@@ -57,16 +56,6 @@ KNOWN = 3
 
 NOISE = 1e-14
 """Of an inertia, per rad, below which its derivative is rounding, which no polynomial follows."""
-
-
-def plus(*demands: Demands) -> dict[str, Any]:
-    """Demands of links, added up."""
-    total: dict[str, Any] = {}
-    for demand in demands:
-        for link, (force, moment) in demand.items():
-            own = total.get(link, (0.0, 0.0))
-            total[link] = own[0] + force, own[1] + moment
-    return total
 
 
 @dataclass(frozen=True, eq=False)
@@ -308,12 +297,12 @@ def _parts(
     sides = sided_meshes(motion.linkage)
     if not sides:
         return pressing_rows(motion, [*known, *units, *given], joints, None)
-    pressed, apart = _on_flanks(motion, [*known, *units, *given], (*joints, *sides), sides)
+    pressed, apart = on_flanks(motion, [*known, *units, *given], (*joints, *sides), sides)
     before = KNOWN + len(units)
     return np.concatenate([pressed[:, :, :before], apart, pressed[:, :, before:]], axis=2)
 
 
-def _on_flanks(
+def on_flanks(
     motion: Motion,
     rows: Sequence[Demands],
     joints: Sequence[RubbingJoint],

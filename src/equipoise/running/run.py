@@ -33,8 +33,8 @@ from equipoise.signals import Array
 TURNS = 300
 """Turns after which a run ends where nothing else ends it."""
 TURNS_OF_DRIVES = 30
-"""The same of several drives, each turn of which takes some hundred times as long to follow; two
-motors of their own speeds never come to a steady state."""
+"""The same of several drives, each turn of which takes longer to follow; two motors of their own
+speeds never come to a steady state."""
 STARTED = 0.95
 """Share of the mean speed of a steady state at which a machine has started."""
 BRAKE, DRIVE = "brake", "drive"

@@ -7,7 +7,7 @@ their values and of the crank's speed.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -205,6 +205,16 @@ def _ends(motion: Motion, load: TimedLoad) -> Iterator[Acting]:
     yield load.link, place, force, torque
     if load.on != FRAME:
         yield load.on, place, -force, -torque
+
+
+def plus(*demands: Mapping[str, Demand]) -> dict[str, Any]:
+    """Demands of links, added up."""
+    total: dict[str, Any] = {}
+    for demand in demands:
+        for link, (force, moment) in demand.items():
+            own = total.get(link, (0.0, 0.0))
+            total[link] = own[0] + force, own[1] + moment
+    return total
 
 
 def sources_of(machine: Machine) -> Iterator[Source]:

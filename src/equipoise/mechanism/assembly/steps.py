@@ -196,13 +196,19 @@ def pin_reaction(point: str, on: str, by: str) -> Reaction:
 
 def initial_state(machine: Machine, theta: Array) -> State:
     """State in which only the frame and the driven links are known, at crank angles (N,)."""
+    state = frame_state(machine, theta)
+    for link, (angle, w, a) in machine.moved(theta).items():
+        state.update(zip(u(link), (np.exp(1j * angle), w, a), strict=True))
+        state[f"phi({link})"] = angle
+    return state
+
+
+def frame_state(machine: Machine, theta: Array) -> State:
+    """State in which only the frame is known, at crank angles (N,)."""
     state: State = {"theta": theta}
     for name, place in machine.frame.items():
         here = planar(place) + np.complex128()  # unlike Python's, it divides by 0 without an error
         state.update({f"p({name})": here, f"p1({name})": 0j, f"p2({name})": 0j})
     state.update({f"u({FRAME})": 1 + 0j, f"w({FRAME})": 0.0, f"a({FRAME})": 0.0})
     state[f"phi({FRAME})"] = np.zeros_like(theta)
-    for link, (angle, w, a) in machine.moved(theta).items():
-        state.update(zip(u(link), (np.exp(1j * angle), w, a), strict=True))
-        state[f"phi({link})"] = angle
     return state

@@ -1,0 +1,330 @@
+"""A linkage whose drives each go their own ways, with its inertia and what acts on it.
+
+With q the angles of the driven links, i and j two of them, and p and alpha the place of a link's
+anchor and its angle,
+
+    M q.. + h = Q,    M_ij = sum of what a unit of acceleration of j demands, along dp/dq_i
+
+where h is what the links demand while the drives do not accelerate, and Q the generalized force of
+everything that acts beside the drives.  The steps of the linkage run once for many states: along
+each q, where they give dp/dq, and along the velocity that the machine has, where the crank's speed
+is 1, so that all derivatives by the crank angle are those by time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from equipoise.dataclass import dataclass
+from equipoise.errors import EquipoiseError, ResponseError
+from equipoise.i18n import Note
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.steps import frame_state, p, run, u
+from equipoise.mechanism.dynamics.applied_loads import (
+    against_soil,
+    given_loads,
+    spring_demands,
+)
+from equipoise.mechanism.dynamics.forces import inertia_moved
+from equipoise.mechanism.dynamics.reactions import Demand, demands_of
+from equipoise.mechanism.dynamics.shares import ELEMENTS
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.tip import surface_of, tip_link
+from equipoise.running.sources import LOADS, plus, timed_units
+from equipoise.signals import Array
+
+References = Mapping[str, Array]
+"""About what running angles (..., K), and unknowns of loops, are, by their names in a linkage."""
+Demands = Mapping[str, Demand]
+STRIDE = 0.02
+"""rad of the crank, by which loops are followed to the angle at which a run starts."""
+
+
+@dataclass(frozen=True, eq=False)
+class DrivesPose:
+    """A linkage in K states of its N drives.
+
+    along : motion in (N + 1) K places: with a unit of speed of each drive alone, and at last with
+        the speeds that they have.
+    """
+
+    linkage: Linkage
+    along: Motion
+
+    @cached_property
+    def count(self) -> int:
+        """How many states."""
+        return len(self.along.crank_angle) // (len(self.linkage.machine.driven) + 1)
+
+    @cached_property
+    def moving(self) -> Motion:
+        """At the speeds that the drives have, where a crank speed of 1 makes derivatives by the
+        crank angle those by time.
+        """
+        whole = len(self.along.crank_angle)
+        return self.along.part(slice(whole - self.count, whole)).at(1.0, 0.0)
+
+    def rows(self, name: str) -> Array:
+        """A value of the state (N + 1, K)."""
+        rows: Array = self._stacked([name])[0]
+        return rows
+
+    def _stacked(self, names: Sequence[str]) -> Array:
+        """Values of the state (L, N + 1, K)."""
+        values, places = [self.along.state[name] for name in names], len(self.along.crank_angle)
+        kind = complex if any(map(np.iscomplexobj, values)) else float
+        rows = np.empty((len(values), places), kind)
+        for row, value in zip(rows, values, strict=True):
+            row[:] = value
+        return rows.reshape(len(values), -1, self.count)
+
+    @cached_property
+    def references(self) -> References:
+        """What needed references have come to (..., K)."""
+        names = self.linkage.needed_references
+        state = self.moving.state if names else {}
+        return {name: state[name if name in state else f"phi({name})"] for name in names}
+
+    @cached_property
+    def accelerated(self) -> list[Demands]:
+        """What a unit of acceleration of each drive demands of the links."""
+        force, moment = self._units
+        return [
+            {link: (force[k, j], moment[k, j]) for k, link in enumerate(self._heavy)}
+            for j in range(force.shape[1])
+        ]
+
+    @cached_property
+    def turning(self) -> Demands:
+        """What the links demand while no drive accelerates."""
+        force, moment = self._turned
+        return {link: (force[k], moment[k]) for k, link in enumerate(self._heavy)}
+
+    @cached_property
+    def _heavy(self) -> list[str]:
+        """Links that have a mass or an inertia."""
+        return [*self._inertial]
+
+    @cached_property
+    def _inertial(self) -> dict[str, tuple[float, complex, float]]:
+        """Mass, first moment and inertia about their anchors of the links that have any."""
+        linkage = self.linkage
+        if "inertial" not in linkage.memory:
+            each = {
+                link: inertia_moved(linkage.machine, link, linkage.anchors[link])
+                for link in linkage.machine.links
+            }
+            linkage.memory["inertial"] = {link: own for link, own in each.items() if any(own)}
+        known: dict[str, tuple[float, complex, float]] = linkage.memory["inertial"]
+        return known
+
+    @cached_property
+    def _numbers(self) -> list[Array]:
+        """Mass, first moment and inertia (L, 1)."""
+        return [np.array(column)[:, None] for column in zip(*self._inertial.values(), strict=True)]
+
+    @cached_property
+    def _rates(self) -> list[Array]:
+        """Both rates of anchors, rotations and both of their rates (L, N + 1, K)."""
+        anchors = self.linkage.anchors
+        names = [(*p(anchors[link])[1:], *u(link)) for link in self._heavy]
+        return [self._stacked(column) for column in zip(*names, strict=True)]
+
+    @cached_property
+    def _units(self) -> tuple[Array, Array]:
+        """Force and moment (L, N, K) that units of acceleration demand."""
+        first, _, turn, w, _ = (part[:, :-1] for part in self._rates)
+        mass, moment, inertia = (number[..., None] for number in self._numbers)
+        pair: tuple[Array, Array] = kernels.inertia_demand(
+            first, 0.0, turn, w, 0.0, 0.0, 1.0, mass, moment, inertia
+        )
+        return pair
+
+    @cached_property
+    def _turned(self) -> tuple[Array, Array]:
+        """Force and moment (L, K) that links demand while no drive accelerates."""
+        pair: tuple[Array, Array] = kernels.inertia_demand(
+            *(part[:, -1] for part in self._rates), 1.0, 0.0, *self._numbers
+        )
+        return pair
+
+    @cached_property
+    def inertia(self) -> Array:
+        """M (N, N, K) of the links, kg m2."""
+        force, moment = self._units
+        return np.asarray(np.sum(self._along(force[:, None], moment[:, None]), axis=0))
+
+    @cached_property
+    def bias(self) -> Array:
+        """h (N, K), N m."""
+        force, moment = (part[:, None] for part in self._turned)
+        first, _, _, w, _ = (part[:, :-1] for part in self._rates)
+        return np.asarray(np.sum(kernels.dot(first, force) + w * moment, axis=0))
+
+    def _along(self, force: Array, moment: Array) -> Array:
+        """Work (L, N, N, K) of what acts (L, 1, N, K) along each drive."""
+        first, _, _, w, _ = (part[:, :-1, None] for part in self._rates)
+        return np.asarray(kernels.dot(first, force) + w * moment)
+
+    @cached_property
+    def weight(self) -> Array:
+        """Generalized force (N, K) of the links' weight, N m."""
+        gravity = complex(*self.linkage.machine.gravity)
+        mass, moment, _ = (number[..., None] for number in self._numbers)
+        first, _, turn, w, _ = (part[:, :-1] for part in self._rates)
+        falling = np.sum(mass * first + 1j * moment * w * turn, axis=0)
+        return np.asarray(kernels.dot(gravity, falling))
+
+    def _ways(self, link: str) -> tuple[Array, Array]:
+        """Rates (N, K) of a link's anchor and of its angle, by each drive."""
+        anchor = self.linkage.anchors[link]
+        return self.rows(p(anchor)[1])[:-1], self.rows(u(link)[1])[:-1]
+
+    def generalized(self, demands: Demands) -> Array:
+        """Generalized force (N, K), N m, of what demands (K,) hold."""
+        total = np.zeros((len(self.linkage.machine.driven), self.count))
+        for link, (force, moment) in demands.items():
+            anchor, turn = self._ways(link)
+            total -= kernels.dot(anchor, force) + turn * moment
+        return total
+
+    @cached_property
+    def weights(self) -> Demands:
+        """What holds the weight of the links."""
+        gravity, state = complex(*self.linkage.machine.gravity), self.moving.state
+        return {
+            link: kernels.weight_demand(state[f"u({link})"], *own[:2], gravity)
+            for link, own in self._inertial.items()
+        }
+
+    def margins(self, names: Sequence[str]) -> Array:
+        """Values (D, K) of the state."""
+        return self._stacked(names)[:, -1] if names else np.zeros((0, self.count))
+
+
+def pose_of(
+    linkage: Linkage, crank: Array, angles: Array, speeds: Array, references: References
+) -> DrivesPose:
+    """A linkage with its drives at angles (N, K), rad, and speeds, rad/s.
+
+    crank : crank angle (K,), rad.
+
+    Raises
+    ------
+    MotionError : loops have no solution near the references.
+    """
+    count, states = np.shape(angles)
+    rates = np.concatenate([np.repeat(np.eye(count)[:, :, None], states, 2), speeds[None]])
+    theta = np.tile(crank, count + 1)
+    state = frame_state(linkage.machine, theta)
+    for k, drive in enumerate(linkage.machine.driven):
+        angle = np.tile(angles[k], count + 1)
+        values = np.exp(1j * angle), rates[:, k].ravel(), np.zeros(len(theta))
+        state.update(zip(u(drive.link), values, strict=True))
+        state[f"phi({drive.link})"] = angle
+    for name in linkage.needed_references:
+        near = references[name]
+        state[f"reference({name})"] = np.tile(near, (*[1] * (near.ndim - 1), count + 1))
+    run(linkage.motion, state)
+    return DrivesPose(linkage, Motion(linkage, theta, 1.0, 0.0, False, state))
+
+
+def references_at(linkage: Linkage, crank_angle: float) -> References:
+    """References (..., 1) at a crank angle, rad, with all drives as the file has them there, which
+    loops are followed to from crank angle 0.
+
+    Raises
+    ------
+    ResponseError : the links do not get there.
+    """
+    if not linkage.needed_references:
+        return {}
+    count = max(2, int(abs(crank_angle) / STRIDE) + 2)
+    state = linkage.start(np.linspace(0.0, crank_angle, count))
+    try:
+        run(linkage.motion, state)
+    except EquipoiseError:
+        raise cannot_be_assembled() from None
+    names = linkage.needed_references
+    return {
+        name: np.asarray(state[name if name in state else f"phi({name})"])[..., -1:]
+        for name in names
+    }
+
+
+def cannot_be_assembled() -> ResponseError:
+    """That a run has no start."""
+    return ResponseError(
+        Note("the links cannot be assembled at the angles of the drives at the start").about(
+            "links-cannot-be-joined-at-any-crank-angle"
+        )
+    )
+
+
+# -- what acts -------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Applied:
+    """What acts on a machine beside its drives and friction in joints, by the keys of sources.
+
+    pace : speed (K,) of the crank, rad/s.  factors : (K,) of each load over time.
+    """
+
+    pose: DrivesPose
+    pace: Array
+    factors: Sequence[Array]
+
+    def force(self, key: str) -> Array:
+        """Generalized force (N, K) of a source, N m."""
+        return self.pose.weight if key == "weight" else self.pose.generalized(self.demands(key))
+
+    def demands(self, key: str) -> Demands:
+        """What holds a source."""
+        return SOURCES.get(key, Applied._elements)(self, key)
+
+    def _elements(self, key: str) -> Demands:
+        cause = next(cause for cause in ELEMENTS if f"{cause}s" == key)
+        return spring_demands(self.pose.moving, rated=True, cause=cause)
+
+    def _weight(self, key: str) -> Demands:
+        return self.pose.weights
+
+    def _springs(self, key: str) -> Demands:
+        return spring_demands(self.pose.moving, rated=False)
+
+    def _loads(self, key: str) -> Demands:
+        return demands_of(self.pose.moving, given_loads(self.pose.moving))
+
+    def _timed(self, key: str) -> Demands:
+        units = timed_units(self.pose.moving)
+        parts = (
+            {link: (factor * force, factor * moment) for link, (force, moment) in unit.items()}
+            for factor, unit in zip(self.factors, units, strict=True)
+        )
+        return plus(*parts)
+
+    def _soil(self, key: str) -> Demands:
+        motion = self.pose.moving
+        planting = motion.machine.planting
+        assert planting is not None and planting.soil is not None
+        surface, forward = surface_of(motion.machine), planting.forward(self.pace)
+        acting = []
+        for arm in planting.every_arm:
+            tip = motion.point(arm.tip)
+            force = against_soil(planting.soil, surface - tip.y, tip.velocity + forward)
+            acting.append((tip_link(motion.machine, arm.tip), arm.tip, force, 0.0))
+        return demands_of(motion, acting)
+
+
+SOURCES: Mapping[str, Callable[[Applied, str], Demands]] = {
+    "weight": Applied._weight,
+    "springs": Applied._springs,
+    LOADS: Applied._loads,
+    "timed_loads": Applied._timed,
+    "soil": Applied._soil,
+}

@@ -1,0 +1,163 @@
+"""The state of several drives, and how fast it changes: many states at once.
+
+The state has angles and speeds of the unknowns, and currents of motors that lag.  What does not act
+back on these, such as the work of everything that acts, is integrated beside it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from equipoise.errors import EquipoiseError
+from equipoise.running.drives_equation import DriveAngles, DrivesEquation
+from equipoise.running.drives_linkage import References
+from equipoise.running.equation import just_after
+from equipoise.running.friction import FRICTION
+from equipoise.running.time_collocation import Values
+from equipoise.signals import Array
+
+BRAKED = 1e-3
+"""Share of the usual speed near which a brake changes its sense."""
+BRAKE = "brake"
+
+
+class Others(NamedTuple):
+    """What else is known in K states.
+
+    torques : of all drives (N, K), N m.  margins : of dyads (D, K).  joint_rates : (J, K) of joints
+    with friction, rad/s or m/s.
+    """
+
+    torques: Array
+    margins: Array
+    joint_rates: Array
+
+
+class DrivesRates:
+    """Rates of the state of a machine's drives.
+
+    works : what has done work, by the order of the quadratures, after supply and heat of circuits.
+    since : s, an instant after which loads over time follow the line that counts.
+    settled : (J,) as of `DrivesFriction.senses`.
+    failure : why the last states could not be computed; None where they could.
+    """
+
+    def __init__(self, equation: DrivesEquation) -> None:
+        self.equation, self.drivers = equation, equation.drivers()
+        self.usual = abs(equation.machine.drive.speed) or 1.0
+        self.circuits = [k for k, item in enumerate(self.drivers) if item.circuit is not None]
+        self.lagging = [k for k in self.circuits if self.drivers[k].lags]
+        self.rubbing = () if equation.friction is None else equation.friction.names
+        self.turned = [
+            k for k, drive in enumerate(equation.drives)
+            if drive.motor is not None or k in equation.given
+        ]  # fmt: skip
+        self.braked = bool(self.drivers[0].brake) and 0 in equation.unknowns
+        self.works = (
+            *equation.sources,
+            *(f"{FRICTION}.{name}" for name in self.rubbing),
+            *([BRAKE] if self.braked else []),
+            *(f"drives.{equation.drives[k].link}" for k in self.turned),
+        )
+        self.settled = np.zeros(len(self.rubbing))
+        self.since = 0.0
+        self.failure: EquipoiseError | None = None
+
+    @property
+    def count(self) -> int:
+        """How many drives are unknown."""
+        return len(self.equation.unknowns)
+
+    def where(self, time: Array, states: Array) -> DriveAngles:
+        """All drives at times (K,), s, in states (n, K)."""
+        count = self.count
+        return self.equation.placed(time, states[:count], states[count : 2 * count])
+
+    def current(self, drive: int, states: Array, where: DriveAngles) -> Array:
+        """Current (K,) of the circuit of a drive, A."""
+        if drive in self.lagging:
+            return np.asarray(states[2 * self.count + self.lagging.index(drive)])
+        return self.drivers[drive].current(where.speeds[drive])
+
+    def sizes(self, energy: float) -> tuple[Array, Array]:
+        """Usual sizes of a state (n,), and of quadratures (Q,), where energies are about so large,
+        J.
+        """
+        rated = []
+        for k in self.lagging:
+            circuit = self.drivers[k].circuit
+            assert circuit is not None
+            rated.append(circuit.voltage / circuit.resistance)
+        states = np.array([1.0] * self.count + [self.usual] * self.count + rated)
+        return states, np.full(2 * len(self.circuits) + len(self.works), energy)
+
+    def others(self, rows: Array) -> Others:
+        """By the rows of `Values.others` (O, K)."""
+        drives, dyads = len(self.drivers), len(self.equation.dyads)
+        return Others(rows[:drives], rows[drives : drives + dyads], rows[drives + dyads :])
+
+    def at(self, time: Array, states: Array, near: References) -> Values | None:
+        """Rates in K states; None where the machine cannot be, or does not obey the laws."""
+        self.failure = None
+        with np.errstate(all="ignore"):  # of what is tried
+            try:
+                values = self._at(time, states, near)
+            except EquipoiseError as error:
+                self.failure = error
+                return None
+            except np.linalg.LinAlgError:
+                return None
+        return values if np.all(np.isfinite(values.rates)) else None
+
+    def _at(self, time: Array, states: Array, near: References) -> Values:
+        equation, where = self.equation, self.where(time, states)
+        state = equation.at(time, just_after(self.since), where, near)
+        torques = self._driving(time, where, states)
+        total = torques.copy()
+        if self.braked:
+            braking = self._braking(where)
+            total[0] += braking
+        changes, efforts = equation.accelerations(state, where, total, self.settled)
+        if equation.given:
+            torques[[*equation.given]] = equation.given_torques(state, changes, efforts)
+        rates = [*where.speeds[equation.free], *changes[equation.free]]
+        electric, works = [], [*np.einsum("snk,nk->sk", state.forces, where.speeds)]
+        for k in self.circuits:
+            current = self.current(k, states, where)
+            change, supply, heat = self.drivers[k].electric_rates(current, where.speeds[k])
+            rates += [change] if k in self.lagging else []
+            electric += [supply, heat]
+        joint_rates = np.zeros((0, len(time)))
+        if state.rubbing is not None:
+            joint_rates = state.rubbing.rates
+            works += [*efforts * joint_rates]
+        works += [braking * where.speeds[0]] if self.braked else []
+        works += [torques[k] * where.speeds[k] for k in self.turned]
+        margins = state.pose.margins([*equation.dyads.values()])
+        return Values(
+            np.array(np.broadcast_arrays(*rates)),
+            np.array([*electric, *works]).reshape(-1, len(time)),
+            np.concatenate([torques, margins, joint_rates]),
+            state.pose.references,
+        )
+
+    def _driving(self, time: Array, where: DriveAngles, states: Array) -> Array:
+        """Torques (N, K) of motors, N m; 0 of drives without one."""
+        torques = np.zeros_like(where.speeds)
+        for k, driver in enumerate(self.drivers):
+            if not driver.on:
+                continue
+            if driver.lags:
+                torques[k] = driver.torque_of(self.current(k, states, where))
+            elif driver.controlled:
+                torques[k] = driver.smooth_torque_at(where.speeds[k], where.angles[k], time)
+            else:
+                torques[k] = driver.torque(where.speeds[k])
+        return torques
+
+    def _braking(self, where: DriveAngles) -> Array:
+        """Torque (K,) of the brake on the first drive, N m, which changes its sense smoothly."""
+        speed, near = where.speeds[0], BRAKED * self.usual
+        return np.asarray(-self.drivers[0].holding() * speed / np.sqrt(speed**2 + near**2))
