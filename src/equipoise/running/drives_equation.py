@@ -25,7 +25,7 @@ from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drivers import Driver
 from equipoise.running.drives_friction import DrivesFriction, FrictionOf
-from equipoise.running.drives_linkage import Applied, DrivesPose, References, pose_of
+from equipoise.running.drives_linkage import AppliedForces, DrivesPose, References, pose_of
 from equipoise.running.sources import plus, sources_of
 from equipoise.signals import Array
 
@@ -188,7 +188,7 @@ class DrivesEquation:
         """
         pose = pose_of(self.linkage, where.crank_angle, where.angles, where.speeds, near)
         pace = where.speeds[0] if self.by_crank else np.full(len(time), self.machine.drive.speed)
-        applied = Applied(pose, pace, self.factors_at(time, since))
+        applied = AppliedForces(pose, pace, self.factors_at(time, since))
         forces = np.zeros((len(self.sources), len(self.drives), pose.count))
         for k, key in enumerate(self.sources):
             forces[k] = applied.force(key)

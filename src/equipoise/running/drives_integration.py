@@ -20,11 +20,11 @@ from equipoise.i18n import Note
 from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_friction import leaving, settled_at
 from equipoise.running.drives_linkage import References, cannot_be_assembled, references_at
-from equipoise.running.drives_rates import DrivesRates, Others
+from equipoise.running.drives_rates import DrivesRates, DrivesReadings
 from equipoise.running.equation import just_after
 from equipoise.running.integration import Limits
 from equipoise.running.tabulated import NODES, POINTS
-from equipoise.running.time_collocation import Span, Values, solved_span, unresolved
+from equipoise.running.time_collocation import NodeValues, TimeSpan, solved_span, unresolved
 from equipoise.signals import Array
 
 RESOLVED = 1e-9
@@ -75,7 +75,7 @@ class DriveEvent:
     of: str = ""
 
 
-class Instants(NamedTuple):
+class SpanInstants(NamedTuple):
     """A span at K places.
 
     times : (K,) s.  states, rates : (n, K) and their rates by time.
@@ -84,10 +84,10 @@ class Instants(NamedTuple):
     times: Array
     states: Array
     rates: Array
-    others: Others
+    others: DrivesReadings
 
 
-class Track(NamedTuple):
+class DrivesTrack(NamedTuple):
     """Rows of the solution at K instants.
 
     time : (K,) s.  states : (n, K).  quadratures : (Q, K).  torques : of all drives (N, K), N m.
@@ -101,12 +101,12 @@ class Track(NamedTuple):
     references: References
 
 
-class Watch(NamedTuple):
+class DriveWatch(NamedTuple):
     """Something that may happen: its kind, and what of; it does where `left` falls below 0."""
 
     kind: str
     of: str
-    left: Callable[[Instants], Array]
+    left: Callable[[SpanInstants], Array]
 
 
 class DrivesIntegration:
@@ -120,7 +120,7 @@ class DrivesIntegration:
         self.equation, self.limits = equation, limits
         self.rates = DrivesRates(equation)
         self.drivers, self.usual = self.rates.drivers, self.rates.usual
-        self.tracks: list[Track] = []
+        self.tracks: list[DrivesTrack] = []
         self.events: list[DriveEvent] = []
         self.marks: list[float] = []
         self.on_turns: Callable[[float], None] = lambda turns: None
@@ -144,7 +144,7 @@ class DrivesIntegration:
         self.start = self.mark = self._crank_angle(0.0, state)
         self._mark_span = 2 * pi * equation.machine.turns_given
         gained = np.zeros(len(works))
-        self._record(Span(0.0, 1.0, state, gained, values), np.array([-1.0]))
+        self._record(TimeSpan(0.0, 1.0, state, gained, values), np.array([-1.0]))
         self.width = FIRST_WIDTH / self.usual
         self._at_mark: Array | None = None
         self._begin_cycle(0.0, state)
@@ -153,9 +153,9 @@ class DrivesIntegration:
             return
         self._spans(state, gained, values)
 
-    def _spans(self, state: Array, gained: Array, first: Values) -> None:
+    def _spans(self, state: Array, gained: Array, first: NodeValues) -> None:
         """From a state and quadratures, with what is known there, until something ends the run."""
-        time, before, goes_on = 0.0, (Span(0.0, 1.0, state, gained, first), -1.0), True
+        time, before, goes_on = 0.0, (TimeSpan(0.0, 1.0, state, gained, first), -1.0), True
         for _ in range(MOST_SPANS):
             self.rates.since = time
             self._observe(time, state)
@@ -171,7 +171,7 @@ class DrivesIntegration:
             self.on_turns(abs(self._crank_angle(time, state) - self.start) / (2 * pi))
             before = span, place
             if watch is None and ended:
-                watch = Watch(last, "", lambda _: np.zeros(0))
+                watch = DriveWatch(last, "", lambda _: np.zeros(0))
             if watch is not None and watch.kind == "settled":
                 self._settle(self.rates.rubbing.index(watch.of), before)
             elif watch is not None:
@@ -183,7 +183,7 @@ class DrivesIntegration:
             Note("the motion takes too long to be followed; give a shorter time or fewer turns")
         )
 
-    def _first_values(self, state: Array, near: References) -> Values:
+    def _first_values(self, state: Array, near: References) -> NodeValues:
         """What is known at the start, at all nodes of a span that does not move."""
         nodes = {name: np.repeat(value, NODES, axis=-1) for name, value in near.items()}
         values = self.rates.at(np.zeros(NODES), np.repeat(state[:, None], NODES, axis=1), nodes)
@@ -200,8 +200,8 @@ class DrivesIntegration:
         return values
 
     def _span(
-        self, times: tuple[float, float], start: tuple[Array, Array], before: tuple[Span, float]
-    ) -> Span:
+        self, times: tuple[float, float], start: tuple[Array, Array], before: tuple[TimeSpan, float]
+    ) -> TimeSpan:
         """The motion over a span from a time on, up to another at most, s.
 
         start : states and quadratures.  before : the last span, and its place up to which it went.
@@ -232,7 +232,7 @@ class DrivesIntegration:
 
     def _passed(
         self, time: float, width: float, start: tuple[Array, Array], near: References
-    ) -> Span:
+    ) -> TimeSpan:
         """A span so short that nothing moves in it, over what changes suddenly.
 
         Raises
@@ -244,7 +244,7 @@ class DrivesIntegration:
             time + width * (POINTS + 1) / 2, np.repeat(state[:, None], NODES, axis=1), near
         )
         if values is not None:
-            return Span(time, width, *start, values)
+            return TimeSpan(time, width, *start, values)
         if isinstance(self.rates.failure, ModelError):
             raise ResponseError(
                 Note(
@@ -257,11 +257,11 @@ class DrivesIntegration:
             raise self.rates.failure
         raise ResponseError(Note("the motion cannot be integrated beyond {t:g} s", t=time))
 
-    def _first_in(self, span: Span) -> tuple[float, Watch | None]:
+    def _first_in(self, span: TimeSpan) -> tuple[float, DriveWatch | None]:
         """Place in a span at which something happens first, and what; 1 where nothing does."""
         places = np.linspace(-1.0, 1.0, LOOKED + 1)
         seen = self._look(span, places)
-        result: tuple[float, Watch | None] = (1.0, None)
+        result: tuple[float, DriveWatch | None] = (1.0, None)
         for watch in self._watched():
             ends = self._fall(span, watch.left, places, watch.left(seen))
             if ends is not None and ends[0] < result[0]:
@@ -271,7 +271,7 @@ class DrivesIntegration:
         return result
 
     def _fall(
-        self, span: Span, left: Callable[[Instants], Array], places: Array, values: Array
+        self, span: TimeSpan, left: Callable[[SpanInstants], Array], places: Array, values: Array
     ) -> Array | None:
         """Two places of a span between which a function with values (K,) at places (K,) first falls
         below 0, be it between two of these alone; None where it does not.
@@ -289,7 +289,7 @@ class DrivesIntegration:
                 return np.array([places[k], lowest])
         return places[first : first + 2] if first < len(falls) else None
 
-    def _zero(self, span: Span, left: Callable[[Instants], Array], ends: Array) -> float:
+    def _zero(self, span: TimeSpan, left: Callable[[SpanInstants], Array], ends: Array) -> float:
         """Place between two at which a function of the instants of a span is 0."""
         from scipy.optimize import brentq
 
@@ -298,7 +298,7 @@ class DrivesIntegration:
 
         return float(brentq(at, *ends.tolist(), xtol=1e-15))
 
-    def _note_reversals(self, span: Span, until: float) -> None:
+    def _note_reversals(self, span: TimeSpan, until: float) -> None:
         """Note where drives turn back in a span, up to a place."""
         places = np.linspace(-1.0, until, LOOKED + 1)
         count, unknowns = self.rates.count, self.equation.unknowns
@@ -311,9 +311,9 @@ class DrivesIntegration:
                     link = self.equation.drives[drive].link
                     self._note("reversal", float(now.times[0]), now.states[:, 0], link)
 
-    def _record(self, span: Span, places: Array) -> None:
+    def _record(self, span: TimeSpan, places: Array) -> None:
         self.tracks.append(
-            Track(
+            DrivesTrack(
                 span.time(places),
                 span.states(places),
                 span.quadratures(places),
@@ -322,14 +322,14 @@ class DrivesIntegration:
             )
         )
 
-    def _look(self, span: Span, places: Array) -> Instants:
+    def _look(self, span: TimeSpan, places: Array) -> SpanInstants:
         others = self.rates.others(span.others(places))
-        return Instants(span.time(places), span.states(places), span.rates(places), others)
+        return SpanInstants(span.time(places), span.states(places), span.rates(places), others)
 
-    def _look_at(self, time: float, state: Array, values: Values) -> Instants:
+    def _look_at(self, time: float, state: Array, values: NodeValues) -> SpanInstants:
         """A state, with values at nodes that are all the same."""
         others = self.rates.others(values.others[:, :1])
-        return Instants(np.array([time]), state[:, None], values.rates[:, :1], others)
+        return SpanInstants(np.array([time]), state[:, None], values.rates[:, :1], others)
 
     def _crank_angle(self, time: float, state: Array) -> float:
         return float(self.rates.where(np.array([time]), state[:, None]).crank_angle[0])
@@ -353,7 +353,7 @@ class DrivesIntegration:
             if driver.controlled:
                 driver.observe(float(where.speeds[k, 0]), float(where.angles[k, 0]), time)
 
-    def _check_settled(self, before: tuple[Span, float]) -> None:
+    def _check_settled(self, before: tuple[TimeSpan, float]) -> None:
         """Joints that are slow are not settled, whatever has been missed."""
         if (friction := self.equation.friction) is None:
             return
@@ -362,7 +362,7 @@ class DrivesIntegration:
         slow = (self.rates.settled != 0) & (left < -INSIDE)
         self.rates.settled = np.where(slow, 0.0, self.rates.settled)
 
-    def _time_near_rest(self, before: tuple[Span, float]) -> float:
+    def _time_near_rest(self, before: tuple[TimeSpan, float]) -> float:
         """How long a span may be, s, to see how friction of joints near rest changes its sense."""
         friction, near_rest = self.equation.friction, self.rates.settled == 0
         if friction is None or not np.any(near_rest):
@@ -386,33 +386,33 @@ class DrivesIntegration:
         if self.equation.given:
             yield "mark", (abs(self.mark - self.start) + self._mark_span) / pace
 
-    def _watched(self) -> Iterator[Watch]:
+    def _watched(self) -> Iterator[DriveWatch]:
         """What may happen on the way."""
         equation = self.equation
         for k, joint in enumerate(equation.dyads):
-            yield Watch("dead", joint, lambda now, k=k: now.others.margins[k] - DEAD)  # type: ignore[misc]
+            yield DriveWatch("dead", joint, lambda now, k=k: now.others.margins[k] - DEAD)  # type: ignore[misc]
         for k, driver in enumerate(self.drivers):
             if driver.controlled:
-                yield Watch("limit", equation.drives[k].link, self._below_limit(k))
+                yield DriveWatch("limit", equation.drives[k].link, self._below_limit(k))
         for k, joint in enumerate(self.rates.rubbing):
-            yield Watch("settled", joint, self._settled_left(k))
+            yield DriveWatch("settled", joint, self._settled_left(k))
         if not equation.given:
-            yield Watch("rest", "", lambda now: self._activity(now) - AT_REST)
+            yield DriveWatch("rest", "", lambda now: self._activity(now) - AT_REST)
         if equation.by_crank:
             for kind, way, origin in self._crank_ways():
-                yield Watch(kind, "", _way_left(way, origin))
+                yield DriveWatch(kind, "", _way_left(way, origin))
 
-    def _below_limit(self, drive: int) -> Callable[[Instants], Array]:
+    def _below_limit(self, drive: int) -> Callable[[SpanInstants], Array]:
         """How far a servo motor is from where it comes to its limit of torque, or from it."""
 
-        def left(now: Instants) -> Array:
+        def left(now: SpanInstants) -> Array:
             where = self.rates.where(now.times, now.states)
             beyond = self.drivers[drive].beyond(where.speeds[drive], where.angles[drive], now.times)
             return -beyond
 
         return left
 
-    def _settled_left(self, joint: int) -> Callable[[Instants], Array]:
+    def _settled_left(self, joint: int) -> Callable[[SpanInstants], Array]:
         """How far a joint with friction is from where the sense of its motion begins to change, or
         has changed.
         """
@@ -420,7 +420,7 @@ class DrivesIntegration:
         assert friction is not None
         own, slow = slice(joint, joint + 1), friction.slow
 
-        def left(now: Instants) -> Array:
+        def left(now: SpanInstants) -> Array:
             rates = now.others.joint_rates[own]
             return np.asarray(leaving(rates, slow[own], self.rates.settled[own])[0])
 
@@ -435,7 +435,7 @@ class DrivesIntegration:
         if on and self.limits.off_turns < inf:
             yield "off", self.limits.off_turns * 2 * pi, self.start
 
-    def _activity(self, now: Instants) -> Array:
+    def _activity(self, now: SpanInstants) -> Array:
         """How far a machine is (K,) from a rest that lasts: speeds and accelerations over usual
         ones, or what a current is still to grow; 1 while a load or a reference changes with time.
         """
@@ -456,7 +456,7 @@ class DrivesIntegration:
     # -- what happens ------------------------------------------------------------------------------
 
     def _happens(
-        self, watch: Watch, time: float, state: Array, gained: Array
+        self, watch: DriveWatch, time: float, state: Array, gained: Array
     ) -> tuple[bool, Array]:
         """Change what an event changes; whether the run goes on, and from which state."""
         kind = self._reached(watch.kind, state)
@@ -489,7 +489,7 @@ class DrivesIntegration:
         each = float(where.speeds[place, 0]), float(where.angles[place, 0])
         self.drivers[place].observe(*each, time, reached=True)
 
-    def _settle(self, joint: int, at: tuple[Span, float]) -> None:
+    def _settle(self, joint: int, at: tuple[TimeSpan, float]) -> None:
         """The sense of a joint's motion begins to change, or has changed, at a place of a span."""
         others = self.rates.others(at[0].others(np.array([at[1]])))
         settled = self.rates.settled.copy()
@@ -534,23 +534,23 @@ class DrivesIntegration:
         self.events.append(DriveEvent(kind, time, self._crank_angle(time, state), of))
 
 
-def _value(place: int) -> Callable[[Instants], Array]:
+def _value(place: int) -> Callable[[SpanInstants], Array]:
     """A value of the state."""
     return lambda now: now.states[place]
 
 
-def _way_left(way: float, origin: float) -> Callable[[Instants], Array]:
+def _way_left(way: float, origin: float) -> Callable[[SpanInstants], Array]:
     """What is left of a way of the crank from an angle, rad."""
     return lambda now: way - np.abs(now.states[0] - origin)
 
 
-def joined(tracks: Sequence[Track]) -> Track:
+def joined(tracks: Sequence[DrivesTrack]) -> DrivesTrack:
     """All parts of a track, one after the other."""
 
     def whole(parts: Iterable[Array]) -> Array:
         return np.concatenate([*parts], axis=-1)
 
-    return Track(
+    return DrivesTrack(
         whole(track.time for track in tracks),
         whole(track.states for track in tracks),
         whole(track.quadratures for track in tracks),

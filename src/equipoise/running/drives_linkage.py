@@ -269,7 +269,7 @@ def cannot_be_assembled() -> ResponseError:
 
 
 @dataclass(frozen=True, eq=False)
-class Applied:
+class AppliedForces:
     """What acts on a machine beside its drives and friction in joints, by the keys of sources.
 
     pace : speed (K,) of the crank, rad/s.  factors : (K,) of each load over time.
@@ -285,7 +285,7 @@ class Applied:
 
     def demands(self, key: str) -> Demands:
         """What holds a source."""
-        return SOURCES.get(key, Applied._elements)(self, key)
+        return SOURCES.get(key, AppliedForces._elements)(self, key)
 
     def _elements(self, key: str) -> Demands:
         cause = next(cause for cause in ELEMENTS if f"{cause}s" == key)
@@ -321,10 +321,10 @@ class Applied:
         return demands_of(motion, acting)
 
 
-SOURCES: Mapping[str, Callable[[Applied, str], Demands]] = {
-    "weight": Applied._weight,
-    "springs": Applied._springs,
-    LOADS: Applied._loads,
-    "timed_loads": Applied._timed,
-    "soil": Applied._soil,
+SOURCES: Mapping[str, Callable[[AppliedForces, str], Demands]] = {
+    "weight": AppliedForces._weight,
+    "springs": AppliedForces._springs,
+    LOADS: AppliedForces._loads,
+    "timed_loads": AppliedForces._timed,
+    "soil": AppliedForces._soil,
 }

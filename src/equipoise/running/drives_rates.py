@@ -15,7 +15,7 @@ from equipoise.running.drives_equation import DriveAngles, DrivesEquation
 from equipoise.running.drives_linkage import References
 from equipoise.running.equation import just_after
 from equipoise.running.friction import FRICTION
-from equipoise.running.time_collocation import Values
+from equipoise.running.time_collocation import NodeValues
 from equipoise.signals import Array
 
 BRAKED = 1e-3
@@ -23,7 +23,7 @@ BRAKED = 1e-3
 BRAKE = "brake"
 
 
-class Others(NamedTuple):
+class DrivesReadings(NamedTuple):
     """What else is known in K states.
 
     torques : of all drives (N, K), N m.  margins : of dyads (D, K).  joint_rates : (J, K) of joints
@@ -93,12 +93,12 @@ class DrivesRates:
         states = np.array([1.0] * self.count + [self.usual] * self.count + rated)
         return states, np.full(2 * len(self.circuits) + len(self.works), energy)
 
-    def others(self, rows: Array) -> Others:
-        """By the rows of `Values.others` (O, K)."""
+    def others(self, rows: Array) -> DrivesReadings:
+        """By the rows of `NodeValues.others` (O, K)."""
         drives, dyads = len(self.drivers), len(self.equation.dyads)
-        return Others(rows[:drives], rows[drives : drives + dyads], rows[drives + dyads :])
+        return DrivesReadings(rows[:drives], rows[drives : drives + dyads], rows[drives + dyads :])
 
-    def at(self, time: Array, states: Array, near: References) -> Values | None:
+    def at(self, time: Array, states: Array, near: References) -> NodeValues | None:
         """Rates in K states; None where the machine cannot be, or does not obey the laws."""
         self.failure = None
         with np.errstate(all="ignore"):  # of what is tried
@@ -111,7 +111,7 @@ class DrivesRates:
                 return None
         return values if np.all(np.isfinite(values.rates)) else None
 
-    def _at(self, time: Array, states: Array, near: References) -> Values:
+    def _at(self, time: Array, states: Array, near: References) -> NodeValues:
         equation, where = self.equation, self.where(time, states)
         state = equation.at(time, just_after(self.since), where, near)
         torques = self._driving(time, where, states)
@@ -136,7 +136,7 @@ class DrivesRates:
         works += [braking * where.speeds[0]] if self.braked else []
         works += [torques[k] * where.speeds[k] for k in self.turned]
         margins = state.pose.margins([*equation.dyads.values()])
-        return Values(
+        return NodeValues(
             np.array(np.broadcast_arrays(*rates)),
             np.array([*electric, *works]).reshape(-1, len(time)),
             np.concatenate([torques, margins, joint_rates]),

@@ -13,7 +13,7 @@ from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.result import Result
 from equipoise.running.drives_equation import DriveAngles, DrivesEquation
-from equipoise.running.drives_integration import DriveEvent, DrivesIntegration, Track, joined
+from equipoise.running.drives_integration import DriveEvent, DrivesIntegration, DrivesTrack, joined
 from equipoise.running.electric import Electric
 from equipoise.running.friction import FRICTION
 from equipoise.running.integration import Limits
@@ -217,7 +217,7 @@ def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> Drives
 
 
 def _electric(
-    integration: DrivesIntegration, drive: int, track: Track, where: DriveAngles
+    integration: DrivesIntegration, drive: int, track: DrivesTrack, where: DriveAngles
 ) -> Electric | None:
     """The circuit of a drive's motor; None of one without."""
     rates = integration.rates

@@ -42,7 +42,7 @@ GROWS = 1e3
 
 
 @dataclass(frozen=True, eq=False)
-class Values:
+class NodeValues:
     """What a function gives in K states.
 
     rates : (n, K) of the states.  quadratures : (Q, K) of what does not act back on these.
@@ -55,12 +55,12 @@ class Values:
     references: Mapping[str, Array] = field(default_factory=dict)
 
 
-Function = Callable[[Array, Array, Mapping[str, Array]], "Values | None"]
-"""Values at times (K,), s, and states (n, K), near references; None where there are none."""
+Function = Callable[[Array, Array, Mapping[str, Array]], "NodeValues | None"]
+"""NodeValues at times (K,), s, and states (n, K), near references; None where there are none."""
 
 
 @dataclass(frozen=True, eq=False)
-class Span:
+class TimeSpan:
     """The motion over a span of time.
 
     begin, width : s.  start : states (n,) at the begin.  gained : quadratures (Q,) by then.
@@ -71,7 +71,7 @@ class Span:
     width: float
     start: Array
     gained: Array
-    values: Values
+    values: NodeValues
 
     def time(self, x: Any) -> Any:
         """Times, s, at places from -1 to 1."""
@@ -123,7 +123,7 @@ class Span:
 
 
 def between_nodes(values: Array, x: Array) -> Array:
-    """Values (..., K) at places (K,) from -1 to 1, by those (..., NODES) at the nodes."""
+    """NodeValues (..., K) at places (K,) from -1 to 1, by those (..., NODES) at the nodes."""
     return np.asarray(values @ TO_CHEBYSHEV.T @ polynomials(x)[:, :NODES].T)
 
 
@@ -133,7 +133,7 @@ def solved_span(
     start: tuple[Array, Array],
     guess: tuple[Array, Mapping[str, Array]],
     sizes: Array,
-) -> Span | None:
+) -> TimeSpan | None:
     """The motion from a begin, s, over a width, s; None where Newton's method does not arrive.
 
     start : states (n,) and quadratures (Q,).  guess : states (n, NODES), and references near them.
@@ -151,7 +151,7 @@ def solved_span(
         missed = start[0][:, None] + values.rates @ paths.T - states
         most = float(np.max(np.abs(missed) / sizes[:, None]))
         if most <= CLOSE:
-            return Span(begin, width, *start, values)
+            return TimeSpan(begin, width, *start, values)
         if not most < GROWS:
             return None
         if inverse is None or most > QUICK * before:
@@ -196,7 +196,7 @@ def _inverse(slopes: Array, paths: Array) -> Array:
         return np.full((size, size), np.nan)
 
 
-def unresolved(span: Span, sizes: Array, works: Array) -> float:
+def unresolved(span: TimeSpan, sizes: Array, works: Array) -> float:
     """Size of the last coefficients of a span over what states, and quadratures, are at most.
 
     sizes : (n,).  works : (Q,).
