@@ -18,6 +18,7 @@ import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.mechanism.dynamics.section_loads import SectionLoads
 from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.run_plans import DutyState
 from equipoise.mechanism.parts.sections import LinkSection
 from equipoise.results.blocks import Table
 from equipoise.schema.files import to_csv
@@ -190,6 +191,49 @@ def test_life_follows_from_the_stress_of_a_cycle() -> None:
     assert told.cycles_to_failure == pytest.approx(1e6 * (180e6 / swing) ** 5, rel=0.2)
     endless = eq.analyze(engine()).sections["rod"]
     assert endless.cycles_to_failure is None and endless.fatigue_safety > 1
+
+
+def test_life_over_duty_states_is_that_of_each_alone() -> None:
+    """Miner's sum over the operating time of machines that always work so; one place is the worst
+    in all of them, as in each the gas bends nothing and inertia does.
+    """
+    machine = engine(height="5 mm", width="3 mm", fatigue_limit="60 MPa", tensile_strength=None)
+    duty = (DutyState(0.6), DutyState(1.0, "2900 rpm"), DutyState(0.4, "3400 rpm", 0.0))
+    alone = []
+    for state in duty:
+        speed = machine.drive.speed if state.speed is None else state.speed
+        loads = state.scaled(machine.loads)
+        alone.append(eq.analyze(replace(machine, loads=loads).with_drive(speed=speed)))
+    shares = np.array([state.share for state in duty]) / 2.0
+    periods = np.array([2 * pi / item.machine.drive.speed for item in alone])
+    each = [item.sections["rod"] for item in alone]
+    lives = np.array([np.inf if item.life is None else item.life for item in each])
+    found = eq.analyze(replace(machine, duty=duty)).sections["rod"]
+    assert found.life is not None and found.cycles_to_failure is not None
+    together = 1 / np.sum(shares / lives)
+    # of places that differ from state to state the worst of all is at least as good as that
+    assert found.life == pytest.approx(together, rel=0.02) and found.life >= together * (1 - 1e-9)
+    assert found.cycles_to_failure == pytest.approx(found.life * np.sum(shares / periods))
+    for name in ("stress", "tension", "compression", "shear", "bending_moment", "deflection"):
+        assert getattr(found, name) == pytest.approx(max(getattr(item, name) for item in each))
+    for name in ("safety", "buckling_safety", "fatigue_safety"):
+        assert getattr(found, name) == pytest.approx(min(getattr(item, name) for item in each))
+    (title,) = (
+        str(table.title)
+        for table in analysis_tables(replace(machine, duty=duty))
+        if "stress along links" in str(table.title)
+    )
+    assert title.endswith("over 3 duty states")
+
+
+def test_one_duty_state_as_the_machine_runs_changes_nothing() -> None:
+    machine = engine()
+    found = eq.analyze(replace(machine, duty=(DutyState(7.0),))).sections
+    assert found == eq.analyze(machine).sections
+
+
+def analysis_tables(machine: eq.Machine) -> list[Table]:
+    return [block for block in eq.analyze(machine).blocks() if isinstance(block, Table)]
 
 
 def test_they_are_reported_everywhere() -> None:

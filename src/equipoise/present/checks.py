@@ -388,7 +388,9 @@ def _drive_train(machine: Machine) -> Iterator[str]:
     if machine.timed_loads:
         yield say("loads over time, in runs alone: {count}", count=len(machine.timed_loads))
     if machine.duty:
-        yield say("duty states for the lives of bearings: {count}", count=len(machine.duty))
+        yield say(
+            "duty states for the lives of bearings and links: {count}", count=len(machine.duty)
+        )
     if machine.rows:
         unit = display("angle")
         shown = [unit.text(row.phase) for row in machine.rows[:MOST_SHOWN]]

@@ -49,6 +49,11 @@ def section_blocks(analysis: Analysis) -> Iterator[Block]:
     columns.append(Column(say("life"), "time", "h"))
     shown = [k for k in range(len(columns)) if any(row[k] is not None for row in strength)]
     title = say("Largest stress along links (at crank angle), and safety")
+    if states := len(analysis.machine.duty):
+        title = say(
+            "Largest stress along links (at crank angle), and safety, over {count} duty states",
+            count=states,
+        )
     rows = ([row[k] for k in shown] for row in strength)
     yield Table.of(title, [columns[k] for k in shown], rows)
     yield from _elastic_blocks(analysis)

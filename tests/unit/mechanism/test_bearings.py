@@ -101,7 +101,7 @@ def test_life_over_duty_states_by_hand() -> None:
 def test_check_counts_duty_states(tmp_path: Any) -> None:
     eq.save(replace(engine(), duty=DUTY, loads=()), tmp_path / "duty.toml")
     out = equipoise("check", str(tmp_path / "duty.toml")).out
-    assert "duty states for the lives of bearings: 3" in out
+    assert "duty states for the lives of bearings and links: 3" in out
 
 
 def test_one_duty_state_as_the_machine_runs_changes_nothing() -> None:

@@ -8,7 +8,8 @@ that all cycles use up add to 1 where it breaks (Palmgren and Miner).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from math import inf, pi
 from typing import Any
@@ -18,6 +19,7 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, to_say
+from equipoise.mechanism.dynamics.bearing_life import WorkingState, working_states
 from equipoise.mechanism.dynamics.elastic import elastic_link, other_places
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.section_loads import FIBRES, SectionLoads
@@ -25,6 +27,8 @@ from equipoise.mechanism.kinematics.strokes import figure
 from equipoise.mechanism.parts.machine import Link
 from equipoise.signals import Array
 
+LARGEST = ("tension", "compression", "shear", "bending_moment")
+"""Figures of which the largest of all duty states counts."""
 SMALL = 1e-9
 """Share of the largest size of a load below which a turn back is rounding."""
 
@@ -160,11 +164,11 @@ def damage(cycles: LoadCycles, line: WoehlerLine, tensile_strength: float | None
 
 @dataclass(frozen=True)
 class LinkStress:
-    """Figures of a link with a section over a whole cycle of even speed.
+    """Figures of a link with a section over a whole cycle of even speed, in all duty states.
 
     fibre : ``left`` or ``right`` of the line, where the stress is largest.
-    stress : largest size of the normal stress, Pa.  place : of it, from the first point, m.
-    stress_at : crank angle of it, rad.
+    stress : largest size of the normal stress, Pa, in the duty state where it is largest.
+    place : of it, from the first point, m.  stress_at : crank angle of it, rad.
     tension, compression : largest axial forces, N; 0 where there is none.
     shear : largest shear force, N.  bending_moment : largest one, N m.
     safety : yield strength over the stress; None where it is not given.
@@ -209,20 +213,60 @@ class LinkStress:
 
 
 def link_stresses(forces: Forces) -> Mapping[str, LinkStress]:
-    """Figures of links with sections by name; none where the crank is not turned evenly, or the
-    crank angles are not those of a whole cycle.
+    """Figures of links with sections by name, over all duty states of the machine; none where the
+    crank is not turned evenly, or the crank angles are not those of a whole cycle.
     """
     motion = forces.motion
-    if not motion.whole_cycle or motion.acceleration or not motion.speed:
+    if not motion.whole_cycle or motion.acceleration or not motion.speed or not forces.sections:
         return {}
-    period = 2 * pi * motion.turns / abs(motion.speed)
-    return {
-        name: _figures(loads, motion.machine.links[name], motion.crank_angle, period)
-        for name, loads in forces.sections.items()
-    }
+    states = tuple(working_states(forces))
+    return {name: _over(states, name) for name in forces.sections}
 
 
-def _figures(loads: SectionLoads, link: Link, angles: Array, period: float) -> LinkStress:
+def _over(states: Sequence[WorkingState], name: str) -> LinkStress:
+    """Figures of a link over duty states: the largest of each load, the least of each safety, and
+    the life in which all states together break it.
+    """
+    link = states[0].forces.motion.machine.links[name]
+    each = [
+        _figures(state.forces.sections[name], link, state.forces.motion.crank_angle)
+        for state in states
+    ]
+    worst = max(each, key=lambda figures: figures.stress)
+    if len(each) > 1:
+        bent = max(each, key=lambda figures: figures.deflection or 0.0)
+        worst = replace(
+            worst,
+            deflection=bent.deflection,
+            deflection_at=bent.deflection_at,
+            path_error=_most(figures.path_error for figures in each),
+            buckling_safety=_least(figures.buckling_safety for figures in each),
+            **{load: max(getattr(figures, load) for figures in each) for load in LARGEST},
+        )
+    cycles, fatigue_safety = _fatigue([(state, state.forces.sections[name]) for state in states])
+    rate = sum(state.share / _period(state) for state in states)
+    life = None if cycles is None else cycles / rate
+    return replace(worst, fatigue_safety=fatigue_safety, cycles_to_failure=cycles, life=life)
+
+
+def _most(values: Iterable[float | None]) -> float | None:
+    """The largest of those that are known."""
+    return max((value for value in values if value is not None), default=None)
+
+
+def _least(values: Iterable[float | None]) -> float | None:
+    """The smallest of those that are known."""
+    return min((value for value in values if value is not None), default=None)
+
+
+def _period(state: WorkingState) -> float:
+    """Time of a cycle in a duty state, s."""
+    motion = state.forces.motion
+    return 2 * pi * motion.turns / abs(motion.speed)
+
+
+def _figures(loads: SectionLoads, link: Link, angles: Array) -> LinkStress:
+    """Figures of a link in one duty state, without those of fatigue."""
     section, most = loads.section, loads.envelope
     side, k = np.unravel_index(int(np.argmax(most.stresses)), most.stresses.shape)
     cut = loads.cuts[int(k)]
@@ -230,7 +274,6 @@ def _figures(loads: SectionLoads, link: Link, angles: Array, period: float) -> L
     stress = float(most.stresses[side, k])
     pressed = max(most.compression, 0.0)
     buckles = section.buckling_load(loads.length)
-    cycles, fatigue_safety = _fatigue(loads)
     return LinkStress(
         FIBRES[int(side)],
         stress,
@@ -242,9 +285,9 @@ def _figures(loads: SectionLoads, link: Link, angles: Array, period: float) -> L
         float(np.max(most.bending_moment)),
         section.yield_strength / stress if section.yield_strength and stress else None,
         buckles / pressed if buckles is not None and pressed > 0 else None,
-        fatigue_safety,
-        cycles,
-        None if cycles is None else cycles * period,
+        None,
+        None,
+        None,
         loads.mass.rod,
         min(loads.mass.first, loads.mass.last),
         *_elastic(loads, link, angles),
@@ -265,20 +308,28 @@ def _elastic(
     return elastic.natural_frequency, float(sizes[n]), float(angles[n]), worst
 
 
-def _fatigue(loads: SectionLoads) -> tuple[float | None, float | None]:
+def _fatigue(
+    states: Sequence[tuple[WorkingState, SectionLoads]],
+) -> tuple[float | None, float | None]:
     """Cycles of the machine to failure at the worst place, None where it is endless; and safety
-    of the fatigue limit.
+    of the fatigue limit.  Of duty states cycles as often as they come in the operating time.
     """
-    section = loads.section
+    section = states[0][1].section
     if section.fatigue_limit is None:
         return None, None
     line = WoehlerLine(section.fatigue_limit, section.knee_cycles, section.slope)
-    worst, largest = 0.0, 0.0
-    for cut in (item for item in loads.cuts if item.fixed):
-        for stress in loads.in_fibres(loads.in_cut(cut)):
-            counted = rainflow(stress, repeats=True)
-            worst = max(worst, damage(counted, line, section.tensile_strength))
-            amplitudes = amplitudes_about_zero(counted, section.tensile_strength)
-            largest = max(largest, float(np.max(amplitudes, initial=0.0)))
+    rates = [state.share / _period(state) for state, _ in states]
+    damages, largest = dict[tuple[float, bool, int], float](), 0.0
+    for rate, (_, loads) in zip(rates, states, strict=True):
+        share = rate / sum(rates)
+        for cut in (item for item in loads.cuts if item.fixed):
+            for side, stress in enumerate(loads.in_fibres(loads.in_cut(cut))):
+                counted = rainflow(stress, repeats=True)
+                place = float(cut.at[0]), cut.behind, side
+                done = share * damage(counted, line, section.tensile_strength)
+                damages[place] = damages.get(place, 0.0) + done
+                amplitudes = amplitudes_about_zero(counted, section.tensile_strength)
+                largest = max(largest, float(np.max(amplitudes, initial=0.0)))
+    worst = max(damages.values(), default=0.0)
     safety = None if largest == 0 else section.fatigue_limit / largest if largest < inf else 0.0
     return (1 / worst if worst > 0 else None), safety

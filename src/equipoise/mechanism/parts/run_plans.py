@@ -40,7 +40,9 @@ class RunPlan(Frozen):
 
 @declared
 class DutyState(Frozen):
-    """One state of a machine's duty; the lives of its bearings are those of all states together."""
+    """One state of a machine's duty; lives of its bearings and links are those of all states
+    together.
+    """
 
     called = to_say("{what} of duty state {number}")
 
@@ -57,8 +59,7 @@ class DutyState(Frozen):
 
     def scaled(self, loads: tuple[Load, ...]) -> tuple[Load, ...]:
         """Loads of a machine as they are in this state."""
-        factor = self.load_factor
-        return tuple(_scaled(load, factor) for load in loads) if factor else ()
+        return tuple(_scaled(load, self.load_factor) for load in loads)
 
 
 def _scaled(load: Load, factor: float) -> Load:
