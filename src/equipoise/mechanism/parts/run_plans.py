@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from equipoise.i18n import to_say
 from equipoise.keys import Frozen, Number, declared, key
@@ -71,7 +72,8 @@ def _scaled(load: Load, factor: float) -> Load:
         if gas is not None:
             beyond = (factor * (pressure - load.back_pressure) for pressure in gas.pressure)
             pressures = tuple(load.back_pressure + pressure for pressure in beyond)
-            return replace(load, **{name: replace(gas, pressure=pressures)})
+            scaled: dict[str, Any] = {name: replace(gas, pressure=pressures)}
+            return replace(load, **scaled)
     assert load.table is not None
     columns = tuple(tuple(value * factor for value in column) for column in load.table.values)
     return replace(load, table=replace(load.table, values=columns))
