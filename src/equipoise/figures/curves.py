@@ -300,7 +300,7 @@ def sample_of(role: str) -> list[Shape]:
     """Shapes that stand for a role in a legend."""
     look = looks.LOOKS[role]
     if role == "mass":
-        return mass(0)
+        return [*mass(0)]
     signs = {"gauge": gauge(0, 0), "foot": [circle("foot", 0, grown=PIN)]}
     signs |= {name: [circle(name, 0, grown=3.0)] for name in ("dot", "float", "pin")}
     spring = zigzag(-15, 15, 4)

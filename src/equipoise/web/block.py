@@ -23,11 +23,10 @@ class FloatBlock:
 
     def add(self, name: str, values: Array) -> None:
         """Add real (N,) values, or complex ones as (2 N,): x and y in turn."""
-        flat = np.ascontiguousarray(values)
+        flat = np.ascontiguousarray(values).ravel()
         if np.iscomplexobj(flat):
             flat = flat.view(float)
-        with np.errstate(over="ignore"):  # what no drawing could show
-            self.parts.append(flat.astype("<f4"))
+        self.parts.append(flat)
         self.places[name] = (self.size, flat.size)
         self.size += flat.size
 
@@ -39,4 +38,7 @@ class FloatBlock:
     @property
     def data(self) -> bytes:
         """All arrays, little-endian."""
-        return b"".join(part.tobytes() for part in self.parts)
+        if not self.parts:
+            return b""
+        with np.errstate(over="ignore"):  # what no drawing could show
+            return np.concatenate(self.parts, dtype="<f4", casting="unsafe").tobytes()
