@@ -170,6 +170,13 @@ def test_two_motors_turn_a_five_bar_with_friction_in_its_pins() -> None:
     assert min(lost[-1] for lost in found.losses.values()) > 0.001 * total[-1]
 
 
+def test_the_bundled_mixer_starts_by_two_motors() -> None:
+    machine = eq.load("two-motor-mixer")
+    found = against_free_bodies(machine, 0.06, {})
+    assert {*found.losses} == {"A", "B", "C", "D", "E"}
+    assert all(course.turns > 0.05 for course in found.drives.values())
+
+
 def test_a_five_bar_swings_to_rest_by_friction() -> None:
     """Joints turn back at instants of their own."""
     drive = eq.Drive("left crank", 5.0, free=True)
