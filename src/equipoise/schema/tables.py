@@ -22,7 +22,7 @@ from contextvars import ContextVar
 from dataclasses import fields
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note, all_of, any_of
@@ -446,7 +446,7 @@ def parse_table(sort: str, text: str, file: str = "") -> CsvTable:
         parts = tuple(columns.get(name, none) for name in ("force_x", "force_y"))
         return LoadTable(angles, parts, file)
     if sort == "indicator":
-        over = next(name for name in OVER if name in columns)
+        over: Literal["volume", "position"] = "volume" if "volume" in columns else "position"
         return IndicatorDiagram(columns[over], columns["pressure"], over, file)
     if "magnitude" in columns:
         pairs = zip(columns["magnitude"], columns["phase"], strict=True)
