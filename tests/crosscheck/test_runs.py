@@ -18,6 +18,7 @@ from equipoise.exchange import mjcf
 from equipoise.exchange.formats import Job
 from equipoise.mechanism import JointProperties
 from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.running.drives_run import DrivesRun
 from equipoise.running.run import Run
 from support.machines import make
 from support.poses import Array
@@ -60,8 +61,8 @@ CLOSE_FREE = 1e-6
 machine whose speed follows wrong masses is off by 0.1 rad."""
 
 
-def in_mujoco(machine: eq.Machine, duration: float) -> Array:
-    """Angle of the crank at the ends of all steps, from the exported file alone."""
+def in_mujoco(machine: eq.Machine, duration: float, link: str = "") -> Array:
+    """Angle of a link, or of the crank, at the ends of all steps, from the exported file alone."""
     mujoco = pytest.importorskip("mujoco")
     model = mujoco.MjModel.from_xml_string(mjcf.export_bytes(Job(machine)))
     step = duration / STEPS
@@ -73,7 +74,7 @@ def in_mujoco(machine: eq.Machine, duration: float) -> Array:
     model.eq_solref[:] = [-(rate**2), -2 * rate]
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
-    place = model.joint(machine.drive.link).qposadr[0]
+    place = model.joint(link or machine.drive.link).qposadr[0]
     angles = [float(data.qpos[place])]
     for _ in range(STEPS):
         mujoco.mj_step(model, data)
@@ -89,6 +90,26 @@ def test_free_motion_is_that_of_mujoco(kind: str) -> None:
     wanted = in_mujoco(machine, float(run.time[-1]))
     times = np.linspace(0.0, run.time[-1], STEPS + 1)
     np.testing.assert_allclose(crank_angles(run, times), wanted, atol=CLOSE_FREE)
+
+
+def test_two_free_cranks_move_as_in_mujoco() -> None:
+    """Of a five-bar, whose cranks feel each other by its arms."""
+    base = eq.load("two-motor-mixer")
+    (other,) = base.drives
+    machine = replace(
+        base, joints=(), run=None, drive=replace(base.drive, motor=None, free=True),
+        drives=(replace(other, motor=None, free=True),),
+    )  # fmt: skip
+    duration = 0.25
+    run = eq.run(machine, duration)
+    assert isinstance(run, DrivesRun)
+    times = np.linspace(0.0, duration, STEPS + 1)
+    time, places = np.unique(run.time, return_index=True)
+    for link, course in run.drives.items():
+        assert np.ptp(course.speed) > 0.05 * base.drive.speed
+        angles = CubicHermiteSpline(time, course.angle[places], course.speed[places])(times)
+        wanted = in_mujoco(machine, duration, link)
+        np.testing.assert_allclose(angles - angles[0], wanted, atol=CLOSE_FREE)
 
 
 # -- Exudyn ----------------------------------------------------------------------------------------

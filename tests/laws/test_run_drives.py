@@ -231,6 +231,26 @@ def test_a_motor_of_a_further_drive_without_a_curve_is_refused() -> None:
     assert str(further.value) == "drives[1].motor" + str(first.value).removeprefix("drive.motor")
 
 
+def test_dry_friction_brings_two_cranks_to_rest() -> None:
+    machine = replace(
+        cranks(eq.Drive("left", 30.0, free=True), FurtherDrive("right", free=True)),
+        joints=(
+            JointProperties("joints.A", drag_torque=4.0),
+            JointProperties("joints.B", drag_torque=2.0),
+        ),
+    )
+    found = eq.run(machine, "60 s")
+    assert found.end.kind == "standstill"
+    assert found.end.time == pytest.approx(INERTIA * 30.0 / 2.0, rel=1e-2)
+    for joint in ("A", "B"):
+        assert found.losses[joint][-1] == pytest.approx(INERTIA * 30.0**2 / 2, rel=1e-5)
+    left = found.drives["left"]
+    turning = found.time < 0.99 * INERTIA * 30.0 / 4.0
+    wanted = 30.0 - 4.0 / INERTIA * found.time[turning]
+    np.testing.assert_allclose(left.speed[turning], wanted, atol=1e-8)
+    assert found.energy_error < 1e-9
+
+
 def beside(machine: eq.Machine) -> eq.Machine:
     """A machine with one crank, and a crank of its own beside it that it does not feel."""
     lone = eq.Link({"lone pivot": (0.0, 0.0)}, MASS, (ARM, 0.0), OWN)

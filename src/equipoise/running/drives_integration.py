@@ -18,7 +18,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import LockError, ModelError, ResponseError
 from equipoise.i18n import Note
 from equipoise.running.drives_equation import DrivesEquation
-from equipoise.running.drives_friction import leaving, settled_at
+from equipoise.running.drives_friction import NEAR_REST, leaving, settled_at
 from equipoise.running.drives_linkage import References, cannot_be_assembled, references_at
 from equipoise.running.drives_rates import DrivesRates, DrivesReadings
 from equipoise.running.equation import just_after
@@ -35,8 +35,8 @@ FIRST_WIDTH = 0.05
 """rad at the usual speed, in the first span."""
 SHORTEST = 1e-12
 """rad at the usual speed: a span in which nothing moves, over what changes suddenly."""
-MOST_SPANS = 20_000
-"""Of a run: some minutes; a turn takes some ten."""
+MOST_SPANS = 5_000
+"""Of a run: a minute or two; a turn takes some ten to fifty."""
 ROWS = np.linspace(-1.0, 1.0, 33)[1:]
 """Places of a span at which the track has its rows, from -1 to 1: lines between them with the right
 angles and speeds at both ends are off by less than the integration is."""
@@ -46,6 +46,9 @@ STEADY = 1e-6
 """Share by which speeds may differ from those a cycle before, in a steady state."""
 AT_REST = 1e-6
 """Share of the usual speed, and of what gives it in a radian, below which a machine stands."""
+CREEPING = 1e-5
+"""Share as of `AT_REST` of what gives speeds, below which a machine that is slower than near rest
+is held by friction, which lets it creep there."""
 DEAD = 1e-6
 """Squared sine of a transmission angle at which the motion is followed no further: the links of the
 dyad run through their dead position so fast that spans become too short."""
@@ -435,6 +438,11 @@ class DrivesIntegration:
         if on and self.limits.off_turns < inf:
             yield "off", self.limits.off_turns * 2 * pi, self.start
 
+    @property
+    def _held(self) -> bool:
+        """Whether friction, or a brake, holds a machine at rest."""
+        return self.equation.friction is not None or self.drivers[0].holding() > 0
+
     def _activity(self, now: SpanInstants) -> Array:
         """How far a machine is (K,) from a rest that lasts: speeds and accelerations over usual
         ones, or what a current is still to grow; 1 while a load or a reference changes with time.
@@ -442,8 +450,9 @@ class DrivesIntegration:
         if self.equation.given or (self.corners and self.corners[-1] > now.times[0]):
             return np.ones(len(now.times))
         count = self.rates.count
-        sizes = [*np.abs(now.states[count : 2 * count]) / self.usual]
-        sizes += [*np.abs(now.rates[count : 2 * count]) / self.usual**2]
+        slow, even = (NEAR_REST, CREEPING) if self._held else (AT_REST, AT_REST)
+        sizes = [*np.abs(now.states[count : 2 * count]) / self.usual * (AT_REST / slow)]
+        sizes += [*np.abs(now.rates[count : 2 * count]) / self.usual**2 * (AT_REST / even)]
         where = self.rates.where(now.times, now.states)
         for k in self.rates.lagging:
             driver = self.drivers[k]
