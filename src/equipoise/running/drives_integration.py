@@ -439,7 +439,7 @@ class DrivesIntegration:
             yield "off", self.limits.off_turns * 2 * pi, self.start
 
     @property
-    def _held(self) -> bool:
+    def _holds_itself(self) -> bool:
         """Whether friction, or a brake, holds a machine at rest."""
         return self.equation.friction is not None or self.drivers[0].holding() > 0
 
@@ -450,7 +450,7 @@ class DrivesIntegration:
         if self.equation.given or (self.corners and self.corners[-1] > now.times[0]):
             return np.ones(len(now.times))
         count = self.rates.count
-        slow, even = (NEAR_REST, CREEPING) if self._held else (AT_REST, AT_REST)
+        slow, even = (NEAR_REST, CREEPING) if self._holds_itself else (AT_REST, AT_REST)
         sizes = [*np.abs(now.states[count : 2 * count]) / self.usual * (AT_REST / slow)]
         sizes += [*np.abs(now.rates[count : 2 * count]) / self.usual**2 * (AT_REST / even)]
         where = self.rates.where(now.times, now.states)
