@@ -323,7 +323,7 @@ HIGH_OF_HALF = {1: 110.0, 2: 70.0, 3: 50.0, 4: 38.0}
 LEAST, MOST, ROOM, SMALL_ROOM = 110.0, 345.0, 26.0, 0.13
 """Height of panels of one scale at least and at most; free in them around what is drawn, points
 or, in small ones, a share."""
-MOST_OF_HALF, ONE_OF_HALF = 140.0, 127.0
+MOST_OF_HALF, ONE_OF_HALF = 300.0, 150.0
 """Height of all such panels in half of a page, and of one."""
 
 

@@ -73,6 +73,7 @@ class Laid:
             panels_left,
             supports_cut,
             machines_small,
+            drawings_low,
             alike_in_grey,
         )
         return [fault for check in checks for fault in check(self)]
@@ -236,6 +237,18 @@ def machines_small(laid: Laid) -> Iterator[Fault]:
             x, y = (np.ptp(part) for part in _places(view, view.panel.signs).T)
             if max(x / view.x.length, y / view.y.length) < SMALLEST:
                 yield "machine too small", _told(view)
+
+
+LOWEST_DRAWING = 72.0
+"""Points of the shorter side of axes of one scale, where no others stand beside them."""
+
+
+def drawings_low(laid: Laid) -> Iterator[Fault]:
+    """Machines and paths are large enough for the words at them, also in half of a page."""
+    for view, _ in laid.panels if laid.chart.columns == 1 else ():
+        low = min(view.x.length, view.y.length) < LOWEST_DRAWING
+        if view.panel.equal and not view.panel.bare and low:
+            yield "drawing too low", f"{_told(view)}: {view.y.length:.0f} points"
 
 
 def supports_cut(laid: Laid) -> Iterator[Fault]:

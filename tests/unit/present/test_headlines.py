@@ -237,9 +237,9 @@ def empty(name: str) -> list[float]:
         {"brush-cutter", "straw-walker"},
     ),
 )
-def test_no_quarter_of_a_page_is_empty_but_of_the_last(name: str) -> None:
+def test_no_third_of_a_page_is_empty_but_of_the_last(name: str) -> None:
     *pages, _ = empty(name)
-    assert max(pages) < 0.25, pages
+    assert max(pages) < 1 / 3, pages
 
 
 def pages_of(labels: dict[str, int], *source: str) -> dict[str, list[int]]:
