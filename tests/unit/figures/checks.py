@@ -190,7 +190,10 @@ def numbers_on_bars(laid: Laid) -> Iterator[Fault]:
             if bars.across != "x" or view.y.axis.scale == "log":
                 continue
             ends = (view.x.at(bars.at + side * np.asarray(bars.width) / 2) for side in (-1, 1))
-            for left, right, top in zip(*ends, view.y.at(bars.size), strict=True):
+            tops = np.where(
+                bars.size > 0, view.y.at(bars.size), np.inf
+            )  # not of those that go down
+            for left, right, top in zip(*ends, tops, strict=True):
                 for one in numbers:
                     start, _, end, bottom = box_of(one)
                     beside = min(right, end) - max(left, start) > 1
