@@ -147,8 +147,10 @@ class DrivesPose:
     @cached_property
     def _turned(self) -> tuple[Array, Array]:
         """Force and moment (L, K) that links demand while no drive accelerates."""
+        first, second, turn, w, a = (part[:, -1] for part in self._rates)
+        mass, moment, inertia = self._numbers
         pair: tuple[Array, Array] = kernels.inertia_demand(
-            *(part[:, -1] for part in self._rates), 1.0, 0.0, *self._numbers
+            first, second, turn, w, a, 1.0, 0.0, mass, moment, inertia
         )
         return pair
 
