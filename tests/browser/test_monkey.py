@@ -9,6 +9,7 @@ the minutes that it is to play; `build/monkey-0.txt` tells of memory.
 from __future__ import annotations
 
 import io
+import json
 import os
 import random
 import re
@@ -58,6 +59,20 @@ TABLES = [*Path(eq.__file__).parent.glob("examples/*.csv")]
 LONGEST = 1000
 """ms that the monkey waits for one thing."""
 MISTAKE = b"went wrong inside the program"
+HEAR = """mistake => {
+    const Plain = Worker;
+    window.Worker = class extends Plain {
+        constructor(...given) {
+            super(...given);
+            this.addEventListener("message", ({ data }) => {
+                if (!(data instanceof Uint8Array)) return;
+                const begin = new TextDecoder().decode(data.subarray(0, 500));
+                if (begin.includes(mistake)) console.error(begin);
+            });
+        }
+    };
+}"""
+"""Reports answers of a worker that tell of a mistake, as those of a server are heard."""
 FOUND = """([what, chance]) => {
     document.querySelector("[data-found]")?.removeAttribute("data-found");
     const open = document.querySelector("dialog[open]") ?? document;
@@ -94,6 +109,7 @@ class Monkey:
 
     def __post_init__(self) -> None:
         self.live.page.on("websocket", lambda socket: socket.on("framereceived", self._hear))
+        self.live.page.add_init_script(f"({HEAR})({json.dumps(MISTAKE.decode())})")
 
     def _hear(self, frame: str | bytes) -> None:
         if isinstance(frame, bytes) and MISTAKE in frame:
@@ -271,10 +287,10 @@ class Monkey:
 
 @dataclass
 class Memory:
-    """What page and server hold after each round, with the same machine open."""
+    """What page and server, if there is one, hold after each round, with the same machine open."""
 
     page: CDPSession
-    server: int
+    server: int | None
     told: list[tuple[float, float, float]] = field(default_factory=list)
 
     def measure(self) -> None:
@@ -282,10 +298,15 @@ class Memory:
         self.page.send("HeapProfiler.collectGarbage")
         heap = self.page.send("Runtime.getHeapUsage")["usedSize"] / 1e6
         nodes = self.page.send("Memory.getDOMCounters")["nodes"]
+        self.told.append((heap, nodes, self._resident()))
+
+    def _resident(self) -> float:
+        if self.server is None:
+            return 0.0
         status = Path(f"/proc/{self.server}/status").read_text(encoding="ascii")
         resident = re.search(r"VmRSS:\s+(\d+)", status)
         assert resident is not None
-        self.told.append((heap, nodes, int(resident[1]) / 1e3))
+        return int(resident[1]) / 1e3
 
     def growth(self) -> list[float]:
         """How much each has grown over the last half, by the line that fits best."""
@@ -294,11 +315,14 @@ class Memory:
 
 
 @pytest.mark.parametrize("seed", range(2 if MINUTES else 1))
-def test_a_monkey(new_page: Callable[..., Page], server: tuple[str, int], seed: int) -> None:
+def test_a_monkey(
+    new_page: Callable[..., Page], address: str, request: pytest.FixtureRequest, seed: int
+) -> None:
     page = new_page(accept_downloads=True)
     monkey = Monkey(Live(page), random.Random(seed))
-    Live.open(page, server[0])
-    memory = Memory(page.context.new_cdp_session(page), server[1])
+    Live.open(page, address)
+    process = None if "#" in address else request.getfixturevalue("server")[1]
+    memory = Memory(page.context.new_cdp_session(page), process)
     end = time.monotonic() + 60 * MINUTES
     machines = cycle(MACHINES[seed:] + MACHINES[:seed])
     told = SCREENSHOTS.parent / f"monkey-{seed}.txt"
