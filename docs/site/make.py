@@ -33,7 +33,7 @@ LONG = ("model-file.md", "recipes.md", "errors.md", "conformance.md")
 TABLES_BELOW = re.compile(r"^## `\[", re.MULTILINE)
 """Headings of tables of the model file, each of which has a page of its own too."""
 TWO_WAYS = re.compile(
-    r"^(```(?:console|bash|toml)\n(?:(?!```).*\n)+```)\n\n(```python\n(?:(?!```).*\n)+```)\n",
+    r"^(```(?:console|bash|sh|toml)\n(?:(?!```).*\n)+```)\n\n(```python\n(?:(?!```).*\n)+```)\n",
     re.MULTILINE,
 )
 """A file or a command, and the same in Python."""
@@ -84,7 +84,7 @@ def lay_out(source: Path) -> None:
     from glossary import glossary
     from live import write_live
     from names import names
-    from pictures import draw
+    from pictures import draw, draw_narrow, for_both_widths
     from split import split
     from topics import write_topics
     from tutorials import tutorials
@@ -113,11 +113,13 @@ def lay_out(source: Path) -> None:
         pages["index.md"] = FRAME.sub("", pages["index.md"])
     pages |= {GALLERY[language]: text for language, text in shown.items()}
     draw(pages.values(), source)
+    draw_narrow(pages.values(), source)
     for name, text in pages.items():
         path = source / name
         path.parent.mkdir(parents=True, exist_ok=True)
         marked = ANCHOR.sub(r"(\1)=\n", REPOSITORY_ONLY.sub("", text))
-        path.write_text(SITE_ONLY.sub(r"\1", marked), encoding="utf-8")
+        whole = for_both_widths(SITE_ONLY.sub(r"\1", marked), source)
+        path.write_text(whole, encoding="utf-8")
     shutil.copytree(DOCS / "pictures", source / "pictures")
     shutil.copy(DOCS / "api.txt", source)
 

@@ -168,6 +168,57 @@ def test_a_command_stands_beside_python(page: Page, site: Path) -> None:
         assert page.locator("article img").first.get_attribute("src")
 
 
+SMALL_TEXT = 6.5
+"""Size of the smallest letters of plots, points."""
+
+
+def test_texts_of_plots_can_be_read_on_a_telephone(page: Page, site: Path) -> None:
+    """At 400 pixels another picture stands there, whose smallest letters are 8 pixels at least."""
+    sizes = """all => all.filter(one => one.offsetParent)
+        .map(one => one.clientWidth / one.naturalWidth)"""
+    for name in ("balancing.html", "figures.html", "recipes/size-a-flywheel.html"):
+        for width in WIDTHS:
+            page.set_viewport_size({"width": width, "height": 900})
+            page.goto(f"{site.as_uri()}/{name}")
+            plots = page.locator("img.where-wide, img.where-narrow")
+            expect(plots.locator("visible=true")).to_have_count(plots.count() // 2)
+            for scale in plots.evaluate_all(sizes):
+                assert SMALL_TEXT * 96 / 72 * scale >= 8 * min(width / 400, 0.9), (name, width)
+
+
+def test_names_of_functions_are_whole_on_a_telephone(page: Page, site: Path) -> None:
+    page.set_viewport_size({"width": 400, "height": 900})
+    page.goto(f"{site.as_uri()}/api/equipoise.balancing.html")
+    lines = "all => all.map(one => one.getClientRects().length)"
+    assert {*page.eval_on_selector_all("table.names td:first-child code span.pre", lines)} == {1}
+
+
+PRINTED = (
+    "index.html",
+    "glossary.html",
+    "conformance/lee-and-kim.html",
+    "api/equipoise.balancing.html",
+    "tutorials/put-it-on-mounts.html",
+    "balancing.html",
+    "recipes/balance-an-engines-couple.html",
+)
+
+
+def test_pages_are_printed_whole(page: Page, site: Path) -> None:
+    """Nothing is cut at an edge, no table waits for a page of its own, no link lies on the text."""
+    page.emulate_media(media="print")
+    page.set_viewport_size({"width": 700, "height": 1000})  # as wide as paper
+    scrolled = """all => all.filter(one => one.scrollWidth > one.clientWidth + 1
+        && getComputedStyle(one).overflowX != "visible").length"""
+    parted = """all => all.filter(one => getComputedStyle(one).overflowY != "visible").length"""
+    for name in PRINTED:
+        page.goto(f"{site.as_uri()}/{name}")
+        assert page.eval_on_selector_all("article *", scrolled) == 0, name
+        containers = "article .table-wrapper, article pre, article .highlight, article .cell-html"
+        assert page.eval_on_selector_all(containers, parted) == 0, name
+        expect(page.locator(".skip-to-content")).to_be_hidden()
+
+
 KINDS = (
     "index.html",
     "first-machine.html",

@@ -42,6 +42,20 @@ def test_every_page_on_how_to_do_something_has_a_picture() -> None:
     assert [name for name, text in pages.items() if "![" not in text] == [*WITHOUT]
 
 
+IN_PYTHON_ALONE = {"python.md", "programs.md"}
+"""A page on Python, and one on servers."""
+
+
+def test_every_page_on_how_to_do_something_has_a_command_and_the_same_in_python() -> None:
+    """Which stand side by side on the site."""
+    site = runpy.run_path(str(ROOT / "docs" / "site" / "make.py"))
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    listed = {*re.findall(r"\(([\w./]+\.md)\)", HOW_TO.findall(index)[0])} - WITHOUT
+    pages = {name: (ROOT / "docs" / name).read_text(encoding="utf-8") for name in listed}
+    alone = {name for name, text in pages.items() if not site["TWO_WAYS"].search(text)}
+    assert alone == IN_PYTHON_ALONE
+
+
 def test_every_recipe_has_a_picture_and_is_told_in_python_too() -> None:
     """With the lines of the file, or the command, before them."""
     text = (ROOT / "docs" / "recipes.md").read_text(encoding="utf-8")
