@@ -239,10 +239,10 @@ def test_the_page_has_its_form_and_moves_it(tmp_path: Path) -> None:
     assert content.field("circular_slots[1].radius")["value"] == 0.08
     before = content.place("C")
     values = {"link": "coupler", "point": "C", "on": "frame", "center": "D", "radius": "80.5 mm"}
-    told = ask(session, "entry", place=["circular_slots", 0], values=values, seq=1)
+    told = ask(session, "entry", place="circular_slots[1]", values=values, seq=1)
     assert np.max(np.abs(state(told[0]).place("C") - before)) > 1e-4
     wrong = {**values, "point": "Q"}
-    told = ask(session, "entry", place=["circular_slots", 0], values=wrong, seq=2)
+    told = ask(session, "entry", place="circular_slots[1]", values=wrong, seq=2)
     assert "point of coupler" in refusal(told)
     state(ask(session, "make", do="rename", what="point", name="D", to="M", at=0)[0])
     assert session.shown.design.machine.circular_slots[0].center == "M"

@@ -213,12 +213,12 @@ def test_the_page_keeps_them_while_one_drags_and_types(tmp_path: Path) -> None:
     coupler = vector(session.shown.design.machine, "coupler", ("B", "C"))
     assert links()["rocker"].length == pytest.approx(float(np.hypot(*coupler)), rel=1e-9)
     values = {"kind": "parallel", "line": ["B", "C"], "to": ["P", "R"]}
-    state(ask(session, "entry", place=["constraints", 2], values=values, seq=3)[0])
+    state(ask(session, "entry", place="constraints[3]", values=values, seq=3)[0])
     machine_now = session.shown.design.machine
     ways = [vector(machine_now, "coupler", line) for line in (("B", "C"), ("P", "R"))]
     assert cross(*ways) == pytest.approx(0.0, abs=1e-12)
     wrong = {**values, "kind": "along"}
-    assert "along" in refusal(ask(session, "entry", place=["constraints", 2], values=wrong, seq=4))
+    assert "along" in refusal(ask(session, "entry", place="constraints[3]", values=wrong, seq=4))
     state(ask(session, "make", do="rename", what="point", name="P", to="Tip", at=0)[0])
     assert session.shown.design.machine.constraints[1].to == ("Tip", "Q")
 
@@ -265,7 +265,7 @@ def test_they_hold_while_a_machine_is_drawn() -> None:
         state(ask(session, "make", do="link", at=0, **spots)[0])
     state(ask(session, "make", do="ground", point="A", at=0)[0])
     values = {"kind": "equal", "line": ["A", "B"], "to": ["C", "D"]}
-    told = state(ask(session, "entry", place=["constraints", 0], values=values, seq=1)[0]).content
+    told = state(ask(session, "entry", place="constraints[1]", values=values, seq=1)[0]).content
     roles = str(told["scene"])
     assert "constraint" in roles
     edit(session, move("B", 0.03 + 0.04j, 0))

@@ -461,10 +461,10 @@ def test_the_page_has_its_form_and_moves_it(tmp_path: Path) -> None:
     points = [[f"{1.01e3 * x} mm", f"{1e3 * y} mm"] for x, y in circle(12)]
     values = {"link": "coupler", "point": "C", "on": "frame", "origin": "D", "points": points,
               "closed": True}  # fmt: skip
-    told = ask(session, "entry", place=["curved_slots", 0], values=values, seq=1)
+    told = ask(session, "entry", place="curved_slots[1]", values=values, seq=1)
     assert np.max(np.abs(state(told[0]).place("C") - before)) > 1e-4
     wrong = {**values, "points": points[:2]}
-    told = ask(session, "entry", place=["curved_slots", 0], values=wrong, seq=2)
+    told = ask(session, "entry", place="curved_slots[1]", values=wrong, seq=2)
     assert "give 4 to 400" in refusal(told)
     state(ask(session, "make", do="rename", what="point", name="D", to="M", at=0)[0])
     assert session.shown.design.machine.curved_slots[0].origin == "M"

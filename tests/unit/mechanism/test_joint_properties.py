@@ -127,7 +127,7 @@ def test_what_is_drawn_keeps_properties_and_names() -> None:
     given = {"joints.A": "7 mm", "joints.E": "5 mm"}
     for number, (name, radius) in enumerate(given.items()):
         values = {"joint": name, "radius": radius}
-        state(ask(session, "entry", place=["joints", number], values=values, seq=1)[0])
+        state(ask(session, "entry", place=f"joints[{number + 1}]", values=values, seq=1)[0])
 
     def joints() -> list[tuple[str, float | None]]:
         return [(one.joint, one.radius) for one in session.shown.design.machine.joints]

@@ -187,12 +187,12 @@ def test_a_link_that_turns_on_and_on_is_refused() -> None:
 def test_the_page_has_forms_and_numbers_of_them() -> None:
     session, _ = opened("spring-balanced-crank")
     values = {"link": "rocker", "stiffness": "2 N m/rad", "angle": "80 deg"}
-    told = ask(session, "entry", place=["torsion_springs", 0], values=values, seq=1)
+    told = ask(session, "entry", place="torsion_springs[1]", values=values, seq=1)
     content = state(told[0]).content
     assert "torsion_springs[1].stiffness" in {one["path"] for one in content["fields"]}
     assert session.shown.design.machine.torsion_springs[0].stiffness == 2.0
     wrong = {"link": "rocker"}
-    told = ask(session, "entry", place=["torsion_springs", 1], values=wrong, seq=2)
+    told = ask(session, "entry", place="torsion_springs[2]", values=wrong, seq=2)
     assert "give exactly one of stiffness" in refusal(told)
     state(ask(session, "make", do="rename", what="link", name="rocker", to="lever", at=0)[0])
     assert session.shown.design.machine.torsion_springs[0].link == "lever"
