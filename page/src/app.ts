@@ -18,10 +18,11 @@ import { Inspector } from "./inspector";
 import { Keeping } from "./keeping";
 import { Locks } from "./locks";
 import { Player } from "./player";
-import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
+import type { Asked, FileKind, Hello, Numbers, Planted, RunMessage, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, headline, Readings } from "./readings";
 import { Board } from "./board";
 import { Border } from "./border";
+import { Running } from "./running";
 import { Seeing } from "./seeing";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
@@ -51,6 +52,7 @@ export class App {
   private readonly board: Board;
   private readonly bench: Bench;
   private readonly charts: Charts;
+  private readonly running: Running;
   private readonly seeing: Seeing;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
@@ -130,6 +132,7 @@ export class App {
         this.balance.show(message);
         this.tour.did("balanced", headline(message));
       },
+      ran: (message, numbers) => this.ran(message, numbers),
       busy: (what) => this.busy(what),
       tables: (message) => this.bench.show(message),
       file: save,
@@ -157,6 +160,7 @@ export class App {
     el.append(this.root);
     this.theme = new Theme(this.root, () => {
       this.charts.repaint();
+      this.running.repaint();
       this.views.repaint();
     });
     this.views = new Views(this.talk, this.theme, (asked) => this.command(asked));
@@ -205,6 +209,12 @@ export class App {
       (names) => this.command({ type: "outputs", names }),
       (asked) => this.command(asked),
     );
+    this.running = new Running(
+      this.theme,
+      () => (this.player.time === null ? this.play() : this.leave()),
+      () => this.unrun(),
+      (time) => this.instant(time),
+    );
     this.inspector = new Inspector(this.talk, (on) => this.hold(on), locks);
     this.balance = new BalancePanel(
       () => this.keep(),
@@ -231,6 +241,7 @@ export class App {
       },
       film: records() ? () => void this.film() : null,
       balance: () => this.command({ type: "balance" }),
+      run: () => this.command({ type: "run" }),
       download: (kind, language, format) => this.download(kind, language, format),
       help: () => this.help.showModal(),
       speak,
@@ -245,6 +256,7 @@ export class App {
     this.frames.close();
     this.views.close();
     this.charts.close();
+    this.running.clear();
     this.bench.close();
     this.talk.close();
     this.keeping.close();
@@ -263,12 +275,12 @@ export class App {
     const empty = say(
       "Forces, torque and paths appear here as soon as the machine moves. The line above the drawing says what is missing.",
     );
-    this.side.append(h("p", { class: "quiet empty" }, empty), this.charts.root);
+    this.side.append(h("p", { class: "quiet empty" }, empty), this.running.charts, this.charts.root);
     // A file that plays shows numbers, and takes none.
     const disabled = this.played;
     const parts = [...this.bench.roots, this.inspector.root];
     const held = disabled ? h("fieldset", { class: "bare", disabled }, ...parts) : h("div", {}, ...parts);
-    this.aside.append(this.balance.root, held);
+    this.aside.append(this.running.root, this.balance.root, held);
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
     const border = new Border(this.views.body, () => this.measure());
     this.views.body.append(stage, border.root, this.side, this.aside);
@@ -320,7 +332,7 @@ export class App {
       save: () => void this.keeping.save(),
       help: () => this.help.showModal(),
       toggle: () => this.toggle(),
-      turn: (by: number) => this.turn(this.player.angle + by),
+      turn: (by: number) => this.turnBy(by),
       zoom: (factor: number) => this.stage.zoom(factor),
       fit: () => this.stage.fit(),
       tool: (key: string) => this.tools.pick(key),
@@ -373,6 +385,7 @@ export class App {
     this.views.machine();
     measure(state.length);
     this.player.take(state);
+    if (state.design !== this.running.design) this.unrun();
     if (other) {
       this.player.angle = 0;
       this.side.scrollTop = this.aside.scrollTop = 0;
@@ -428,8 +441,8 @@ export class App {
       this.heading.show(state);
     }
     this.seeing.show(state, other);
-    this.stage.show(state, other);
-    this.transport.take(state.angles);
+    this.stage.show(this.player.time === null ? state : this.running.poses(state), other);
+    this.transport.take();
     this.charts.show(state, other);
     this.point();
     this.frames.draw(state.seq);
@@ -466,12 +479,77 @@ export class App {
   private point(): void {
     if (!this.state) return;
     this.turned = false;
-    const k = this.seeing.crank(this.player.sample);
-    this.stage.pose(k);
+    const { player, running } = this;
+    const { angles, turns } = this.state;
+    const k = this.pose();
     this.transport.point();
     this.transport.state();
-    const { angles, turns } = this.state;
+    if (player.time !== null && !running.cyclic) return;
     this.charts.point(k, (k / angles) * 360 * turns);
+  }
+
+  /** Draw the pose of the moment; gives the sample of the cycle. */
+  private pose(): number {
+    const { player, running, stage, state } = this;
+    if (player.time === null) {
+      const k = this.seeing.crank(player.sample);
+      stage.pose(k);
+      return k;
+    }
+    const k = running.at(player.time, running.poses(state as State).angles);
+    if (running.cyclic) player.sample = k;
+    stage.swing = null; // it runs on a fixed frame
+    stage.pose(k);
+    return k;
+  }
+
+  /** What came of a run, if it is of the machine that is shown. */
+  private ran(message: RunMessage, numbers: Numbers): void {
+    const { state } = this;
+    if (!state || message.design !== state.design)
+      return this.tell(say("the machine was changed while it ran; run it again"), true);
+    this.running.show(message, numbers, state);
+    this.measure();
+    this.play();
+  }
+
+  /** Play the run from its start. */
+  private play(): void {
+    this.player.run(this.running.span);
+    this.player.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.clocked();
+  }
+
+  /** Play the cycle, and not the run. */
+  private leave(): void {
+    if (this.player.time === null) return;
+    this.player.leave();
+    this.player.playing = false;
+    this.clocked();
+  }
+
+  /** The run or the cycle is played from now on. */
+  private clocked(): void {
+    const { player, running, state } = this;
+    const runs = player.time !== null;
+    this.root.classList.toggle("running", runs);
+    running.playing(runs);
+    if (state) this.stage.show(runs ? running.poses(state) : state, false);
+    this.transport.take();
+    this.stir();
+  }
+
+  /** Show no run any more. */
+  private unrun(): void {
+    if (this.running.design === null) return;
+    this.running.drop();
+    this.leave();
+  }
+
+  private instant(time: number): void {
+    if (this.player.time === null) this.play();
+    this.player.time = time;
+    this.crank();
   }
 
   /** The crank is at another angle, or is to turn. */
@@ -486,6 +564,7 @@ export class App {
     const { clientWidth, clientHeight } = this.board.root;
     if (clientWidth && clientHeight) this.stage.resize(clientWidth, clientHeight);
     this.charts.resize(this.charts.root.clientWidth);
+    this.running.resize(this.charts.root.clientWidth);
     this.stir();
   }
 
@@ -514,6 +593,7 @@ export class App {
   private line(up: boolean, other: boolean, waiting: number): void {
     this.lost.hidden = up;
     set(this.root, { "data-lost": !up });
+    this.unrun(); // numbers of designs begin anew
     if (waiting === 0) this.tools.anew(); // what was asked is not answered any more
     if (up) return write(this.lost, "");
     const why = other
@@ -594,6 +674,7 @@ export class App {
   private async film(): Promise<void> {
     const { state, player } = this;
     if (!state) return;
+    this.leave();
     const [angle, playing] = [player.angle, player.playing];
     player.playing = false;
     this.tell(say("Recording one cycle …"), false);
@@ -641,6 +722,7 @@ export class App {
     this.seeing.hold(on);
     this.charts.hold(on);
     if (on) {
+      this.leave();
       this.resumes = this.player.playing;
       this.player.playing = false;
     } else if (this.resumes) {
@@ -652,7 +734,7 @@ export class App {
 
   private toggle(): void {
     this.talk.release();
-    this.player.playing = !this.player.playing;
+    this.player.toggle();
     this.tour.did("turned");
     this.stir();
   }
@@ -663,7 +745,15 @@ export class App {
     this.stir();
   }
 
+  /** By some degrees, or of a run by so many steps. */
+  private turnBy(by: number): void {
+    if (this.player.time === null) return this.turn(this.player.angle + by);
+    this.player.step += by;
+    this.crank();
+  }
+
   private turn(degrees: number): void {
+    this.leave();
     this.player.angle = degrees;
     this.crank();
   }

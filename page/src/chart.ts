@@ -34,7 +34,7 @@ export class Chart {
     private data: ChartData,
     theme: Theme,
     readonly xAxis: boolean,
-    whole: { picked(degrees: number): void; chosen(): void },
+    whole: { picked(x: number): void; chosen(): void },
   ) {
     const { x } = data;
     if (data.chooser !== null) this.choices = chooser(data.chooser, () => whole.chosen());
@@ -45,7 +45,7 @@ export class Chart {
         xAxis,
         ...(x === "angle" && { ...over, picked: whole.picked }),
         ...(x === "order" && { bars: true }),
-        ...(typeof x === "object" && { quiet: true }),
+        ...(typeof x === "object" && (x.at === null ? { picked: (at) => whole.picked(at / x.factor) } : { quiet: true })),
         ...(this.choices && { control: this.choices.label }),
       },
       theme,
@@ -89,7 +89,8 @@ export class Chart {
         ? say("{unit}, over {x}", { unit: choice.unit, x: this.data.x.unit })
         : choice.unit;
     this.strip.show({ title: choice.label, x, unit, curves, least, log: choice.log });
-    if (typeof this.data.x === "object") this.strip.point(this.data.x.at * this.data.x.factor, null);
+    const { x: over } = this.data;
+    if (typeof over === "object" && over.at !== null) this.strip.point(over.at * over.factor, null);
   }
 
   /** Whether what it would draw of a source is nothing but zero. */
@@ -107,6 +108,11 @@ export class Chart {
     if (this.data.x !== "angle" || this.strip.root.hidden) return;
     const count = this.strip.count - 1;
     if (count > 0) this.strip.point(degrees, Math.round(share * count) % count);
+  }
+
+  /** Where a chart over what is played is, in SI units of its x axis. */
+  play(at: number): void {
+    if (typeof this.data.x === "object") this.strip.play(at * this.data.x.factor);
   }
 
   private there(whose: string): Choice[] {

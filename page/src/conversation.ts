@@ -3,7 +3,7 @@
 import type { Asked, Edit, HandedOut, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
 import { Numbers, type Pictured, type Planted, type ResponseMessage, type Side, type State } from "./protocol";
-import type { GhostMessage, Stores, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
+import type { GhostMessage, RunMessage, Stores, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
 import { OPENS, type Shelf, type Shown, Story, type Told as Kept } from "./story";
 import { language, say } from "./words";
 
@@ -21,6 +21,7 @@ export interface Events {
   /** Something could not be done; `edit`: the number of the edit that was tried, if it was one. */
   refused(message: string, edit: number | null, told: Refused | null): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
+  ran(message: RunMessage, numbers: Numbers): void;
   busy(what: string | null): void;
   tables(message: Tables): void;
   saved(name: string): void;
@@ -49,7 +50,7 @@ interface Question {
 const NONE = 0;
 
 /** What takes long: other questions do not wait for it. */
-const SLOW = new Set(["balance", "download", "gallery"]);
+const SLOW = new Set(["balance", "run", "download", "gallery"]);
 
 /** Without a sign nobody waits longer than this, ms. */
 const PATIENCE = 100;
@@ -205,6 +206,9 @@ export class Conversation {
         return this.end(told.seq, null);
       case "balanced":
         return this.events.balanced(told);
+      case "run":
+        this.events.ran(told, new Numbers(told.arrays, buffers[0]));
+        return this.end(told.seq, null);
       case "busy":
         return this.events.busy(told.what);
       case "file":

@@ -240,7 +240,8 @@ export interface Axis {
   /** How many of the unit an SI unit is. */
   factor: number;
   array: string;
-  at: number;
+  /** Null where it follows what is played. */
+  at: number | null;
 }
 
 /** A curve of a chart: every `stride`th number of an array, beginning with `part`. */
@@ -321,6 +322,8 @@ export interface StateMessage {
   redo: string | null;
   /** How many steps can be undone and redone. */
   steps: Pair;
+  /** The same as long as the same design is shown. */
+  design: number;
   file: ModelFile | null;
   angles: number;
   turns: number;
@@ -581,6 +584,45 @@ export interface Balanced {
   gauges_worse: boolean;
   proof: string;
   notes: string[];
+}
+
+/** Running text of a result. */
+export interface TextBlock {
+  kind: "text";
+  text: string;
+  /** Whether it stands out, as of a limit that is broken. */
+  broken: boolean;
+}
+
+/** Sentences of a kind. */
+export interface FactsBlock {
+  kind: "facts";
+  title: string;
+  items: string[];
+}
+
+/** A table whose cells are texts. */
+export interface TableBlock {
+  kind: "table";
+  title: string;
+  heads: string[];
+  rows: string[][];
+  /** Whether each column is set to the right. */
+  numbers: boolean[];
+}
+
+/** How the machine runs, and what came of it. */
+export interface RunMessage {
+  type: "run";
+  seq: number;
+  /** That of the state whose machine has run; 0 if it is shown no more. */
+  design: number;
+  blocks: (TextBlock | FactsBlock | TableBlock)[];
+  charts: ChartData[];
+  /** Poses that come along; 0 where those of the cycle are played. */
+  frames: number;
+  /** `run.time`, and `run.part`, the place in all poses; poses, and values of charts. */
+  arrays: Arrays;
 }
 
 /** Why something cannot be done. */
@@ -856,6 +898,11 @@ export interface BalanceRequest {
   hold?: boolean;
 }
 
+/** The machine is to run, driven by its motor, weight, springs and loads. */
+export interface RunRequest {
+  type: "run";
+}
+
 /** Comparison with the machine as it was before balancing ends. */
 export interface CompareRequest {
   type: "compare";
@@ -971,6 +1018,6 @@ export type Edit = TypedEdit | NumberEdit | DragEdit | MassDragEdit;
 
 export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played" | "interactive";
 
-export type Sent = Hello | Spoken | Pictured | Gallery | StateMessage | ResponseMessage | GhostMessage | ToolMessage | StudyMessage | Stores | VariantsMessage | Planted | Side | Balanced | Refused | Tables | Saved | Busy | HandedOut | Answered;
+export type Sent = Hello | Spoken | Pictured | Gallery | StateMessage | ResponseMessage | GhostMessage | ToolMessage | StudyMessage | Stores | VariantsMessage | Planted | Side | Balanced | RunMessage | Refused | Tables | Saved | Busy | HandedOut | Answered;
 
-export type Asked = ReadyRequest | LanguageRequest | ExampleRequest | NewRequest | FileRequest | EditRequest | MakeRequest | PlainRequest | BalanceRequest | CompareRequest | EntryRequest | OutputsRequest | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest | VariantRequest | AgainstRequest | RecordRequest | StudyRequest | DesignRequest;
+export type Asked = ReadyRequest | LanguageRequest | ExampleRequest | NewRequest | FileRequest | EditRequest | MakeRequest | PlainRequest | BalanceRequest | RunRequest | CompareRequest | EntryRequest | OutputsRequest | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest | VariantRequest | AgainstRequest | RecordRequest | StudyRequest | DesignRequest;

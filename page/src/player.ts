@@ -7,6 +7,10 @@ export const RATES = [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01] as const;
 
 /** A turn that takes at least this long can be followed by eye, s. */
 const SLOW = 2.4;
+/** A run is played for at least this long, s. */
+const LONG = 6;
+/** Steps of the slider over a run. */
+const OF_A_RUN = 1001;
 
 export class Player {
   playing = false;
@@ -17,6 +21,10 @@ export class Player {
   private turns = 1;
   private speed = 0;
   private last: number | null = null;
+  /** Instant of the run that is played, s; null where the cycle is. */
+  time: number | null = null;
+  private span = 0;
+  private ofCycle = this.rate;
 
   /** Take the machine's samples and speed; the crank stays where it is. */
   take(state: Pick<State, "angles" | "turns" | "speed">): void {
@@ -27,6 +35,40 @@ export class Player {
   suit(): void {
     const turn = (2 * Math.PI) / Math.max(Math.abs(this.speed), 1e-6);
     this.rate = RATES.find((rate) => turn / rate >= SLOW) ?? 0.01;
+  }
+
+  /** Play a run of so many seconds from its start. */
+  run(span: number): void {
+    if (this.time === null) this.ofCycle = this.rate;
+    [this.time, this.span] = [0, span];
+    this.rate = RATES.find((rate) => span / rate >= LONG) ?? 0.01;
+  }
+
+  /** Play the cycle again. */
+  leave(): void {
+    if (this.time === null) return;
+    this.time = null;
+    this.rate = this.ofCycle;
+  }
+
+  /** Play or stop; a run that has come to its end begins anew. */
+  toggle(): void {
+    this.playing = !this.playing;
+    if (this.playing && this.time !== null && this.time >= this.span) this.time = 0;
+  }
+
+  /** Where what is played is, in steps of so many. */
+  get steps(): number {
+    return this.time === null ? this.count : OF_A_RUN;
+  }
+
+  get step(): number {
+    return this.time === null ? this.sample : Math.round((this.time / (this.span || 1)) * (OF_A_RUN - 1));
+  }
+
+  set step(k: number) {
+    if (this.time === null) this.sample = k;
+    else this.time = (Math.min(Math.max(k, 0), OF_A_RUN - 1) / (OF_A_RUN - 1)) * this.span;
   }
 
   get sample(): number {
@@ -62,6 +104,11 @@ export class Player {
     const passed = this.last === null ? 0 : Math.min((now - this.last) / 1000, 0.1);
     this.last = this.playing ? now : null;
     if (!this.playing) return false;
+    if (this.time !== null) {
+      this.time = Math.min(this.time + passed * this.rate, this.span);
+      this.playing = this.time < this.span;
+      return true;
+    }
     const part = this.part + (passed * this.turning) / this.turns;
     this.part = part - Math.floor(part);
     return this.sample !== before;

@@ -41,10 +41,11 @@ export class Numbers implements Rows {
 /** A machine as the page shows it: the message, and its arrays. */
 export interface State extends StateMessage {
   numbers: Numbers;
+  open?: boolean;
 }
 
-/** What a drawing of a machine needs of its state. */
-export type Drawable = Pick<State, "scene" | "angles" | "status"> & { numbers: Rows };
+/** What a drawing of a machine needs of its state; `open` where its poses do not come back to the first. */
+export type Drawable = Pick<State, "scene" | "angles" | "status"> & { numbers: Rows; open?: boolean };
 
 /** Notebooks may hand over bytes that start anywhere; arrays of floats need multiples of four. */
 function floats(view: DataView): Float32Array {

@@ -35,6 +35,17 @@ export function extremes(every: Iterable<ArrayLike<number>>): Pair {
   return [low, high];
 }
 
+/** Place of the last of rising values that is not beyond another; 0 where all are. */
+export function before(values: ArrayLike<number>, value: number): number {
+  let [low, high] = [0, values.length];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if ((values[middle] as number) <= value) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
 /** Whether values are all above zero, and too different for a linear scale. */
 export function wide(values: ArrayLike<number>): boolean {
   const [low, high] = extremes([values]);

@@ -281,7 +281,7 @@ export class Stage<S extends Drawable = State> {
     });
     for (const { name, element } of this.paths) {
       const row = state.numbers.get(`place.${name}`);
-      if (row) set(element, { d: curve(row, (x, y) => view.px(x, y), true) });
+      if (row) set(element, { d: curve(row, (x, y) => view.px(x, y), !this.state?.open) });
     }
     this.drawRim(state);
   }

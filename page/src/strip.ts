@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import { h, set, write } from "./dom";
 import { multiples, plain, shown, steady } from "./format";
-import { extremes, levels, marked, type Scale, scaleOf, share, spacing } from "./scale";
+import { before, extremes, levels, marked, type Scale, scaleOf, share, spacing } from "./scale";
 import type { Theme } from "./theme";
 import {
   BELOW,
@@ -106,6 +106,12 @@ export class Strip {
     this.at = x;
     this.k = k ?? this.k;
     if (this.plot) this.cursor.style.transform = `translateX(${this.across(x).toFixed(1)}px)`;
+  }
+
+  /** Put the cursor at x, wherever that is between the samples, and write the values there. */
+  play(x: number): void {
+    this.point(x, before(this.content.x, x));
+    this.read();
   }
 
   /** Write the values at the cursor in the heading. */

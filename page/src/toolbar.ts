@@ -8,6 +8,7 @@ const ICONS = {
   undo: "M5.5 3 2.5 6l3 3M3 6h6.5a3.5 3.5 0 0 1 0 7H6",
   redo: "M10.5 3l3 3-3 3M13 6H6.5a3.5 3.5 0 0 0 0 7H10",
   balance: "M8 2.5v11M4.5 13.5h7M2.5 5h11M4 5 2 9.5h4zM12 5l-2 4.5h4z",
+  run: "M2.500 2.500v11h11M2.500 13.500c3 0 3-8 6-8h4.500",
   disk: "M2.5 2.5h9l2 2v9h-11zM5 2.500v4h5.500v-4M5 13.500v-4.500h6v4.500",
   save: "M8 2v7.5M4.800 6.7 8 9.900l3.200-3.200M2.5 13.5h11",
   keys: "M1.5 4h13v8.5h-13zM4 6.5h.01M6.7 6.5h.01M9.400 6.5h.01M12 6.5h.01M4.5 10h7",
@@ -30,6 +31,8 @@ export interface Commands {
   film: (() => void) | null;
   redo(): void;
   balance(): void;
+  /** Let the machine run under its motor, weight, springs and loads. */
+  run(): void;
   download(kind: FileKind, language?: string, format?: "svg" | "png"): void;
   help(): void;
   /** Speak a language from now on. */
@@ -42,6 +45,7 @@ export class Toolbar {
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
   private readonly balance: HTMLButtonElement;
+  private readonly run: HTMLButtonElement;
   private readonly save: HTMLButtonElement;
   private readonly cancel = h("button", { type: "button", hidden: true }, say("Cancel"));
   private readonly own = h("option", { value: "" }, "");
@@ -58,6 +62,8 @@ export class Toolbar {
     this.redo = button("", "redo", () => commands.redo(), say("Redo"));
     this.balance = button(say("Balance"), "balance", () => commands.balance());
     set(this.balance, { "data-do": "balance" });
+    this.run = button(say("Run"), "run", () => commands.run());
+    set(this.run, { "data-do": "run" });
     this.save = button("", "disk", () => commands.save(), say("Save"));
     this.save.hidden = true;
     this.menu = downloads(commands);
@@ -66,6 +72,7 @@ export class Toolbar {
     able(this.undo, say("Undo"), null, closed);
     able(this.redo, say("Redo"), null, closed);
     able(this.balance, say("Balance"), null, closed);
+    able(this.run, say("Run"), null, closed);
     this.menu.inert = true;
     const help = button("", "keys", () => commands.help(), say("Keys"));
     this.root = h(
@@ -77,6 +84,7 @@ export class Toolbar {
       h("span", { class: "gap" }),
       h("span", { class: "together" }, this.undo, this.redo, this.save),
       this.balance,
+      this.run,
       this.cancel,
       this.menu,
       choiceOfLanguage(commands),
@@ -105,6 +113,7 @@ export class Toolbar {
     able(this.undo, say("Undo"), state.undo, say("nothing has been done yet"));
     able(this.redo, say("Redo"), state.redo, say("nothing has been taken back"));
     able(this.balance, say("Balance"), state.lacking ? null : "", state.lacking);
+    able(this.run, say("Run"), state.lacking ? null : "", state.lacking);
     const { downloads } = state;
     this.menu.inert = downloads?.length === 0;
     for (const item of this.menu.querySelectorAll<HTMLButtonElement>("[data-kind]"))

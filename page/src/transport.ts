@@ -1,7 +1,8 @@
 /** Playing, pausing, turning the crank by hand. */
 
 import { h, icon, put, set, write } from "./dom";
-import { signed } from "./format";
+import { decimals } from "./decimals";
+import { signed, unbroken } from "./format";
 import { type Player, RATES } from "./player";
 import { say } from "./words";
 
@@ -30,7 +31,7 @@ export class TransportBar {
       "aria-label": say("Crank angle"),
     });
     this.slider.addEventListener("input", () => {
-      player.sample = Number(this.slider.value);
+      player.step = Number(this.slider.value);
       turned();
     });
     this.rates = h(
@@ -60,8 +61,9 @@ export class TransportBar {
   }
 
   /** The samples or the rate are others. */
-  take(count: number): void {
-    set(this.slider, { max: count - 1 });
+  take(): void {
+    const { time, steps } = this.player;
+    set(this.slider, { max: steps - 1, "aria-label": time === null ? say("Crank angle") : say("Time of the run") });
     put(this.rates, String(this.player.rate));
   }
 
@@ -78,13 +80,15 @@ export class TransportBar {
   }
 
   point(): void {
-    const text = `${signed(this.player.angle.toFixed(1))}°`;
-    write(this.told, text);
-    put(this.slider, String(this.player.sample));
+    const { angle, step, time } = this.player;
+    const seconds = time === null ? "" : time.toFixed(3);
+    write(this.told, seconds ? unbroken(`${decimals(seconds)} s`) : `${signed(angle.toFixed(1))}°`);
+    put(this.slider, String(step));
     this.slider.style.setProperty(
       "--part",
-      (this.player.sample / Math.max(Number(this.slider.max), 1)).toFixed(3),
+      (step / Math.max(Number(this.slider.max), 1)).toFixed(3),
     );
-    set(this.slider, { "aria-valuetext": say("{angle} degrees", { angle: this.player.angle.toFixed(1) }) });
+    const spoken = seconds ? say("{time} s after the start", { time: seconds }) : say("{angle} degrees", { angle: angle.toFixed(1) });
+    set(this.slider, { "aria-valuetext": spoken });
   }
 }

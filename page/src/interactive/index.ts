@@ -136,7 +136,7 @@ class Page implements Attempts {
     this.player.take({ angles: frames.length, turns: data.turns, speed: data.speed });
     this.player.suit();
     this.player.angle = data.begin;
-    this.transport.take(frames.length);
+    this.transport.take();
     this.show(this.solution, true);
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.toggle();
     const tick = (now: number) => {

@@ -10,10 +10,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.result import Result
 from equipoise.running.drives_equation import DriveAngles, DrivesEquation
 from equipoise.running.drives_integration import DriveEvent, DrivesIntegration, DrivesTrack, joined
+from equipoise.running.drives_linkage import pose_of
 from equipoise.running.electric import Electric
 from equipoise.running.friction import FRICTION
 from equipoise.running.integration import Limits
@@ -135,6 +137,19 @@ class DrivesRun(Result):
                 worst = max(worst, float(np.max(np.abs(missed))))
                 size = max(size, float(np.max(np.abs(circuit.supply))))
         return worst / size if size else 0.0
+
+    def motion_at(self, places: Array) -> Motion:
+        """Poses at some of the M instants, by their places (K,), where derivatives by the crank
+        angle are those by time.
+        """
+        courses = self.drives.values()
+        angles, speeds = (
+            np.array([getattr(each, name)[places] for each in courses])
+            for name in ("angle", "speed")
+        )
+        references = {name: values[..., places] for name, values in self.references.items()}
+        crank = self.crank_angle[places]
+        return pose_of(self.equation.linkage, crank, angles, speeds, references).moving
 
     @property
     def last_cycle(self) -> Array | None:

@@ -25,6 +25,7 @@ KINDS = (
     "undo",
     "redo",
     "balance",
+    "run",
     "compare",
     "outputs",
     "save",
@@ -39,7 +40,7 @@ KINDS = (
     "tables",
     "entry",
 )
-SLOW = ("balance", "download", "gallery")
+SLOW = ("balance", "run", "download", "gallery")
 """Those that take more than a moment."""
 MOST_EDITS, MOST_OUTPUTS, MOST_LANGUAGES = 100, 20, 50
 DEEPEST = 8

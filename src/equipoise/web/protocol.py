@@ -183,7 +183,7 @@ class AxisValues(UnitValues):
     """An array as the x axis of a chart, and the machine's place on it."""
 
     array: str
-    at: float
+    at: Annotated[float | None, "Null where it follows what is played."]
 
 
 class ChartDataValues(TypedDict):
@@ -236,6 +236,7 @@ class StateMessage(TypedDict):
     undo: str | None
     redo: str | None
     steps: Annotated[Pair, "How many steps can be undone and redone."]
+    design: Annotated[int, "The same as long as the same design is shown."]
     file: ModelFileValues | None
     angles: int
     turns: int
@@ -586,6 +587,46 @@ class BalancedValues(TypedDict):
     notes: list[str]
 
 
+class TextBlockValues(TypedDict):
+    """Running text of a result."""
+
+    kind: Literal["text"]
+    text: str
+    broken: Annotated[bool, "Whether it stands out, as of a limit that is broken."]
+
+
+class FactsBlockValues(TypedDict):
+    """Sentences of a kind."""
+
+    kind: Literal["facts"]
+    title: str
+    items: list[str]
+
+
+class TableBlockValues(TypedDict):
+    """A table whose cells are texts."""
+
+    kind: Literal["table"]
+    title: str
+    heads: list[str]
+    rows: list[list[str]]
+    numbers: Annotated[list[bool], "Whether each column is set to the right."]
+
+
+class RunMessage(TypedDict):
+    """How the machine runs, and what came of it."""
+
+    type: Literal["run"]
+    seq: int
+    design: Annotated[int, "That of the state whose machine has run; 0 if it is shown no more."]
+    blocks: list[TextBlockValues | FactsBlockValues | TableBlockValues]
+    charts: list[ChartDataValues]
+    frames: Annotated[int, "Poses that come along; 0 where those of the cycle are played."]
+    arrays: Annotated[
+        Arrays, "`run.time`, and `run.part`, the place in all poses; poses, and values of charts."
+    ]
+
+
 class RefusedValues(TypedDict):
     """Why something cannot be done."""
 
@@ -636,8 +677,8 @@ class AnsweredValues(TypedDict):
 Sent = (
     HelloValues | SpokenValues | PicturedValues | GalleryValues | StateMessage | ResponseMessage
     | GhostMessage | ToolMessage | StudyMessage | StoresValues | VariantsMessage | PlantedValues
-    | SideValues | BalancedValues | RefusedValues | TablesValues | SavedValues | BusyValues
-    | HandedOutValues | AnsweredValues
+    | SideValues | BalancedValues | RunMessage | RefusedValues | TablesValues | SavedValues
+    | BusyValues | HandedOutValues | AnsweredValues
 )  # fmt: skip
 """All that a server sends."""
 

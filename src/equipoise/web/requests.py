@@ -119,6 +119,12 @@ class BalanceRequest(TypedDict):
     hold: NotRequired[Annotated[bool, "Whether gauges may not read more."]]
 
 
+class RunRequest(TypedDict):
+    """The machine is to run, driven by its motor, weight, springs and loads."""
+
+    type: Literal["run"]
+
+
 class CompareRequest(TypedDict):
     """Comparison with the machine as it was before balancing ends."""
 
@@ -228,8 +234,8 @@ class DesignRequest(TypedDict):
 
 Asked = (
     ReadyRequest | LanguageRequest | ExampleRequest | NewRequest | FileRequest | EditRequest
-    | MakeRequest | PlainRequest | BalanceRequest | CompareRequest | EntryRequest | OutputsRequest
-    | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest | VariantRequest
-    | AgainstRequest | RecordRequest | StudyRequest | DesignRequest
+    | MakeRequest | PlainRequest | BalanceRequest | RunRequest | CompareRequest | EntryRequest
+    | OutputsRequest | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest
+    | VariantRequest | AgainstRequest | RecordRequest | StudyRequest | DesignRequest
 )  # fmt: skip
 """All that a page asks, beside the number of the question (``seq``)."""

@@ -68,6 +68,7 @@ class Session:
         was not brief, as in a drag, where a page draws at every move, and writes more seldom.
     written : those figures and numbers; None where the machine was unfinished.
     spectra : amplitudes by order, of the machine that `written` is about.
+    numbered : the design that was shown last, and how many were shown until then.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
@@ -85,6 +86,7 @@ class Session:
     brief: bool = False
     written: Values | None = None
     spectra: Mapping[str, Array] = field(default_factory=dict)
+    numbered: tuple[Computed | Incomplete | None, int] = (None, 0)
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -99,7 +101,7 @@ class Session:
         except EquipoiseError as error:
             yield refused(message.seq, error, self.language)
         except Exception:  # a mistake of the program; what cannot be told must not stay
-            if message.kind != "balance":  # beside which other steps are made
+            if message.kind not in ("balance", "run"):  # beside which other steps are made
                 self.history, self.current_state, self.preview = good
             raise
 
@@ -115,6 +117,11 @@ class Session:
         from equipoise.web import balanced
 
         yield from balanced.answered(self, message)
+
+    def _run(self, message: Message) -> Iterator[Reply]:
+        from equipoise.web import runs
+
+        yield from runs.answered(self, message)
 
     def _speak(self, message: Message) -> Iterator[Reply]:
         language = language_of(message.names("languages", MOST_LANGUAGES))
@@ -379,8 +386,16 @@ class Session:
         )
         steps = [len(history.past), len(history.future)]
         content["wording"] = wording_of(words_of(self._machine))
+        if self.numbered[0] is not view:
+            self.numbered = view, self.numbered[1] + 1
+        content["design"] = self.number_of(view)
         text = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
         return Reply({"type": "state", "seq": seq, **text, **content}, data)
+
+    def number_of(self, result: Computed | Incomplete) -> int:
+        """By which a page knows that it shows a design; 0 of one that it does not show."""
+        shown, number = self.numbered
+        return number if shown is result else 0
 
     def _numbers_of(self, computed: Computed) -> Values:
         """The part of a state that a page writes: figures, and the numbers of the machine."""

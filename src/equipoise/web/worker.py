@@ -28,7 +28,7 @@ from equipoise.web.replies import Reply, completed, packed, refused, unexpected
 from equipoise.web.session import Session
 from equipoise.web.state_changes import StateChanges
 
-OF_MACHINE = ("balance", "download")
+OF_MACHINE = ("balance", "run", "download")
 """Of the questions that take long, those about the machine that is open."""
 SELDOM = 0.3
 """s after which all that follows from an edit is computed in a drag that never pauses, and figures,
@@ -56,6 +56,7 @@ class SlowTask:
     message : the question; None for what follows from a design without being asked for.
     sweep : whether the response over speed is wanted.
     wanted : outputs that the page draws.  language : that its reader speaks.
+    number : by which the page knows the design.
     """
 
     design: Design | None
@@ -64,6 +65,7 @@ class SlowTask:
     sweep: bool
     wanted: tuple[str, ...]
     language: str
+    number: int
 
 
 class Foreground:
@@ -194,6 +196,10 @@ class Foreground:
                 from equipoise.web import balanced
 
                 self._replies = iter([balanced.begun(session, message)])
+            elif message.kind == "run":
+                from equipoise.web import runs
+
+                self._replies = iter([runs.begun(session, message)])
             current = session.current() if message.kind in OF_MACHINE else None
             self._begin(message, current, None, sweep=False)
         else:
@@ -223,7 +229,8 @@ class Foreground:
     ) -> None:
         session = self.desk.session
         design, other = (None if item is None else item.design for item in (computed, against))
-        task = SlowTask(design, other, message, sweep, session.wanted, session.language)
+        number = 0 if computed is None else session.number_of(computed)
+        task = SlowTask(design, other, message, sweep, session.wanted, session.language, number)
         self._running.append((task, computed))
         self.tasks.append(pickle.dumps(task))
 
@@ -308,7 +315,7 @@ class Background:
             outcome = None if task.design is None else solved(task.design)
             if outcome is not None:
                 session.open(outcome.design, outcome)
-                session.wanted = task.wanted
+                session.wanted, session.numbered = task.wanted, (outcome, task.number)
             if task.message is None:
                 assert outcome is not None
                 against = None if task.against is None else solved(task.against)
@@ -322,6 +329,11 @@ class Background:
 
                 assert outcome is not None
                 result = pickle.dumps(balanced.computed(session, outcome, task.message))
+            elif task.message.kind == "run":
+                from equipoise.web import runs
+
+                assert outcome is not None
+                yield "reply", packed(runs.computed(session, outcome, task.message))
             else:
                 for reply in session.receive(task.message):
                     yield "reply", packed(reply)

@@ -1,0 +1,24 @@
+/** Blocks of a result: texts, lists of sentences, tables whose cells are texts. */
+
+import { h } from "./dom";
+import { unbroken } from "./format";
+import type { RunMessage, TableBlock } from "./protocol";
+
+/** Elements of some blocks, one below the other. */
+export function blocksOf(blocks: RunMessage["blocks"]): HTMLElement[] {
+  return blocks.flatMap((block) => {
+    if (block.kind === "text") return [h("p", block.broken ? { class: "worse" } : {}, unbroken(block.text))];
+    if (block.kind === "table") return [tableOf(block)];
+    const items = block.items.map((item) => h("li", {}, unbroken(item)));
+    return [h("h3", {}, block.title), h("ul", {}, ...items)];
+  });
+}
+
+function tableOf({ title, heads, rows, numbers }: TableBlock): HTMLElement {
+  const side = (i: number) => (numbers[i] ? {} : { class: "word" });
+  const head = heads.map((text, i) => (text ? h("th", { scope: "col", ...side(i) }, unbroken(text)) : h("td")));
+  const cell = (text: string, i: number) =>
+    i ? h("td", side(i), unbroken(text)) : h("th", { scope: "row" }, unbroken(text));
+  const body = rows.map((row) => h("tr", {}, ...row.map(cell)));
+  return h("table", {}, h("caption", {}, title), h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...body));
+}

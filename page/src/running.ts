@@ -1,0 +1,124 @@
+/** The run of a machine: what came of it, its charts over time, and where it is at each of its instants. */
+
+import { blocksOf } from "./blocks";
+import { Chart } from "./chart";
+import { h, show, write } from "./dom";
+import type { Numbers, RunMessage, State } from "./protocol";
+import { before } from "./scale";
+import type { Theme } from "./theme";
+import { say } from "./words";
+
+/** A run that can be played: the instants, s, and the place of each in all poses, counted on. */
+interface Run {
+  message: RunMessage;
+  numbers: Numbers;
+  time: Float32Array;
+  part: Float32Array;
+}
+
+export class Running {
+  readonly root = h("section", { class: "balance run", "aria-label": say("Run"), hidden: true, tabindex: -1 });
+  readonly charts = h("div", { class: "charts timed", role: "group", "aria-label": say("Run"), hidden: true });
+  private readonly turn: HTMLButtonElement;
+  private readonly drawn = new Map<string, Chart>();
+  private run: Run | null = null;
+  private width = 0;
+
+  /** `play` goes from the cycle to the run, or back; `picked` goes to an instant, s. */
+  constructor(
+    private readonly theme: Theme,
+    play: () => void,
+    private readonly close: () => void,
+    private readonly picked: (time: number) => void,
+  ) {
+    this.turn = h("button", { type: "button", class: "strong", onclick: play });
+  }
+
+  /** The design that has run; none where nothing is shown. */
+  get design(): number | null {
+    return this.run?.message.design ?? null;
+  }
+
+  /** How long the run takes, s. */
+  get span(): number {
+    return this.run?.time.at(-1) ?? 0;
+  }
+
+  show(message: RunMessage, numbers: Numbers, state: State): void {
+    const [time, part] = ["time", "part"].map((name) => numbers.get(`run.${name}`) ?? new Float32Array(0));
+    this.run = { message, numbers, time: time as Float32Array, part: part as Float32Array };
+    const close = h("button", { type: "button", onclick: this.close }, say("Close"));
+    this.root.replaceChildren(
+      h("h2", {}, say("Run")),
+      h("div", { class: "buttons" }, this.turn, close),
+      ...blocksOf(message.blocks),
+    );
+    this.clear();
+    for (const data of message.charts) {
+      const chart = new Chart(data, this.theme, true, { picked: this.picked, chosen: () => undefined });
+      this.drawn.set(data.name, chart);
+      this.charts.append(chart.strip.root);
+      chart.strip.resize(this.width);
+      chart.show({ state, numbers, before: false }, "", "");
+      chart.strip.describe();
+    }
+    show(this.root, true);
+    show(this.charts, true);
+    this.root.focus({ preventScroll: true });
+    this.root.scrollIntoView({ block: "nearest" });
+  }
+
+  /** Forget it: the machine is another one, or nobody looks at it any more. */
+  drop(): void {
+    this.run = null;
+    this.clear();
+    show(this.root, false);
+    show(this.charts, false);
+  }
+
+  /** Take its charts away, and what they hear of the window. */
+  clear(): void {
+    for (const { strip } of this.drawn.values()) strip.close();
+    this.drawn.clear();
+  }
+
+  /** Say whether the run is played, or the cycle. */
+  playing(on: boolean): void {
+    write(this.turn, on ? say("Back to the cycle") : say("Play the run"));
+  }
+
+  /** What the drawing shows of a machine that runs: poses of its own, where its drives go their own ways. */
+  poses(state: State): State {
+    const { message, numbers } = this.run ?? {};
+    if (!message?.frames || !numbers) return state;
+    return { ...state, numbers, angles: message.frames, open: true, arrows_at: null };
+  }
+
+  /** Whether the poses are those of the cycle. */
+  get cyclic(): boolean {
+    return !this.run?.message.frames;
+  }
+
+  /** Point at an instant in all charts; gives the pose there, of so many of them. */
+  at(now: number, count: number): number {
+    for (const chart of this.drawn.values()) chart.play(now);
+    const { time, part } = this.run ?? { time: [], part: [] };
+    const k = before(time, now);
+    const [t0, t1] = [time[k] ?? 0, time[k + 1] ?? Infinity];
+    const [p0, p1] = [part[k] ?? 0, part[k + 1] ?? part[k] ?? 0];
+    const place = p0 + (t1 > t0 && t1 < Infinity ? ((now - t0) / (t1 - t0)) * (p1 - p0) : 0);
+    const whole = Math.round(place * count) % count;
+    return whole < 0 ? whole + count : whole;
+  }
+
+  resize(width: number): void {
+    if (width < 40) return;
+    this.width = width;
+    for (const { strip } of this.drawn.values()) strip.resize(width);
+  }
+
+  repaint(): void {
+    for (const { strip } of this.drawn.values()) strip.repaint();
+  }
+
+}

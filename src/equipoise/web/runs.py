@@ -1,0 +1,101 @@
+"""The run of a machine, as a page asks for it: its verdict, figures and charts, and its motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from math import pi
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from equipoise.i18n import say
+from equipoise.symbols.scene import Scene
+from equipoise.web.block import FloatBlock, Values
+from equipoise.web.drawing import moves_of
+from equipoise.web.edits import Computed
+from equipoise.web.messages import Message
+from equipoise.web.replies import Reply
+from equipoise.web.result_blocks import block_messages, panel_charts
+
+if TYPE_CHECKING:
+    from equipoise.running.drives_run import DrivesRun
+    from equipoise.running.run import Run
+
+FRAME_TURN = pi / 36
+"""rad that a drive turns from one pose of a run of several drives to the next, at most, as long as
+there are not more than `MOST_FRAMES` of them."""
+MOST_FRAMES = 2000
+
+
+class RunSession(Protocol):
+    """What a run needs of a session."""
+
+    def current(self) -> Computed:
+        """The design that is."""
+
+    def number_of(self, result: Computed) -> int:
+        """By which a page knows that it shows a design."""
+
+    def telling(self) -> AbstractContextManager[None]:
+        """Inside, the reader's language is spoken, in the units of the file that is open."""
+
+
+def begun(session: RunSession, message: Message) -> Reply:
+    """The reply that says that a run has begun."""
+    with session.telling():
+        return Reply({"type": "busy", "seq": message.seq, "what": say("running the machine")})
+
+
+def answered(session: RunSession, message: Message) -> Iterator[Reply]:
+    """Run a session's machine at once, and show what came of it."""
+    base = session.current()
+    yield begun(session, message)
+    yield computed(session, base, message)
+
+
+def computed(session: RunSession, base: Computed, message: Message) -> Reply:
+    """Run a design as its file has it; errors as of `run`."""
+    from equipoise.running.run import run
+
+    result = run(base.analysis.machine)
+    with session.telling():
+        content, data = run_message(result, base)
+    head = {"type": "run", "seq": message.seq, "design": session.number_of(base)}
+    return Reply({**head, **content}, data)
+
+
+def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:
+    """What a page shows of a run: blocks, charts, and the pose at each instant.
+
+    Arrays: ``run.time`` (M,), s, and ``run.part`` (M,), the place of each instant in the poses, as
+    a part of all of them, counted on through the turns.  With one crank these poses are those of
+    the cycle that the page has; with several drives they come along, ``frames`` of them.
+    """
+    from equipoise.running.run import Run
+
+    block, frames = FloatBlock(), 0
+    if isinstance(run, Run):
+        time, part = run.time, run.crank_angle / (2 * pi * base.motion.turns)
+    else:
+        places = _frames_of(run)
+        moves_of(Scene.of(run.motion_at(places)), block)
+        frames, time = len(places), run.time[places]
+        part = np.arange(frames) / frames
+    block.add("run.time", time)
+    block.add("run.part", part)
+    content: Values = {
+        "blocks": [*block_messages((*run.headline(), *run.blocks()))],
+        "charts": [*panel_charts(run.charts().values(), block)],
+        "frames": frames,
+    }
+    content["arrays"] = block.placement
+    return content, block.data
+
+
+def _frames_of(run: DrivesRun) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """Places of the instants at which a run of several drives is drawn, about equally spaced."""
+    ways = [float(np.sum(np.abs(np.diff(drive.angle)))) for drive in run.drives.values()]
+    count = int(min(MOST_FRAMES, max(2.0, np.ceil(max(ways) / FRAME_TURN))))
+    wanted = np.linspace(run.time[0], run.time[-1], count)
+    return np.unique(np.clip(np.searchsorted(run.time, wanted), 0, len(run.time) - 1))
