@@ -509,6 +509,7 @@ export class App {
     if (!state || message.design !== state.design)
       return this.tell(say("the machine was changed while it ran; run it again"), true);
     this.running.show(message, numbers, state);
+    this.board.say(this.running.verdict, false);
     this.measure();
     this.play();
   }

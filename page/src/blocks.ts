@@ -4,6 +4,9 @@ import { h } from "./dom";
 import { unbroken } from "./format";
 import type { RunMessage, TableBlock } from "./protocol";
 
+/** Columns that always have room beside each other. */
+const NARROW = 4;
+
 /** Elements of some blocks, one below the other. */
 export function blocksOf(blocks: RunMessage["blocks"]): HTMLElement[] {
   return blocks.flatMap((block) => {
@@ -20,5 +23,7 @@ function tableOf({ title, heads, rows, numbers }: TableBlock): HTMLElement {
   const cell = (text: string, i: number) =>
     i ? h("td", side(i), unbroken(text)) : h("th", { scope: "row" }, unbroken(text));
   const body = rows.map((row) => h("tr", {}, ...row.map(cell)));
-  return h("table", {}, h("caption", {}, title), h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...body));
+  const table = h("table", {}, h("caption", {}, title), h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...body));
+  // Where it may have to be moved from side to side, keys can do so too.
+  return heads.length > NARROW ? h("div", { class: "wide", tabindex: 0, role: "group", "aria-label": title }, table) : table;
 }

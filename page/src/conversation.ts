@@ -207,8 +207,8 @@ export class Conversation {
       case "balanced":
         return this.events.balanced(told);
       case "run":
-        this.events.ran(told, new Numbers(told.arrays, buffers[0]));
-        return this.end(told.seq, null);
+        this.end(told.seq, null); // which takes away that it runs
+        return this.events.ran(told, new Numbers(told.arrays, buffers[0]));
       case "busy":
         return this.events.busy(told.what);
       case "file":

@@ -64,8 +64,15 @@ export class Running {
     }
     show(this.root, true);
     show(this.charts, true);
+    // It stands first in its column; where there is one column alone the drawing stays in sight.
     this.root.focus({ preventScroll: true });
-    this.root.scrollIntoView({ block: "nearest" });
+    this.root.parentElement?.scrollTo({ top: 0 });
+  }
+
+  /** What came of the run, in a sentence. */
+  get verdict(): string {
+    const [first] = this.run?.message.blocks ?? [];
+    return first?.kind === "text" ? first.text : "";
   }
 
   /** Forget it: the machine is another one, or nobody looks at it any more. */

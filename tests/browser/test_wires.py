@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import pi
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -66,6 +67,47 @@ def test_a_machine_is_changed_balanced_and_taken_along(wired: Live) -> None:
     for name, link in found.links.items():
         assert made.links[name].mass == pytest.approx(link.mass, rel=1e-5)
         assert made.links[name].center_of_mass == pytest.approx(link.center_of_mass, abs=1e-6)
+
+
+RUNS = "cutter-bar"
+
+
+@pytest.mark.parametrize("address", WIRES, indirect=True)
+def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -> None:
+    """From rest to the standstill that is computed without a page; then the cycle, as before."""
+    page, own = wired.page, eq.load(RUNS)
+    run = eq.run(own)
+    example(page).select_option(RUNS)
+    wired.settled()
+    cycle = page.get_by_role("slider", name="Crank angle", exact=True)
+    cycle.fill("90")
+    wired.button("Run").click()
+    told = page.get_by_role("region", name="Run", exact=True)
+    expect(told).to_contain_text(run.headline()[0].text, timeout=LONGEST * 1000)
+    expect(told.get_by_role("table", name="Events")).to_contain_text("stands still")
+    charts = page.get_by_role("group", name="Run", exact=True)
+    expect(charts.get_by_role("figure")).to_have_count(2)
+    clock = page.get_by_role("slider", name="Time of the run", exact=True)
+    expect(clock).to_have_attribute("aria-valuetext", "0.000 s after the start")
+    joint, length = wired.joint("B"), 1000 * abs(complex(*own.links["crank"].points["B"]))
+    for step, k in ((0, 0), (1000, -1)):
+        before = joint.get_attribute("aria-valuetext")
+        clock.fill(str(step))
+        if step:
+            expect(joint).not_to_have_attribute("aria-valuetext", str(before))
+        place = eq.move(own, run.crank_angle[[k]]).points["B"].place[0]
+        # Drawn at the nearest of 360 crank angles, and told in 0.01 mm.
+        within = length * pi / 360 + 0.01
+        wired.comes_to(joint, (1000 * place.real, 1000 * place.imag), within)
+    expect(clock).to_have_attribute("aria-valuetext", f"{run.end.time:.3f} s after the start")
+    told.get_by_role("button", name="Back to the cycle").click()
+    expect(cycle).to_be_visible()
+    told.get_by_role("button", name="Play the run").click()
+    expect(clock).to_be_visible()
+    wired.type(wired.field("crank mass"), "9 kg")
+    expect(told).to_be_hidden()
+    expect(charts).to_be_hidden()
+    expect(cycle).to_be_visible()
 
 
 @pytest.mark.parametrize("address", few(WIRES, {"socket"}), indirect=True)

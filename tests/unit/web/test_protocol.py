@@ -95,6 +95,7 @@ TORQUE_CHART = {"kind": "chart", "chart": "output", "choice": "drive_torque", "f
         ("open", {"new": True}, {"state"}),
         ("edit", {"commit": True, "label": "edit", "edits": [MASS]}, {"state"}),
         ("balance", {}, {"busy", "state", "balanced"}),
+        ("run", {}, {"busy", "run"}),
         ("tables", {}, {"tables"}),
         ("download", {"kind": "model"}, {"file"}),
         ("download", TORQUE_CHART, {"file"}),

@@ -100,8 +100,22 @@ def test_a_balance_of_a_machine_that_was_changed_is_refused(page: Foreground) ->
     assert "was changed while it was balanced" in refusal["message"]
 
 
-def test_what_takes_long_can_be_cancelled(page: Foreground) -> None:
-    asked(page, "balance")
+def test_a_run_is_computed_beside_of_the_design_that_was_shown(page: Foreground) -> None:
+    assert kinds(asked(page, "run")) == ["busy"]
+    shown = asked(page, "outputs", names=["drive_torque"])[0]
+    (run,) = [one for one in done_beside(page) if one["type"] == "run"]
+    assert run["design"] == page.desk.session.number_of(page.desk.session.current()) > 0
+    assert shown["type"] == "state"
+    asked(page, "run")
+    asked(page, "edit", label="mass", edits=[MASS])
+    (old,) = [one for one in done_beside(page) if one["type"] == "run"]
+    assert old["design"] == run["design"]
+    assert old["design"] != page.desk.session.number_of(page.desk.session.current())
+
+
+@pytest.mark.parametrize("what", ["balance", "run"])
+def test_what_takes_long_can_be_cancelled(page: Foreground, what: str) -> None:
+    asked(page, what)
     refusal = page.cancel()
     assert refusal is not None
     assert unpacked(refusal)[0]["message"] == "cancelled; nothing was changed"
