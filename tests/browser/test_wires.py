@@ -85,6 +85,7 @@ def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -
     told = page.get_by_role("region", name="Run", exact=True)
     expect(told).to_contain_text(run.headline()[0].text, timeout=LONGEST * 1000)
     expect(told.get_by_role("table", name="Events")).to_contain_text("stands still")
+    assert wired.findings() == []
     charts = page.get_by_role("group", name="Run", exact=True)
     expect(charts.get_by_role("figure")).to_have_count(2)
     clock = page.get_by_role("slider", name="Time of the run", exact=True)
