@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from equipoise.i18n import say
+from equipoise.errors import UsageError
+from equipoise.i18n import Note, say
 from equipoise.symbols.scene import Scene
 from equipoise.web.block import FloatBlock, Values
 from equipoise.web.drawing import moves_of
 from equipoise.web.edits import Computed
+from equipoise.web.incomplete import Incomplete
 from equipoise.web.messages import Message
 from equipoise.web.replies import Reply
 from equipoise.web.result_blocks import block_messages, panel_charts
@@ -26,10 +28,13 @@ FRAME_TURN = pi / 36
 """rad that a drive turns from one pose of a run of several drives to the next, at most, as long as
 there are not more than `MOST_FRAMES` of them."""
 MOST_FRAMES = 2000
+CHANGED = Note("the machine was changed while it ran; run it again")
 
 
 class RunSession(Protocol):
     """What a run needs of a session."""
+
+    current_state: Computed | Incomplete | None
 
     def current(self) -> Computed:
         """The design that is."""
@@ -55,10 +60,19 @@ def answered(session: RunSession, message: Message) -> Iterator[Reply]:
 
 
 def computed(session: RunSession, base: Computed, message: Message) -> Reply:
-    """Run a design as its file has it; errors as of `run`."""
+    """Run a design as its file has it.
+
+    Raises
+    ------
+    UsageError : the machine is no longer `base`; others as of `run`.
+    """
     from equipoise.running.run import run
 
-    result = run(base.analysis.machine)
+    def progress(turns: int, most: int) -> None:
+        if session.current_state is not base:
+            raise UsageError(CHANGED)
+
+    result = run(base.analysis.machine, progress=progress)
     with session.telling():
         content, data = run_message(result, base)
     head = {"type": "run", "seq": message.seq, "design": session.number_of(base)}
