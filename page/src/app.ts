@@ -338,6 +338,8 @@ export class App {
       tool: (key: string) => this.tools.pick(key),
     };
     this.root.addEventListener("keydown", (event) => pressed(event, shortcuts));
+    for (const kind of ["pointerdown", "keydown"] as const)
+      this.board.root.addEventListener(kind, (event) => this.toCycle(event), true);
     if (!this.full) return;
     // The page is all there is: undo and help also where nothing has the focus.
     const key = (event: KeyboardEvent) =>
@@ -527,6 +529,16 @@ export class App {
     this.player.leave();
     this.player.playing = false;
     this.clocked();
+  }
+
+  /** Nothing is taken hold of in poses that are none of the cycle: the cycle is shown first. */
+  private toCycle(event: PointerEvent | KeyboardEvent): void {
+    if (this.player.time === null || this.running.cyclic) return;
+    if (!this.stage.svg.contains(event.target as Node)) return;
+    if (event instanceof KeyboardEvent && !event.key.startsWith("Arrow")) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.leave();
   }
 
   /** The run or the cycle is played from now on. */

@@ -47,6 +47,8 @@ export class Toolbar {
   private readonly balance: HTMLButtonElement;
   private readonly run: HTMLButtonElement;
   private readonly save: HTMLButtonElement;
+  /** Whether a run was asked for last, of what takes long. */
+  private runs = false;
   private readonly cancel = h("button", { type: "button", hidden: true }, say("Cancel"));
   private readonly own = h("option", { value: "" }, "");
   private readonly menu: HTMLDetailsElement;
@@ -62,7 +64,10 @@ export class Toolbar {
     this.redo = button("", "redo", () => commands.redo(), say("Redo"));
     this.balance = button(say("Balance"), "balance", () => commands.balance());
     set(this.balance, { "data-do": "balance" });
-    this.run = button(say("Run"), "run", () => commands.run());
+    this.run = button(say("Run"), "run", () => {
+      this.runs = true;
+      commands.run();
+    });
     set(this.run, { "data-do": "run" });
     this.save = button("", "disk", () => commands.save(), say("Save"));
     this.save.hidden = true;
@@ -130,7 +135,9 @@ export class Toolbar {
   /** What takes long is computed, and can be given up by `cancel`, if that is possible. */
   busy(what: string | null, cancel?: () => void): void {
     set(this.root, { "data-busy": what });
-    this.balance.classList.toggle("working", what !== null);
+    this.balance.classList.toggle("working", what !== null && !this.runs);
+    this.run.classList.toggle("working", what !== null && this.runs);
+    if (what === null) this.runs = false;
     this.cancel.hidden = what === null || !cancel;
     this.cancel.onclick = () => cancel?.();
   }

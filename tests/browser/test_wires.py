@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from math import pi
 
+import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
 import equipoise as eq
-from browser.live import LONGEST, Live
+from browser.live import LONGEST, OVER_A_SOCKET, Live
 from support.chosen import few
 
 NAME = "balance-crank"
@@ -109,6 +111,29 @@ def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -
     expect(told).to_be_hidden()
     expect(charts).to_be_hidden()
     expect(cycle).to_be_visible()
+
+
+@OVER_A_SOCKET
+def test_drives_that_go_their_own_ways_are_drawn_and_not_dragged(wired: Live) -> None:
+    """Poses of such a run are none of the cycle, in which alone something can be moved."""
+    page, own = wired.page, eq.load("two-motor-mixer")
+    run = eq.run(own)
+    example(page).select_option("two-motor-mixer")
+    wired.settled()
+    joint, of_cycle = wired.joint("B"), wired.place(wired.joint("B"))
+    wired.button("Run").click()
+    clock = page.get_by_role("slider", name="Time of the run", exact=True)
+    expect(clock).to_be_visible(timeout=LONGEST * 1000)
+    clock.fill("1000")
+    expect(clock).to_have_attribute("aria-valuetext", "1.000 s after the start")
+    turned = run.drives["left-crank"].angle[-1]
+    end = 1000 * complex(*own.links["left-crank"].points["B"]) * np.exp(1j * turned)
+    told = f"{end.real:.2f}".rstrip("0")
+    expect(joint).to_have_attribute("aria-valuetext", re.compile(re.escape(told)))
+    wired.drag(joint, (20, 20))
+    expect(clock).to_be_hidden()
+    wired.comes_to(joint, of_cycle, 0.01)
+    assert wired.machine() == own
 
 
 @pytest.mark.parametrize("address", few(WIRES, {"socket"}), indirect=True)
