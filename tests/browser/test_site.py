@@ -173,7 +173,7 @@ SMALL_TEXT = 6.5
 
 
 def test_texts_of_plots_can_be_read_on_a_telephone(page: Page, site: Path) -> None:
-    """At 400 pixels another picture stands there, whose smallest letters are 8 pixels at least."""
+    """Another picture stands there; the smallest letters of both are 8 pixels at least."""
     sizes = """all => all.filter(one => one.offsetParent)
         .map(one => one.clientWidth / one.naturalWidth)"""
     for name in ("balancing.html", "figures.html", "recipes/size-a-flywheel.html"):
@@ -183,7 +183,7 @@ def test_texts_of_plots_can_be_read_on_a_telephone(page: Page, site: Path) -> No
             plots = page.locator("img.where-wide, img.where-narrow")
             expect(plots.locator("visible=true")).to_have_count(plots.count() // 2)
             for scale in plots.evaluate_all(sizes):
-                assert SMALL_TEXT * 96 / 72 * scale >= 8 * min(width / 400, 0.9), (name, width)
+                assert SMALL_TEXT * 96 / 72 * scale >= 8, (name, width)
 
 
 def test_names_of_functions_are_whole_on_a_telephone(page: Page, site: Path) -> None:
