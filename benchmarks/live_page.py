@@ -26,22 +26,22 @@ many of them several times: that is printed, and ends no benchmark after it.
     python benchmarks/live_page.py --worker [NAME ...]
 
 measures the page of a site in the same way, which computes in WebAssembly in the browser.  On two
-cores without other programs, medians and 95th percentiles of two days:
+cores without other programs, medians and 95th percentiles of three days:
 
-    linkage                keys      drag         keys      drag
-    yamashita-1            40  75    35  54       69 145    65  97
-    slider-crank-engine    78 113    63  82      104 176    83 133
-    stephenson-six-bar     46  74    41  59      145 239   107 256
+    linkage                keys      drag         keys      drag         keys      drag
+    yamashita-1            40  75    35  54       69 145    65  97       67 117    55  85
+    slider-crank-engine    78 113    63  82      104 176    83 133       63  99    51  93
+    stephenson-six-bar     46  74    41  59      145 239   107 256       74 155    75 122
 
 On the second day the machine was slower, not the page: in alternation with the page of the first
 day, beside other programs, a frame of `yamashita-1` took 130 ms of the processor's time while keys
 were pressed, against 154 ms; a third of it in the browser's main thread, a quarter in the worker,
 and the rest to paint and compose, as there was no graphics card.
 
-Since then a drawing is laid out once a frame, and figures and readings are written every 0.3 s
-while something is held.  In alternation with the page before, beside many other programs, a frame
-took 124 ms of the processor's time against 142 (`stephenson-six-bar`), and 99 against 102
-(`slider-crank-engine`).
+Before the third day a drawing came to be laid out once a frame, and figures and readings to be
+written every 0.3 s while something is held. In alternation with the page before, beside many other
+programs, a frame took 124 ms of the processor's time against 142 (`stephenson-six-bar`), and 99
+against 102 (`slider-crank-engine`).
 
 A key costs as much as a move of a drag: keys that follow one another are moves of one drag, which
 is finished once they have paused.  But keys come whether or not the page keeps up, while a browser
