@@ -191,6 +191,9 @@ def test_links_that_reach_no_start_are_refused() -> None:
         eq.run(replace(five_bar(free=True), drives=(FurtherDrive("right", start=pi, free=True),)),
                1.0, angle=pi)  # fmt: skip
     assert refused.value.topic == "links-cannot-be-joined-at-any-crank-angle"
+    rubbing = eq.load("two-motor-mixer")  # whose friction is not what keeps it from its start
+    with pytest.raises(ResponseError, match="assembled"):
+        eq.run(replace(rubbing, frame={**rubbing.frame, "E": (0.43, 0.0)}))
 
 
 @pytest.mark.parametrize(

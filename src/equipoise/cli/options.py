@@ -15,6 +15,7 @@ from cyclopts import ArgumentCollection, Parameter, UnknownOptionError
 from equipoise.dataclass import dataclass
 from equipoise.errors import (
     EquipoiseError,
+    LockError,
     MassError,
     MobilityError,
     ModelError,
@@ -282,7 +283,7 @@ def error_in_file(file: str) -> Iterator[None]:
     """Put the file's name in front of what turns out wrong with its machine."""
     try:
         yield
-    except (ModelError, MobilityError, MotionError, MassError, ResponseError) as error:
+    except (ModelError, MobilityError, MotionError, MassError, ResponseError, LockError) as error:
         if isinstance(error, ModelError) and error.source:
             raise  # it names the file itself
         from equipoise.schema.files import printable

@@ -109,11 +109,14 @@ class DrivesRates:
                 return None
             except np.linalg.LinAlgError:
                 return None
-        return values if np.all(np.isfinite(values.rates)) else None
+        return values if values is not None and np.all(np.isfinite(values.rates)) else None
 
-    def _at(self, time: Array, states: Array, near: References) -> NodeValues:
+    def _at(self, time: Array, states: Array, near: References) -> NodeValues | None:
         equation, where = self.equation, self.where(time, states)
         state = equation.at(time, just_after(self.since), where, near)
+        margins = state.pose.margins([*equation.dyads.values()])
+        if not np.all(margins >= 0):  # before friction, which would seem to lock such a machine
+            return None
         torques = self._driving(time, where, states)
         total = torques.copy()
         if self.braked:
@@ -135,7 +138,6 @@ class DrivesRates:
             works += [*efforts * joint_rates]
         works += [braking * where.speeds[0]] if self.braked else []
         works += [torques[k] * where.speeds[k] for k in self.turned]
-        margins = state.pose.margins([*equation.dyads.values()])
         return NodeValues(
             np.array(np.broadcast_arrays(*rates)),
             np.array([*electric, *works]).reshape(-1, len(time)),
