@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import pi
 from typing import Any
@@ -23,6 +24,7 @@ from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.running.drives_blocks import run_blocks, run_headline, verdict
 from support.machines import make
+from support.machines_redundant import planet_train
 
 MASS, ARM, OWN = 2.0, 0.3, 0.05
 INERTIA = OWN + MASS * ARM**2
@@ -186,6 +188,43 @@ def apart(**changes: Any) -> eq.Machine:
     return replace(machine, drives=(FurtherDrive("right", ratio=-1.0, free=True),), **changes)
 
 
+def test_what_has_run_and_is_changed_runs_as_changed() -> None:
+    """Nothing of the masses before is kept, neither for a flywheel nor for a link."""
+    plain = apart()
+    eq.run(plain, 0.05)
+    changes: list[Callable[[eq.Machine], eq.Machine]] = [
+        lambda machine: machine.with_drive(flywheel=0.01),
+        lambda machine: machine.with_link("left", mass=3.0),
+    ]
+    before = eq.run(apart(), 0.05).drives["left"].angle[-1]
+    for change in changes:
+        after, fresh = (eq.run(change(each), 0.05) for each in (plain, apart()))
+        assert after.drives["left"].angle[-1] == fresh.drives["left"].angle[-1] != before
+
+
+def test_a_flywheel_is_as_inertia_of_its_link() -> None:
+    plain = apart()
+    heavier = plain.with_link("left", inertia=plain.links["left"].inertia + 0.01)
+    ends = [eq.run(each, 0.2).drives["left"].angle[-1]
+            for each in (plain.with_drive(flywheel=0.01), heavier)]  # fmt: skip
+    assert ends[0] == pytest.approx(ends[1], rel=1e-9)
+
+
+def test_turns_of_a_crank_that_stands_are_refused() -> None:
+    machine = cranks(eq.Drive("left", 0.0), FurtherDrive("right", motor=Motor(torque=2.0)))
+    for given in ({"turns": 2.0}, {"duration": 1.0, "off_turns": 1.0}):
+        with pytest.raises(UsageError, match="speed 0"):
+            eq.run(machine, **given)
+
+
+def test_progress_counts_to_where_a_run_ends() -> None:
+    counted: list[tuple[int, int]] = []
+    machine = cranks(eq.Drive("left", 10.0, free=True), FurtherDrive("right", free=True))
+    found = eq.run(machine, progress=lambda done, most: counted.append((done, most)))
+    assert {most for _, most in counted} == {30}
+    assert found.end.kind in ("turns", "time", "steady")
+
+
 def test_links_that_reach_no_start_are_refused() -> None:
     with pytest.raises(ResponseError, match="assembled") as refused:
         eq.run(replace(five_bar(free=True), drives=(FurtherDrive("right", start=pi, free=True),)),
@@ -302,3 +341,13 @@ def test_a_crank_beside_another_runs_as_it_does_alone(name: str) -> None:
     assert {*found.losses} == {*one.losses}
     for joint, lost in found.losses.items():
         assert lost[-1] == pytest.approx(one.losses[joint][-1], rel=1e-4)
+
+
+def test_friction_in_meshes_that_share_their_force_is_refused() -> None:
+    """As with one crank."""
+    machine = planet_train(np.random.default_rng(1)).machine
+    joint = JointProperties(f"gears.{machine.gears[0].name}", mesh_loss=0.02)
+    drive = replace(machine.drive, acceleration=0.0, speeds=(), motor=None, free=True)
+    lossy = replace(machine, drive=drive, joints=(joint,), support=None, rows=())
+    with pytest.raises(UsageError, match="redundant"):
+        eq.run(beside(lossy), 0.5)

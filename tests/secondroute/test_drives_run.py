@@ -177,7 +177,7 @@ def test_the_bundled_mixer_starts_by_two_motors() -> None:
     assert all(course.turns > 0.05 for course in found.drives.values())
 
 
-def test_a_five_bar_swings_to_rest_by_friction() -> None:
+def test_a_five_bar_swings_with_friction() -> None:
     """Joints turn back at instants of their own."""
     drive = eq.Drive("left crank", 5.0, free=True)
     other = FurtherDrive("right crank", ratio=0.0, start=0.3, free=True)

@@ -8,16 +8,21 @@ from __future__ import annotations
 
 import ast
 import inspect
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
 
 from equipoise.codegen import extremes
 
-SIGNS: Final = {ast.USub: "-", ast.Not: "!"}
-OPERATORS: Final = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
-COMPARISONS: Final = {
+SIGNS: Final[Mapping[type[ast.AST], str]] = {ast.USub: "-", ast.Not: "!"}
+OPERATORS: Final[Mapping[type[ast.AST], str]] = {
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.Mult: "*",
+    ast.Div: "/",
+}
+COMPARISONS: Final[Mapping[type[ast.AST], str]] = {
     ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "===", ast.NotEq: "!==",
 }  # fmt: skip
 CALLS: Final = {
@@ -136,7 +141,7 @@ def _statement(line: ast.stmt) -> Iterator[str]:
         ):
             yield f"{_text(target)} = {_text(value)};"
         case ast.AugAssign():
-            yield f"{_text(line.target)} {OPERATORS[type(line.op)]}= {_text(line.value)};"
+            yield f"{_text(line.target)} {_sign(OPERATORS, line.op)}= {_text(line.value)};"
         case ast.For():
             yield f"for ({_loop(line)}) {{"
             yield from _indented(_block(line.body))
@@ -193,15 +198,13 @@ class _Expressions(ast.NodeVisitor):
         return f"[{', '.join(map(self.visit, node.elts))}]"
 
     def visit_UnaryOp(self, node: ast.UnaryOp) -> str:
-        return f"{SIGNS[type(node.op)]}{self.visit(node.operand)}"
+        return f"{_sign(SIGNS, node.op)}{self.visit(node.operand)}"
 
     def visit_BinOp(self, node: ast.BinOp) -> str:
         left, right = self.visit(node.left), self.visit(node.right)
         if isinstance(node.op, ast.Mod):
             return f"modulo({left}, {right})"
-        if type(node.op) not in OPERATORS:
-            self.generic_visit(node)
-        return f"({left} {OPERATORS[type(node.op)]} {right})"
+        return f"({left} {_sign(OPERATORS, node.op)} {right})"
 
     def visit_BoolOp(self, node: ast.BoolOp) -> str:
         sign = " && " if isinstance(node.op, ast.And) else " || "
@@ -211,7 +214,7 @@ class _Expressions(ast.NodeVisitor):
         """A chain of comparisons, each of which is one of two values there."""
         sides = [*map(self.visit, (node.left, *node.comparators))]
         pairs = [
-            f"{left} {COMPARISONS[type(op)]} {right}"
+            f"{left} {_sign(COMPARISONS, op)} {right}"
             for left, op, right in zip(sides, node.ops, sides[1:], strict=False)
         ]
         return f"({' && '.join(pairs)})"
@@ -221,7 +224,7 @@ class _Expressions(ast.NodeVisitor):
 
     def visit_Call(self, node: ast.Call) -> str:
         name, args = ast.unparse(node.func), node.args
-        if node.keywords or (name not in CALLS and not isinstance(node.func, ast.Name)):
+        if node.keywords or not (name in CALLS or name == "len" or hasattr(extremes, name)):
             self.generic_visit(node)
         if name == "len":
             return f"{self.visit(args[0])}.length"
@@ -240,12 +243,20 @@ class _Expressions(ast.NodeVisitor):
         return "".join([self.visit(node.value), *map(self._place, places)])
 
     def _place(self, node: ast.expr) -> str:
+        if isinstance(node, ast.UnaryOp):  # places from the end
+            self.generic_visit(node)
         if not isinstance(node, ast.Slice):
             return f"[{self.visit(node)}]"
         begin = self.visit(node.lower) if node.lower else "0"
         return (
             f".subarray({begin}, {self.visit(node.upper)})" if node.upper else f".subarray({begin})"
         )
+
+
+def _sign(signs: Mapping[type[ast.AST], str], operator: ast.AST) -> str:
+    if type(operator) not in signs:
+        raise TypeError(type(operator).__name__)
+    return signs[type(operator)]
 
 
 _expressions = _Expressions()

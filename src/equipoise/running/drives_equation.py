@@ -189,13 +189,13 @@ class DrivesEquation:
         pose = pose_of(self.linkage, where.crank_angle, where.angles, where.speeds, near)
         pace = where.speeds[0] if self.by_crank else np.full(len(time), self.machine.drive.speed)
         applied = AppliedForces(pose, pace, self.factors_at(time, since))
+        acting = {key: applied.demands(key) for key in self.sources}
         forces = np.zeros((len(self.sources), len(self.drives), pose.count))
-        for k, key in enumerate(self.sources):
-            forces[k] = applied.force(key)
+        for k, demands in enumerate(acting.values()):
+            forces[k] = pose.generalized(demands)
         rubbing = None
         if self.friction is not None:
-            acting = (applied.demands(key) for key in self.sources)
-            rubbing = self.friction.of(pose, plus(pose.turning, *acting))
+            rubbing = self.friction.of(pose, plus(pose.turning, *acting.values()))
         return DriveState(pose, self.with_rotors(pose.inertia), forces, rubbing)
 
     def with_rotors(self, inertia: Array) -> Array:

@@ -31,7 +31,7 @@ from equipoise.mechanism.dynamics.friction import (
 )
 from equipoise.mechanism.kinematics.friction_joints import STILL, RubbingJoint, rubbing_joints
 from equipoise.running.drives_linkage import DrivesPose
-from equipoise.running.friction import on_flanks, sided_meshes
+from equipoise.running.friction import check_shared_friction, on_flanks, sided_meshes
 from equipoise.signals import Array
 
 NEAR_REST = 1e-3
@@ -44,10 +44,17 @@ class DrivesFriction:
     """Joints of a linkage that resist their motion.
 
     usual : speed of the crank, rad/s.
+
+    Raises
+    ------
+    UsageError : a run cannot tell how forces with friction are shared.
     """
 
     linkage: Linkage
     usual: float
+
+    def __post_init__(self) -> None:
+        check_shared_friction(self.linkage.machine)
 
     @cached_property
     def joints(self) -> tuple[RubbingJoint, ...]:

@@ -29,7 +29,8 @@ from equipoise.mechanism.dynamics.applied_loads import (
     spring_demands,
 )
 from equipoise.mechanism.dynamics.forces import inertia_moved
-from equipoise.mechanism.dynamics.reactions import Demand, demands_of
+from equipoise.mechanism.dynamics.friction import Demands
+from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
@@ -39,7 +40,6 @@ from equipoise.signals import Array
 
 References = Mapping[str, Array]
 """About what running angles (..., K), and unknowns of loops, are, by their names in a linkage."""
-Demands = Mapping[str, Demand]
 STRIDE = 0.02
 """rad of the crank, by which loops are followed to the angle at which a run starts."""
 
@@ -113,14 +113,11 @@ class DrivesPose:
     def _inertial(self) -> dict[str, tuple[float, complex, float]]:
         """Mass, first moment and inertia about their anchors of the links that have any."""
         linkage = self.linkage
-        if "inertial" not in linkage.memory:
-            each = {
-                link: inertia_moved(linkage.machine, link, linkage.anchors[link])
-                for link in linkage.machine.links
-            }
-            linkage.memory["inertial"] = {link: own for link, own in each.items() if any(own)}
-        known: dict[str, tuple[float, complex, float]] = linkage.memory["inertial"]
-        return known
+        each = {
+            link: inertia_moved(linkage.machine, link, linkage.anchors[link])
+            for link in linkage.machine.links
+        }
+        return {link: own for link, own in each.items() if any(own)}
 
     @cached_property
     def _numbers(self) -> list[Array]:
@@ -171,15 +168,6 @@ class DrivesPose:
         """Work (L, N, N, K) of what acts (L, 1, N, K) along each drive."""
         first, _, _, w, _ = (part[:, :-1, None] for part in self._rates)
         return np.asarray(kernels.dot(first, force) + w * moment)
-
-    @cached_property
-    def weight(self) -> Array:
-        """Generalized force (N, K) of the links' weight, N m."""
-        gravity = complex(*self.linkage.machine.gravity)
-        mass, moment, _ = (number[..., None] for number in self._numbers)
-        first, _, turn, w, _ = (part[:, :-1] for part in self._rates)
-        falling = np.sum(mass * first + 1j * moment * w * turn, axis=0)
-        return np.asarray(kernels.dot(gravity, falling))
 
     def _ways(self, link: str) -> tuple[Array, Array]:
         """Rates (N, K) of a link's anchor and of its angle, by each drive."""
@@ -280,10 +268,6 @@ class AppliedForces:
     pose: DrivesPose
     pace: Array
     factors: Sequence[Array]
-
-    def force(self, key: str) -> Array:
-        """Generalized force (N, K) of a source, N m."""
-        return self.pose.weight if key == "weight" else self.pose.generalized(self.demands(key))
 
     def demands(self, key: str) -> Demands:
         """What holds a source."""

@@ -73,14 +73,7 @@ class Friction(Source):
     label: str = field(default=to_say("friction"), init=False)
 
     def __post_init__(self) -> None:
-        shared = assemble(self.machine).shared
-        if self.machine.switches and shared is not None and shared.count:
-            raise UsageError(
-                Note(
-                    "a run does not compute friction in joints where teeth or chains share their "
-                    "force with redundant constraints; leave one of them out"
-                )
-            )
+        check_shared_friction(self.machine)
 
     # -- what it consists of -----------------------------------------------------------------------
 
@@ -257,6 +250,18 @@ class Friction(Source):
         if np.any(share < 1):
             raise LockError(Note("friction in joints locks the machine on the way"))
         return np.asarray(rates * efforts)
+
+
+def check_shared_friction(machine: Machine) -> None:
+    """Raise a `UsageError` where a run cannot tell how forces with friction are shared."""
+    shared = assemble(machine).shared
+    if machine.switches and shared is not None and shared.count:
+        raise UsageError(
+            Note(
+                "a run does not compute friction in joints where teeth or chains share their "
+                "force with redundant constraints; leave one of them out"
+            )
+        )
 
 
 def sided_meshes(linkage: Linkage) -> tuple[RubbingJoint, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -329,7 +329,8 @@ def run(
     ------
     MassError : a link has no mass given.
     MotionError : the crank cannot turn fully.
-    UsageError : a value cannot be used, or the machine is not driven by one crank.
+    UsageError : a value cannot be used, or `fluctuation` is given of a machine that is not driven
+        by one crank.
     ResponseError : the motion cannot be followed.
     """
     plan = machine.run or RunPlan()
@@ -341,11 +342,14 @@ def run(
     angle = plan.angle if angle is None else angle
     limits = _limits(machine, {"duration": duration, "turns": turns, "off": off,
                                "off_turns": off_turns})  # fmt: skip
-    whole_turns = _turns_counted(limits, progress)
     if not machine.has_crank:
         if fluctuation is not None:
             CrankEquation(machine)  # which says that it takes one crank
-        return _run_drives(machine, limits, speed, angle, whole_turns)
+        limits = _limits_of_drives(machine, limits)
+        start = _start(machine.drive.speed, speed, angle)
+        starts = _start_of_drives(machine, start, _turns_counted(limits, progress), speed is None)
+        return run_drives(DrivesEquation(machine, start[1]), limits, starts)
+    whole_turns = _turns_counted(limits, progress)
     first = 0.0 if machine.drive.motor is not None else machine.drive.speed
     start = _start(first, speed, angle)
     wanted = None if fluctuation is None else share_of_mean(fluctuation)
@@ -399,29 +403,34 @@ def _turns_counted(limits: Limits, progress: Progress | None) -> Callable[[float
     return lambda done: progress(int(done), most)
 
 
-def _run_drives(
-    machine: Machine,
-    limits: Limits,
-    speed: float | str | None,
-    angle: float | str | None,
-    on_turns: Callable[[float], None],
-) -> DrivesRun:
-    """Of several drives: with a speed all start as at that of the crank, without one those with a
-    motor start at rest, and those that are free at the speed of the file.
+def _limits_of_drives(machine: Machine, limits: Limits) -> Limits:
+    """Where a run of several drives ends, of which none may ever be steady."""
+    pace = abs(machine.drive.speed)
+    if limits.steady:
+        time = 2 * pi * TURNS_OF_DRIVES / (pace or 1.0)
+        return replace(limits, time=time, turns=TURNS_OF_DRIVES)
+    counted = limits.turns < inf or limits.off_turns < inf
+    if counted and not (pace or machine.drive.moves_freely):
+        raise UsageError(
+            Note("turns are those of the crank, which has the speed 0; give times instead")
+        )
+    return limits
+
+
+def _start_of_drives(
+    machine: Machine, start: Sequence[float], on_turns: Callable[[float], None], usual: bool
+) -> Start:
+    """All drives at a speed of the crank, rad/s, and its angle, rad; where the speed is the `usual`
+    one, those with a motor are at rest.
     """
-    pace, theta = _start(machine.drive.speed, speed, angle)
+    pace, theta = start
     turned = [drive.turned(np.array([theta])) for drive in machine.driven]
     angles, rates = ([float(np.ravel(each[part])[0]) for each in turned] for part in (0, 1))
     speeds = [
-        0.0 if speed is None and drive.motor is not None else rate * pace
+        0.0 if usual and drive.motor is not None else rate * pace
         for drive, rate in zip(machine.driven, rates, strict=True)
     ]
-    if limits.steady:
-        usual = abs(machine.drive.speed) or 1.0
-        time = 2 * pi * TURNS_OF_DRIVES / usual
-        limits = replace(limits, time=time, turns=TURNS_OF_DRIVES)
-    start = Start(angles, speeds, on_turns)
-    return run_drives(DrivesEquation(machine, theta), limits, start)
+    return Start(angles, speeds, on_turns)
 
 
 def _result(equation: CrankEquation, integration: Integration, flywheel: Flywheel | None) -> Run:

@@ -123,7 +123,7 @@ class TimeSpan:
 
 
 def between_nodes(values: Array, x: Array) -> Array:
-    """NodeValues (..., K) at places (K,) from -1 to 1, by those (..., NODES) at the nodes."""
+    """Values (..., K) at places (K,) from -1 to 1, by those (..., NODES) at the nodes."""
     return np.asarray(values @ TO_CHEBYSHEV.T @ polynomials(x)[:, :NODES].T)
 
 

@@ -118,7 +118,29 @@ def gone_through_twice(values: Array) -> float:
     return float(values[0])
 
 
-@pytest.mark.parametrize("function", [called_by_name, kept_in_a_table, gone_through_twice])
+def summed_by_python(values: Array) -> float:
+    return float(sum(values))
+
+
+def taken_from_the_end(values: Array) -> float:
+    return values[-1]  # type: ignore[no-any-return]
+
+
+def raised_in_place(values: Array) -> None:
+    values[0] **= 2
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        called_by_name,
+        kept_in_a_table,
+        gone_through_twice,
+        summed_by_python,
+        taken_from_the_end,
+        raised_in_place,
+    ],
+)
 def test_what_has_no_counterpart_is_refused(function: Callable[..., Any]) -> None:
     with pytest.raises(TypeError):
         script_of(function)
