@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from collections import defaultdict
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -46,7 +47,7 @@ def pytest_configure(config: pytest.Config) -> None:
     from hypothesis import settings
 
     if not config.getoption("--exhaustive") and not _by_name(config):
-        settings.register_profile("change", settings(), max_examples=30)
+        settings.register_profile("change", settings(), max_examples=20)
         settings.load_profile("change")
     _rewrite_share(config)
 
@@ -59,7 +60,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     seeded = metafunc.definition.path.parent in SEEDED or "seed" in metafunc.fixturenames
     seeds = metafunc.config.getoption("--seeds") if seeded else None
     every = metafunc.config.getoption("--exhaustive")
-    some = None if every else metafunc.definition.name
+    chosen = _but(metafunc.definition) is not None
+    some = None if every or chosen else metafunc.definition.name
     marks = metafunc.definition.own_markers
     marks[:] = [
         _thinned(mark, seeds, every, some) if mark.name == "parametrize" else mark for mark in marks
@@ -79,9 +81,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Leave out tests that are exhaustive, unless they were asked for."""
     if config.getoption("--exhaustive") or _by_name(config):
         return
-    left = [item for item in items if item.get_closest_marker("exhaustive")]
+    _know_all(items)
+    left = [item for item in items if _is_left_out(item)]
     config.hook.pytest_deselected(items=left)
-    items[:] = [item for item in items if not item.get_closest_marker("exhaustive")]
+    items[:] = [item for item in items if not _is_left_out(item)]
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -164,6 +167,37 @@ def _rewrite_share(config: pytest.Config) -> None:
 def _by_name(config: pytest.Config) -> bool:
     """Whether tests were asked for by their names, which are tried whatever they are."""
     return any("::" in argument for argument in config.args)
+
+
+def _but(item: pytest.Item | pytest.FunctionDefinition) -> Sequence[str] | None:
+    """Values that are tried on every change of a test that is exhaustive otherwise."""
+    mark = item.get_closest_marker("exhaustive")
+    return mark.kwargs.get("but") if mark else None
+
+
+def _values_of(item: pytest.Item) -> str:
+    """The values of a test, as they stand in its name."""
+    return item.name.partition("[")[2].removesuffix("]")
+
+
+def _is_left_out(item: pytest.Item) -> bool:
+    """Whether a test is left to a release."""
+    marks = list(item.iter_markers("exhaustive"))
+    return any(_values_of(item) not in mark.kwargs.get("but", ()) for mark in marks)
+
+
+def _know_all(items: list[pytest.Item]) -> None:
+    """Refuse values to be tried that a test does not have, or it would be left out unnoticed."""
+    known = defaultdict[tuple[Path, str], set[str]](set)
+    asked = dict[tuple[Path, str], Sequence[str]]()
+    for item in items:
+        test = item.path, item.name.partition("[")[0]
+        known[test].add(_values_of(item))
+        if but := _but(item):
+            asked[test] = but
+    for test, but in asked.items():
+        if missing := set(but) - known[test]:
+            raise pytest.UsageError(f"{test[0]}: {test[1]} is not tried on {sorted(missing)}")
 
 
 @cache

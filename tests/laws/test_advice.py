@@ -281,6 +281,7 @@ BATCH = [
 ]
 
 
+@pytest.mark.exhaustive(but=["watt-2-0"])
 @pytest.mark.parametrize("seed", range(50))
 @pytest.mark.parametrize(("kind", "number"), BATCH)
 def test_random_machines_with_loads(kind: str, number: int, seed: int) -> None:
@@ -341,6 +342,7 @@ def answer_of(found: Balanced) -> str:
     return " ".join(lines)
 
 
+@pytest.mark.exhaustive(but=["beam-pump", "frame-saw", "stamping-press", "press"])
 @pytest.mark.parametrize("name", few(ANSWERS, TRIED))
 def test_machines_of_other_trades(name: str) -> None:
     """A digger, engines, a press, pumps, sieves and conveyors, which nobody here had modelled."""
@@ -353,12 +355,16 @@ ALIKE = {"scotch-yoke", "riding-transplanter", "balance-spring", "geared-counter
 """Advised for seconds, as others of ``OF_BUNDLED`` and ``ANSWERS`` are."""
 
 
+@pytest.mark.exhaustive(but=["slider-crank-engine", "hydraulic-loader"])
 @pytest.mark.parametrize("name", OF_BUNDLED)
 def test_what_a_designer_would_say_of_bundled_machines(name: str) -> None:
     found = advice_for(name)
     assert re.search(OF_BUNDLED[name], answer_of(found)), answer_of(found)
 
 
+@pytest.mark.exhaustive(
+    but=["flap-folder", "kim-chung-b", "straw-walker", "sieve", "slider-crank-engine"]
+)
 @pytest.mark.parametrize("name", few(BUNDLED, {*DISTINCT} - ALIKE))
 def test_bundled_machines(name: str) -> None:
     """As if they had no plan."""

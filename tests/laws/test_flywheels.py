@@ -43,6 +43,7 @@ def with_flywheel(machine: eq.Machine, added: float) -> eq.Machine:
     return replace(machine, drive=drive)
 
 
+@pytest.mark.exhaustive(but=["four-stroke-engine", "watt:1"])
 @pytest.mark.parametrize("name", WITHOUT_A_MOTOR)
 def test_scipy_goes_through_a_cycle_alike(name: str) -> None:
     """The equation of motion in time, under the constant torque of the drive."""
@@ -141,6 +142,8 @@ def test_a_steady_state_far_from_the_usual_speed_is_met_on_the_way(
     assert len(tries) == 2
 
 
+# One flywheel in few pieces: `test_a_heavy_flywheel_is_sized_in_few_pieces`.
+@pytest.mark.exhaustive
 def test_turns_towards_steady_states_have_one_limit_for_all_flywheels(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -139,6 +139,7 @@ def test_rows_of_a_table_that_are_a_step() -> None:
     assert found.mean == pytest.approx(-TORQUE * (END - BEGIN) / (2 * pi), rel=1e-12)
 
 
+@pytest.mark.exhaustive(but=["360"])
 @pytest.mark.parametrize("angles", [128, 360])
 def test_a_table_that_ends_is_integrated_from_row_to_row(angles: int) -> None:
     """Between rows it is linear: mean and mean square in closed form, also in a loop."""
@@ -268,6 +269,14 @@ FIGURES = [
 ] + [Figure("frame_force", "rms"), Figure("frame_force", "peak")]
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "quick-return-None-True",
+        "slider-crank-engine-None-False",
+        "quick-return-40-False",
+        "slider-crank-engine-40-False",
+    ]
+)
 @pytest.mark.parametrize("compiled", [True, False])
 @pytest.mark.parametrize("angles", [40, None])
 @pytest.mark.parametrize("name", ["quick-return", "slider-crank-engine"])

@@ -41,6 +41,7 @@ def driven(dc: DcMotor = DC, speed: float = 10.0, gravity: float = 0.0) -> eq.Ma
     return crank(Motor(dc=dc, ratio=RATIO, inertia=ROTOR), speed, gravity)
 
 
+@pytest.mark.exhaustive(but=["1.0-0.5", "-1.0-0.05"])
 @pytest.mark.parametrize("inductance", [0.05, 0.5])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_step_of_voltage(inductance: float, sense: float) -> None:
@@ -265,6 +266,7 @@ def test_a_servo_motor_starts_at_its_limit_and_then_by_its_gain(sense: float) ->
     assert found.energy_error < 1e-10
 
 
+@pytest.mark.exhaustive(but=["3.0-1.0", "30.0--1.0", "0.0-1.0"])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 @pytest.mark.parametrize("first", [0.0, 3.0, 30.0])
 def test_a_servo_motor_follows_a_ramp(sense: float, first: float) -> None:

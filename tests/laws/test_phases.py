@@ -136,6 +136,7 @@ def test_nothing_better_on_a_coarse_grid_in_time(output: str) -> None:
     assert after <= best * (1 + 1e-12)
 
 
+@pytest.mark.exhaustive(but=["torque"])
 @pytest.mark.parametrize("case", few(CASES, ["torque", "force and roll"]))
 def test_polished_to_ten_digits(case: str) -> None:
     """A simplex search from the phases found, small and large, gains nothing."""
@@ -158,6 +159,8 @@ def test_polished_to_ten_digits(case: str) -> None:
 # -- laws of the search ----------------------------------------------------------------------------
 
 
+# Row 1 keeps its phase: tests/unit/balancing/test_phase_search.py.
+@pytest.mark.exhaustive
 def test_a_common_shift_changes_nothing() -> None:
     machine = side_by_side(TYPE_II, (0.0, 1.0, 2.5, 4.0))
     shifted = side_by_side(TYPE_II, (0.7, 1.7, 3.2, 4.7))
@@ -169,6 +172,8 @@ def test_a_common_shift_changes_nothing() -> None:
     assert np.minimum(apart, 2 * pi - apart) == pytest.approx(np.zeros(4), abs=1e-6)
 
 
+# Phases found are the best: the tests above and below.
+@pytest.mark.exhaustive
 def test_the_result_is_its_own_result() -> None:
     _, found = chosen("peak")
     again = choose_phases(found.machine, CASES["peak"][1])
@@ -191,6 +196,7 @@ def test_equal_rows_are_laid_out_with_the_least_twist() -> None:
     assert max(twists) > 1.5 * mine
 
 
+@pytest.mark.exhaustive(but=["3", "2"])
 @pytest.mark.parametrize("count", few([2, 3, 4, 5, 6], {2, 3, 4}))
 def test_a_finer_grid_finds_the_same(count: int) -> None:
     machine = side_by_side(TYPE_II, [0.1 * k for k in range(count)])
@@ -250,6 +256,8 @@ def test_no_phases_on_a_grid_of_5_degrees_are_better(kind: str, seed: int) -> No
     assert after - found.bound * before <= (1.01 * CLOSE + short) * before
 
 
+# On random machines: `test_no_phases_on_a_grid_of_5_degrees_are_better`.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     "name", few(["four-row-transplanter", "riding-transplanter"], {"four-row-transplanter"})
 )

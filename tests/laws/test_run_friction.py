@@ -103,6 +103,7 @@ def test_a_load_below_what_holds_it_does_not_start_a_machine() -> None:
     assert eq.run(emps(), speed=0.0).end.kind == "standstill"
 
 
+@pytest.mark.exhaustive(but=["machine0"])
 @pytest.mark.parametrize("machine", [WORN, replace(WORN, rows=(eq.mechanism.Row(),
                          eq.mechanism.Row(phase=pi / 2)))])  # fmt: skip
 def test_a_coast_down_loses_its_energy_in_joints(machine: eq.Machine) -> None:
@@ -118,6 +119,7 @@ def test_a_coast_down_loses_its_energy_in_joints(machine: eq.Machine) -> None:
     np.testing.assert_allclose(-sum(found.losses.values()), found.work["friction"], rtol=1e-12)
 
 
+@pytest.mark.exhaustive(but=["one row-stops, resistances", "one row-bushings"])
 @pytest.mark.parametrize("elements", ELEMENTS, ids=lambda elements: ", ".join(elements) or "none")
 @pytest.mark.parametrize("rows", few([(), (eq.mechanism.Row(), eq.mechanism.Row(phase=2.0))], [()]),
                          ids=["one row", "two rows"])  # fmt: skip

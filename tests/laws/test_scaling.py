@@ -126,6 +126,9 @@ SLOW = {"rotary-transplanter"}
 """Balanced as kim-chung-b in soil is, for seconds."""
 
 
+@pytest.mark.exhaustive(
+    but=["straw-walker", "balance-spring", "camshaft_lever:0", "belted_counterweight:0"]
+)
 @pytest.mark.parametrize("name", few(FAST, {*FAST} - {*EXAMPLES} - SLOW | {*DISTINCT} - SLOW))
 def test_balancing_by_a_plan(name: str) -> None:
     """With a plan of its own where it has one; the same change is told."""
@@ -143,6 +146,7 @@ def test_balancing_by_a_plan(name: str) -> None:
     )
 
 
+@pytest.mark.exhaustive(but=["geared-counterweight-rms"])
 @pytest.mark.parametrize(
     ("name", "measure"),
     few_together(
@@ -192,6 +196,8 @@ def shapes_of(found: Any) -> list[float]:
     return [cell.value for one in tables for row in one.rows for cell in row[1:]]
 
 
+# Steady vibration scales alike: the test above.
+@pytest.mark.exhaustive
 def test_vibration_in_time() -> None:
     machine = eq.load("yamashita-rig")
     small = eq.simulate(in_units(machine, MICRO), 1.0 * MICRO.time)

@@ -159,6 +159,8 @@ def test_scatter_of_a_normal_sum() -> None:
     assert (scatter.below, scatter.above) == pytest.approx((norm.cdf(-2), norm.sf(1)), abs=1e-3)
 
 
+# Tolerances of a linkage: tests/unit/studies/test_tolerances.py; the laws of scatter: above.
+@pytest.mark.exhaustive
 def test_a_linkage_within_its_worst_case() -> None:
     """No machine lies beyond the corners of the tolerances, where these are small; and the scatter
     is that of the slopes between the corners."""
@@ -197,6 +199,8 @@ def zdt1(*numbers: Array) -> Array:
     return np.stack([numbers[0], g * (1 - np.sqrt(numbers[0] / g))], axis=1)
 
 
+# With a limit: `test_the_front_within_a_limit`.
+@pytest.mark.exhaustive
 def test_the_front_of_a_known_problem() -> None:
     outputs = tuple(Output(name, value="a.b", make="smallest") for name in ("f", "g"))
     some = replace(of(*[Range(0.0, 1.0)] * 5), outputs=outputs)

@@ -406,6 +406,7 @@ def scaled(tool: Tool, length: float, stiffness: float, mass: float) -> tuple[To
     ), float(rate)
 
 
+@pytest.mark.exhaustive(but=["euler-bernoulli-21"])
 @subjects
 def test_scale(theory: Theory, seed: int) -> None:
     """Frequencies as sqrt(EI / m) / L^2, and the motion under a force as F L^3 / EI."""
@@ -530,6 +531,14 @@ def test_stiff_in_shear_is_the_plain_beam() -> None:
 # -- natural frequencies ---------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "mass-euler-bernoulli-21",
+        "inertia-timoshenko-21",
+        "rotational_stiffness-euler-bernoulli-21",
+        "stiffness-euler-bernoulli-21",
+    ]
+)
 @subjects
 @pytest.mark.parametrize("what", ["mass", "inertia", "stiffness", "rotational_stiffness"])
 def test_frequencies_fall_with_mass_and_rise_with_stiffness(

@@ -383,6 +383,7 @@ def image(signal: Periodic, rotation: bool) -> Array:
     return -turned if rotation else turned
 
 
+@pytest.mark.exhaustive(but=["watt-5-free-coupled", "watt-5-pivot-linear", "watt-5-free-moment"])
 @every_model
 @pytest.mark.parametrize("pivoted", [False, True], ids=["free", "pivot"])
 @pytest.mark.parametrize(
@@ -432,6 +433,7 @@ def moved(machine: eq.Machine, shift: complex) -> eq.Machine:
     return replace(shifted(machine, shift), support=mapped(machine.support, away))
 
 
+@pytest.mark.exhaustive(but=["free-coupled", "pivot-exact", "free-moment", "pivot-linear"])
 @every_model
 @pytest.mark.parametrize("machine", [rig(), springs()], ids=["pivot", "free"])
 def test_moving_the_origin_of_the_frame(machine: eq.Machine, model: Model) -> None:

@@ -78,6 +78,7 @@ def test_transitions_as_printed(row: Printed) -> float:
     return row.of
 
 
+@pytest.mark.exhaustive(but=["25600.0", "11025.0", "3000.7", "2826.0"])
 @pytest.mark.parametrize("rate", RATES)
 def test_a_signal_is_weighted_within_the_tolerances_at_any_sampling_rate(rate: float) -> None:
     """Sines in the middles of all bands of Table B.6 below half the rate, two seconds of each."""
@@ -90,6 +91,7 @@ def test_a_signal_is_weighted_within_the_tolerances_at_any_sampling_rate(rate: f
             assert np.all(np.abs(off) < 0.005), (n, off)
 
 
+@pytest.mark.exhaustive(but=["1.0-0.01"])
 @pytest.mark.parametrize(("duration", "most"), [(LEAST_DURATION, 0.01), (8.0, 0.001)])
 def test_any_sine_is_read(duration: float, most: float) -> None:
     """Of any frequency from the lowest band up to half the rate, where Wh falls to 0.0004."""

@@ -303,6 +303,17 @@ def balanced(name: str) -> eq.balancing.Balanced:
 # -- against a blind search ------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "rocker's sector",
+        "geared counterweight a",
+        "crank, vertical",
+        "coupler, moment's range",
+        "random 14",
+        "crank",
+        "geared point",
+    ]
+)
 @compared(BLIND_SEARCH, "least cost, over that before; differential evolution", SEARCHED)
 @every_case
 def test_no_other_is_better(name: str) -> None:
@@ -372,6 +383,8 @@ def test_each_weight_has_a_price() -> None:
     assert sorted(price.at_most for price in masses) == [0.2, 0.6]
 
 
+# A ratio that is free: tests/literature/test_lee_kim_balancing.py.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("which", few("abc", "c"))
 def test_a_free_ratio(which: str) -> None:
     machine = eq.load(f"lee-kim-{which}")
@@ -461,6 +474,19 @@ def convex_case(name: str) -> tuple[eq.balancing.Balanced, Problem]:
     return eq.balance(machine, plan), Problem(machine, plan)
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "sector",
+        "any, squares",
+        "any, limits",
+        "coupler and force",
+        "points and force",
+        "geared counterweight a",
+        "disc on the crank",
+        "any, root mean square",
+        "any, area",
+    ]
+)
 @compared(BLIND_SEARCH, "least cost, over that before; convex program", BEATEN)
 @pytest.mark.parametrize("name", CONVEX)
 def test_optimum_of_a_convex_program(name: str) -> None:
@@ -611,6 +637,7 @@ PRICED = {
 }
 
 
+@pytest.mark.exhaustive(but=["any, limits", "geared counterweight a"])
 @pytest.mark.parametrize(
     "name", few(PRICED, {"crank and rocker", "any, limits", "geared counterweight a", "tight"})
 )

@@ -83,6 +83,7 @@ def compared(
     return moved
 
 
+@pytest.mark.exhaustive(but=["balance-spring", "cam-pusher"])
 @pytest.mark.parametrize("name", few(EXAMPLES, DISTINCT))
 def test_example(name: str, numpy_engine: None) -> None:
     base = eq.load(name).without_friction()  # what friction changes is not computed in loops
@@ -90,6 +91,7 @@ def test_example(name: str, numpy_engine: None) -> None:
     assert compared(base, 1, 2, polar=True)
 
 
+@pytest.mark.exhaustive(but=["sun_and_planet-0", "swinging_block-0"])
 @pytest.mark.parametrize(("kind", "seed"), RANDOM)
 def test_random_machine(kind: str, seed: int, numpy_engine: None) -> None:
     assert compared(make(kind, seed).machine, 4, seed, polar=seed == 1)
@@ -184,6 +186,7 @@ def test_forces_that_are_shared_with_teeth_or_by_stiffness(
 CAMS = [(kind, seed) for kind in machines_cams.KINDS for seed in range(3)]
 
 
+@pytest.mark.exhaustive(but=["pusher_lever-0", "fixed_cam_tappet-0", "camshaft_lever-0"])
 @pytest.mark.parametrize(("kind", "seed"), CAMS)
 def test_cams(kind: str, seed: int, numpy_engine: None) -> None:
     """Laws that the crank angle tells, and such as are looked up at each design's own angle."""
@@ -207,6 +210,7 @@ def test_a_cam_of_many_rows(numpy_engine: None) -> None:
 BESIDE = ["slider_crank", "geared_counterweight", "belted_counterweight", "v_twin"]
 
 
+@pytest.mark.exhaustive(but=["v_twin", "slider_crank"])
 @pytest.mark.parametrize("kind", BESIDE)
 def test_links_beside_each_other(kind: str, numpy_engine: None) -> None:
     """Rocking moments and bearings too, where planes vary, of a point as well."""
@@ -240,6 +244,8 @@ def test_masses_in_planes_of_their_own(numpy_engine: None) -> None:
             assert value == pytest.approx(getattr(summary[figure.signal], figure.name), rel=1e-10)
 
 
+# By NumPy: the test below; compiled loops of other machines: the tests above.
+@pytest.mark.exhaustive
 def test_every_dyad_compiled() -> None:
     base = every_dyad()
     used = {step.kernel.__name__ for step in assemble(base).motion if hasattr(step, "kernel")}
@@ -252,6 +258,8 @@ def test_every_signal_of_every_dyad(numpy_engine: None) -> None:
     assert compared(every_dyad(), 4, 5)
 
 
+# Trains of gears are compiled in the test below.
+@pytest.mark.exhaustive
 def test_gears_in_proportion_to_the_crank_compiled() -> None:
     base = eq.load("planetary-planting-arm")
     assert compared(base, 6, 3, wanted_of(["shaking_force.x", "joints.B"], "rms", "min_at"))
@@ -281,6 +289,7 @@ def train(first: float, second: float, driver: str = "rocker", carrier: str = "f
     )
 
 
+@pytest.mark.exhaustive(but=["several turns", "planets round the frame", "gear on a gear"])
 @pytest.mark.parametrize(
     ("base", "turns"),
     [

@@ -110,6 +110,8 @@ def test_contacts_that_change_sides_are_left_to_the_loops() -> None:
         assert machine.switches == bool(machine.gears or machine.racks or loose)
 
 
+# A chain of fewer designs: `test_figures_are_those_of_each_design`.
+@pytest.mark.exhaustive
 def test_a_study_of_a_chain_has_the_strands_of_each_design(tmp_path: Path) -> None:
     """The knife's mass against the load on its rack decides which strand pulls."""
     text = example_text("knife-drive").replace('tension = "180 N"\n', "")

@@ -72,6 +72,8 @@ def rows_of(seed: int) -> tuple[Machine, list[Objective]]:
     return side_by_side(machine, phases), list(wishes.values())
 
 
+# On grids: tests/laws/test_phases.py and tests/unit/balancing/test_phase_bound.py.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("case", few(ROWS, [5]))
 def test_no_phases_are_better_than_what_is_proved(case: int) -> None:
     machine, wishes = rows_of(case)

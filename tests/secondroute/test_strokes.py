@@ -37,6 +37,16 @@ def turned_alike(machine: eq.Machine, q: np.ndarray) -> np.ndarray:
     return q
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "0-arm-False",
+        "0-slider_on_rocker-False",
+        "0-torsion_slider_on_rocker-True",
+        "0-belted_five_bar-False",
+        "0-swinging_block-True",
+        "0-sun_and_planet-False",
+    ]
+)
 @each
 @pytest.mark.parametrize("seed", SEEDS)
 def test_motion_forces_and_power(kind: str, seed: int, by_slider: bool) -> None:

@@ -55,6 +55,7 @@ def test_natural_frequencies(theory: Theory, seed: int, plane: int) -> None:
     np.testing.assert_allclose(natural_frequencies(tool, 10)[plane], wanted, rtol=1e-8)
 
 
+@pytest.mark.exhaustive(but=["vertical-timoshenko-11", "lateral-euler-bernoulli-11"])
 @compared(FINITE_ELEMENTS, "eight eigenvalues with damping", 2e-9, *TOOLS)
 @subjects
 @planes
@@ -110,6 +111,7 @@ def close(found: Array, wanted: Array, tolerance: float = 1e-7) -> None:
     np.testing.assert_allclose(found, wanted, rtol=0, atol=tolerance * np.max(np.abs(wanted)))
 
 
+@pytest.mark.exhaustive(but=["vertical-euler-bernoulli-11", "lateral-timoshenko-11"])
 @compared(FINITE_ELEMENTS, "displacement, slope, bending moment", 1e-7, *TOOLS)
 @subjects
 @planes

@@ -66,6 +66,8 @@ def test_a_model_is_never_written_over() -> None:
     assert Path("model.svg").read_text(encoding="utf-8") == example_text("yamashita-1")
 
 
+# Charts too are the same on every run: tests/unit/figures/test_other_charts.py.
+@pytest.mark.exhaustive
 def test_the_same_bytes_on_every_run() -> None:
     words = ("animate", "planetary-planting-arm", "--seconds", "0.2", "--width", "200", "--force")
     for name in ("a.svg", "a.gif"):

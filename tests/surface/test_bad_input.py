@@ -325,6 +325,7 @@ REFUSING = (
 """Commands that ask what a machine does."""
 
 
+@pytest.mark.exhaustive(but=["crank too long"])
 @pytest.mark.parametrize("text", STUCK.values(), ids=STUCK)
 def test_a_crank_that_cannot_turn(text: str) -> None:
     """Every command says the same of it; each line that it gives makes a machine that works."""
@@ -664,6 +665,7 @@ LONG |= {"2 MB of description", "1 MB of spaces", "1 MB of an unknown key", "100
 """Read by the same loops as others, most for seconds."""
 
 
+@pytest.mark.exhaustive(but=["1 MB of a name", "100 links in a chain", "2000 links about a pin"])
 @pytest.mark.parametrize("huge", few(HUGE, {*HUGE} - LONG))
 def test_huge_files_are_answered_soon(huge: str) -> None:
     """Files that no engineer would write."""

@@ -160,6 +160,12 @@ def test_several_objectives() -> None:
     assert content["cost"] == pytest.approx(cost, rel=3e-4)
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "shaking_energy about D-area under shaking_moment about D",
+        "shaking_force.y orders 1,2-rms of shaking_force.y (order 1, 2)",
+    ]
+)
 @pytest.mark.parametrize(
     ("asked", "name"),
     [
@@ -183,6 +189,8 @@ def test_another_speed() -> None:
     assert other["after"] == pytest.approx(4 * one["after"])
 
 
+# Several speeds: tests/unit/balancing/test_effects.py.
+@pytest.mark.exhaustive
 def test_gauges_at_several_speeds() -> None:
     text = run("balance-rig")
     name = "reading at gauge, peak to peak, at 150, 193, 240 rpm, mm"
@@ -255,6 +263,8 @@ def test_a_range_of_ratios_is_proved_one_by_one() -> None:
     assert "teeth of module 2.500 mm" in text and "with the ratio" in text
 
 
+# Phases by an option: the test below.
+@pytest.mark.exhaustive
 def test_phases_of_rows() -> None:
     text = run("four-row-transplanter", "-o", "rows.toml")
     assert "  Rows: set the phases to 0, 180, 270, 90 deg" in text.splitlines()
@@ -309,6 +319,7 @@ def test_csv() -> None:
         assert measured(force, "rms") == pytest.approx(content[when]["shaking_force.y.rms"])
 
 
+@pytest.mark.exhaustive(but=["balance-coupler"])
 @pytest.mark.parametrize(
     "name",
     few(
@@ -477,6 +488,8 @@ def test_a_file_that_is_there_is_not_overwritten() -> None:
     assert Path("new.toml").read_text(encoding="utf-8") == "mine"
 
 
+# Drawings: tests/unit/exchange/test_drawings.py; files beside the new model: `test_csv`.
+@pytest.mark.exhaustive
 def test_the_drawing_of_each_counterweight_is_written_with_the_new_model(tmp_path: Path) -> None:
     """And neither where there is nothing to draw, which is said."""
     new, drawing = tmp_path / "new.toml", tmp_path / "new.pdf"
@@ -511,6 +524,8 @@ def test_nothing_is_printed_beside_a_broken_pipe() -> None:
     assert done.stderr == b""
 
 
+# The names alone: the test below.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("row", few(["drive_torque", "rows.drive_torque"], {"rows.drive_torque"}))
 def test_outputs_of_several_rows_are_taken_by_the_names_that_results_have(row: str) -> None:
     """What `analyze` calls rows.drive_torque is the drive_torque that balancing makes small."""

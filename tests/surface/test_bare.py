@@ -12,6 +12,8 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, packages_distributions, requires
 from pathlib import Path
 
+import pytest
+
 from surface.running import EXAMPLES, STUDIES, TOOLS
 
 SCRIPT = """
@@ -84,6 +86,8 @@ def test_what_is_left_out_is_what_extras_bring() -> None:
     assert not {"numpy", "scipy", "rich", "platformdirs"} & set(left_out())
 
 
+# Without extras too, commands answer: `test_every_command_answers`.
+@pytest.mark.exhaustive
 def test_bundled_files_of_every_kind_are_checked(tmp_path: Path) -> None:
     """Of studies it is told that neither compiled loops nor a store are there; tolerances need
     nothing else.

@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 PEERS = "sympy", "pinocchio", "cvxpy", "ross", "exudyn", "playwright"
 LOADING = """
@@ -33,6 +35,8 @@ SENTENCES = {
 }
 
 
+# Benchmarks are for developers; their imports are checked by ruff.
+@pytest.mark.exhaustive
 def test_benchmarks_without_the_packages_that_they_compare_with() -> None:
     recipe = (ROOT / "Makefile").read_text(encoding="utf-8").partition("\nbench:")[2]
     names = re.findall(r"benchmarks/(\w+)\.py", recipe)

@@ -160,6 +160,7 @@ def test_no_page_shows_a_command_that_does_not_exist(page: str) -> None:
     assert shown and shown <= {*COMMANDS}
 
 
+@pytest.mark.exhaustive(but=["bash"])
 @pytest.mark.parametrize("shell", few(["bash", "zsh", "fish", "powershell"], {"bash", "fish"}))
 def test_a_shell_completes_commands_options_and_values(shell: str) -> None:
     text = succeeded(equipoise("completion", shell))
@@ -253,6 +254,7 @@ PROCESSES = {
 }
 
 
+@pytest.mark.exhaustive(but=["tables", "wrong"])
 @pytest.mark.parametrize("words", PROCESSES.values(), ids=PROCESSES)
 def test_a_process_prints_the_same_as_a_call(words: tuple[str, ...]) -> None:
     """And nothing else; `test_start_is_quick_and_alone` and others run processes besides."""
@@ -276,6 +278,7 @@ def test_markup_in_names_is_shown_as_it_stands(command: str, more: tuple[str, ..
     assert "[bold]coupler[/]" in text
 
 
+@pytest.mark.exhaustive(but=["no ending"])
 @pytest.mark.parametrize("name", ["odd name [1] %s $x$.toml", "ü-機.toml", "no ending"])
 def test_odd_file_names(name: str) -> None:
     changed("kim-chung-a", to=name)
@@ -356,6 +359,8 @@ def test_json_of_a_model_without_masses() -> None:
     assert not {"joints", "shaking_force", "shaking_moment", "drive_torque"} & set(content)
 
 
+# What is left out of such a terminal is tested in this process too.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("encoding", few(["ascii", "cp1252"], {"ascii"}))
 def test_output_in_a_terminal_that_lacks_letters(
     monkeypatch: pytest.MonkeyPatch, encoding: str
@@ -514,6 +519,8 @@ def test_new_writes_a_file_that_can_be_analyzed(folder: Path) -> None:
     assert succeeded(equipoise("check", "machine.toml")).endswith(f"{READY}\n")
 
 
+# Each new file is checked on every change; studies are computed in test_sweep.py.
+@pytest.mark.exhaustive
 def test_new_writes_a_study_that_can_be_computed() -> None:
     result = equipoise("new", "--study")
     assert result.err == "wrote study.toml; next: equipoise sweep study.toml -o designs.zarr\n"
@@ -573,6 +580,8 @@ def test_the_reader_may_stop_early() -> None:
         assert child.wait(300) == 0
 
 
+# The end of a pipe: `test_the_reader_may_stop_early`.
+@pytest.mark.exhaustive
 def test_pictures_stay_where_nobody_reads_their_list() -> None:
     reader, writer = os.pipe()
     os.close(reader)
@@ -583,12 +592,16 @@ def test_pictures_stay_where_nobody_reads_their_list() -> None:
     assert Path("pictures/linkage.svg").is_file()
 
 
+# The end of a pipe: `test_the_reader_may_stop_early`.
+@pytest.mark.exhaustive
 def test_closed_output() -> None:
     words = ["sh", "-c", 'exec "$@" >&-', "sh", *command("check", "yamashita-1")]
     done = subprocess.run(words, stderr=subprocess.PIPE, timeout=300, check=False)
     assert (done.returncode, done.stderr) == (0, b"")
 
 
+# A full disk leaves nothing: `test_a_full_disk_leaves_nothing`.
+@pytest.mark.exhaustive
 def test_output_onto_a_full_disk() -> None:
     full = Path("/dev/full")
     if not full.is_char_device():
@@ -600,6 +613,7 @@ def test_output_onto_a_full_disk() -> None:
     assert result.err == "equipoise: the output cannot be written (No space left on device)\n"
 
 
+@pytest.mark.exhaustive(but=["export yamashita-1 -o x.urdf"])
 @pytest.mark.skipif(os.name != "posix", reason="a folder in use cannot be deleted elsewhere")
 @pytest.mark.parametrize(
     "line",
@@ -617,6 +631,7 @@ def test_a_current_folder_that_was_deleted(
     assert said.startswith("the current folder does not exist any more; go to another")
 
 
+@pytest.mark.exhaustive(but=["new m.toml"])
 @pytest.mark.skipif(os.name != "posix", reason="a folder in use cannot be deleted elsewhere")
 @pytest.mark.parametrize("line", ["new m.toml", "site -o out"])
 def test_a_file_in_a_current_folder_that_was_deleted(
@@ -629,6 +644,8 @@ def test_a_file_in_a_current_folder_that_was_deleted(
     assert "cannot be written (the current folder does not exist any more)" in said
 
 
+# Files instead of a store: the test above.
+@pytest.mark.exhaustive
 @pytest.mark.skipif(os.name != "posix", reason="a folder in use cannot be deleted elsewhere")
 def test_a_store_in_a_current_folder_that_was_deleted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -660,6 +677,7 @@ def test_help_in_a_narrow_terminal(columns: int, monkeypatch: pytest.MonkeyPatch
 SIZES = ["0", "\u00b2", "9" * 5000]
 
 
+@pytest.mark.exhaustive(but=["LINES-0"])
 @pytest.mark.parametrize(
     ("variable", "size"),
     few_together(

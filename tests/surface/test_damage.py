@@ -94,6 +94,7 @@ def altered(file: Path, change: Callable[[Any], Any]) -> None:
     file.write_text(json.dumps(content), encoding="utf-8")
 
 
+@pytest.mark.exhaustive(but=["negative chunk", "another output", "numbers null", "no vary"])
 @pytest.mark.parametrize(("change", "words"), DAMAGED.values(), ids=DAMAGED)
 def test_attributes_that_do_not_fit(change: Callable[[Any], Any], words: str) -> None:
     altered(STORE / ABOUT, change)
@@ -134,6 +135,8 @@ def test_damage_at_random(made: Path, data: Any, words: tuple[str, ...]) -> None
 # -- checksums -------------------------------------------------------------------------------------
 
 
+# Damage at random, of fewer files: `test_damage_at_random`.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("seed", range(3))
 def test_a_bit_that_flips_changes_no_figure(made: Path, seed: int) -> None:
     """Each file in turn: what is read is refused, or what was written; computing again mends it."""
@@ -172,6 +175,8 @@ def test_a_chunk_of_one_array_that_is_lost_is_no_gap(name: str) -> None:
     assert run(("best", "--json")).out == expected
 
 
+# Damage at random, of fewer files: `test_damage_at_random`.
+@pytest.mark.exhaustive
 def test_reasons_that_have_changed_places_are_refused(folder: Path) -> None:
     """Of the last chunk, which is filled up, and the first: a traceback of `resume`."""
     Path("study.toml").write_text(LENGTHS.replace("designs = 200", "designs = 10000"))

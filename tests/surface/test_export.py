@@ -58,6 +58,7 @@ def test_results_are_written_anew_and_models_never(tmp_path: Path) -> None:
     assert other.read_text("utf-8") == FOUR_BAR
 
 
+@pytest.mark.exhaustive(but=["mat"])
 @pytest.mark.parametrize("ending", ["fmu", "xlsx", "mat"])
 def test_forces_that_are_left_out_are_told(ending: str, tmp_path: Path) -> None:
     model = tmp_path / "m.toml"

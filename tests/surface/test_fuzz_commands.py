@@ -503,6 +503,8 @@ MADE: dict[str, Callable[[dict[str, Any]], list[dict[str, Any]]]] = {
 """Tables below others, as a document of a machine from nothing has them."""
 
 
+# Fewer machines have the tables that they name: the test above.
+@pytest.mark.exhaustive
 def test_machines_from_nothing_have_every_table_of_a_model_file() -> None:
     """Among the first 400; a table that is new joins, or says why not."""
     schema = json.loads(equipoise("schema").out)

@@ -52,6 +52,7 @@ def hostile() -> None:
     Path("model.toml").write_text(hostile_text(), encoding="utf-8")
 
 
+@pytest.mark.exhaustive(but=["words2-moving.svg", "words3-pictures/linkage.svg"])
 @pytest.mark.usefixtures("hostile")
 @pytest.mark.parametrize(
     ("words", "file"),
@@ -101,6 +102,7 @@ READERS: dict[str, Callable[[Path], object]] = {
 """Of each format for other programs, what its own reader makes of a file."""
 
 
+@pytest.mark.exhaustive(but=["py", "dxf", "mat", "urdf", "xml", "mo"])
 @pytest.mark.usefixtures("hostile")
 @pytest.mark.parametrize("ending", READERS)
 def test_other_programs_read_the_same_machine_whatever_its_names(ending: str) -> None:

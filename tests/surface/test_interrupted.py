@@ -204,6 +204,8 @@ def started(way: str, line: str, moment: int, hooks: Path) -> subprocess.Complet
     )
 
 
+# At two imports: the test above.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", few(SHORT, ["analyze"]))
 @pytest.mark.parametrize("way", few(WAYS, ["command"]))
 def test_an_interrupt_at_any_import(way: str, name: str, folder: Path) -> None:
@@ -239,6 +241,8 @@ for _ in range(10 ** 9):
 """
 
 
+# At two imports: the first test of this file.
+@pytest.mark.exhaustive
 def test_an_import_that_lasts_is_interrupted(folder: Path) -> None:
     (folder / "lasting.py").write_text(LASTING)
     begin = (

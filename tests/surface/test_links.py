@@ -123,6 +123,7 @@ def planted(place: Path, target: Path) -> None:
 # -- a store ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(but=[".lock", "torque", "reason/c/0", "vertical"])
 @pytest.mark.parametrize("place", [*PLACES, "torque/c/1", "torque/c/1.partial"])
 @pytest.mark.usefixtures("store")
 def test_links_in_a_store_are_not_followed(
@@ -200,6 +201,7 @@ COMMANDS = (
 """Every command of a linkage, behind whose name its file goes."""
 
 
+@pytest.mark.exhaustive(but=["load.csv"])
 @pytest.mark.parametrize("name", ["load.csv", "sub/load.csv", "way/load.csv"])
 def test_a_model_reads_no_table_through_a_link_that_leads_out(name: str, outside: Outside) -> None:
     Path("sub").mkdir()
@@ -361,6 +363,15 @@ def unswept() -> None:
     Path("fitted.toml").unlink(missing_ok=True)
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "analyze --csv-secret.txt",
+        "analyze --csv-nowhere",
+        "balance-secret.txt",
+        "sweep-secret.txt",
+        "animate-secret.txt",
+    ]
+)
 @pytest.mark.parametrize(
     ("name", "target"),
     few_together(
@@ -406,6 +417,7 @@ KINDS_OF_FILES = [
 ]
 
 
+@pytest.mark.exhaustive(but=["out.csv1", "out.svg", "out.html", "out.dxf", "out.fmu", "out.gif"])
 @pytest.mark.parametrize("words", KINDS_OF_FILES, ids=lambda words: words[-1])
 @pytest.mark.usefixtures("store")
 def test_no_kind_of_file_is_written_through_a_link(
@@ -431,6 +443,7 @@ def test_every_option_that_writes_is_tried() -> None:
     assert left == {("site", "--out")}  # which has tests of its own
 
 
+@pytest.mark.exhaustive(but=["plot-svg", "balance-svg"])
 @pytest.mark.parametrize(
     ("name", "kind"),
     few_together(product(DRAWING, ("svg", "png")), {*product(OFTEN, ["svg"]), ("plot", "png")}),
@@ -482,6 +495,9 @@ def test_what_is_begun_beside_a_place_goes_through_no_link(
     assert not Path("out.csv").is_symlink() and not Path("out.zarr").is_symlink()
 
 
+@pytest.mark.exhaustive(
+    but=["analyze --csv-folder", "analyze --csv-file", "balance-file", "sweep-file", "export-file"]
+)
 @pytest.mark.parametrize(
     ("name", "swap"),
     few_together(
@@ -606,6 +622,8 @@ def test_a_link_within_the_folder_stays_one() -> None:
     assert Path("out.csv").is_symlink() and Path("real.csv").is_file()
 
 
+# Each writer refuses links on every change; so do tools: the test below.
+@pytest.mark.exhaustive
 def test_agents_write_through_no_link(outside: Outside) -> None:
     Path("mine.toml").write_text(MODEL)
     Path("way").symlink_to(outside.folder)
@@ -734,6 +752,7 @@ SAVED = {
 }
 
 
+@pytest.mark.exhaustive(but=["linkage-put_above"])
 @pytest.mark.parametrize(
     ("kind", "plant"),
     few_together(

@@ -142,6 +142,8 @@ def test_a_call_that_is_cancelled_ends_and_others_do_not_wait(
     assert not (folder / "3.zarr").exists()
 
 
+# Processes that end with the one that started them: tests/unit/studies/test_executors.py.
+@pytest.mark.exhaustive
 def test_the_end_of_the_input_ends_everything(session: Session, folder: Path) -> None:
     session.call(1, "sweep", study="slow.toml", out="1.zarr")
     until((folder / "1.zarr").exists)
@@ -156,6 +158,8 @@ def test_the_end_of_the_input_ends_everything(session: Session, folder: Path) ->
         clock.kill()
 
 
+# Processes that die at each design: tests/unit/studies/test_executors.py.
+@pytest.mark.exhaustive
 def test_a_worker_that_dies_is_told(session: Session, folder: Path) -> None:
     session.call(1, "sweep", study="slow.toml", out="1.zarr")
     until((folder / "1.zarr").exists)

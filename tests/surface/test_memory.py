@@ -106,6 +106,8 @@ value = "by_order.shaking_force.x.harmonics[2]"
 )
 
 
+# Memory that is kept fails `test_a_coarser_analysis_is_gone_before_the_next_finer_one` too.
+@pytest.mark.exhaustive
 def test_tolerances_give_back_the_memory_of_their_machines() -> None:
     """Each held 10 MB; fewer than 160 are not taken."""
     Path("study.toml").write_text(TOLERANCES, encoding="utf-8")
@@ -116,6 +118,8 @@ def test_tolerances_give_back_the_memory_of_their_machines() -> None:
     assert peak < 230
 
 
+# Memory that is kept fails `test_a_coarser_analysis_is_gone_before_the_next_finer_one` too.
+@pytest.mark.exhaustive
 def test_a_long_sweep_gives_back_the_memory_of_its_speeds() -> None:
     """Each held 39 MB."""
     words = ("yamashita-rig", "--speed", "20 rpm : 400 rpm", "--speeds", "5", "--model", "exact")
@@ -180,6 +184,8 @@ def test_what_is_large_is_refused_before_it_begins(
     assert re.search(message, refused(equipoise(words[0], turning(example, 20), *words[1:])))
 
 
+# What is held beside what is asked for fails tests/unit/test_memory_at_once.py too.
+@pytest.mark.exhaustive
 def test_a_study_takes_no_memory_for_outputs_that_it_does_not_want(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -197,6 +203,8 @@ def test_a_limit_that_is_none() -> None:
     assert "EQUIPOISE_MEMORY: got 'much'; give the memory that may be used, such as" in result.err
 
 
+# Other inputs that are too large are refused on every change.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     "command_line",
     few(["analyze yamashita-1", "--help", "analyze --help"], {"analyze yamashita-1"}),
@@ -214,6 +222,8 @@ def test_an_option_that_is_repeated_ten_thousand_times() -> None:
     assert "--output: given 10000 times; give it 200 times at most" in told
 
 
+# The limit and its sentence: `test_what_needs_more_than_the_limit_is_refused_in_a_sentence`.
+@pytest.mark.exhaustive
 def test_a_study_of_more_outputs_than_usual(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit is told with what raises it, which it then does."""
     assert USUAL_OUTPUTS == 1000  # of which each takes some ms
@@ -232,6 +242,8 @@ def test_a_study_of_more_outputs_than_usual(folder: Path, monkeypatch: pytest.Mo
     )
 
 
+# Other inputs that are too large are refused on every change.
+@pytest.mark.exhaustive
 def test_a_spline_of_very_many_points(folder: Path) -> None:
     drawing = ezdxf.new()
     angles = np.linspace(0, 6, 20_000)

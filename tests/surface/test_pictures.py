@@ -83,6 +83,7 @@ def test_readme_is_short_and_begins_with_what_balancing_gains() -> None:
     assert places == sorted(places)
 
 
+@pytest.mark.exhaustive(but=["linkage"])
 @pytest.mark.parametrize("name", ["linkage", "balanced"])
 def test_drawings_are_as_they_would_be_now(name: str) -> None:
     """The same text, and the same numbers but for the last digit, which processors round."""
@@ -93,6 +94,8 @@ def test_drawings_are_as_they_would_be_now(name: str) -> None:
     assert next(numbers) == pytest.approx(next(numbers), abs=0.11, rel=1e-3), STALE
 
 
+# A page that has changed: tests/browser; drawings are compared below.
+@pytest.mark.exhaustive
 def test_screenshots_are_of_what_there_is() -> None:
     kept = json.loads((PICTURES / "sources.json").read_text(encoding="utf-8"))
     assert kept == MAKE["sources"](), STALE

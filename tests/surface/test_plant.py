@@ -99,6 +99,8 @@ def test_tables_show_the_figures_to_four_digits(name: str) -> None:
         assert list(map(float, cells(text, label))) == pytest.approx(np.degrees(wanted), abs=0.006)
 
 
+# The paper's crank angles: tests/literature/test_kim_chung.py.
+@pytest.mark.exhaustive
 def test_crank_angles_from_another_direction() -> None:
     """phi of mechanism A is 90 deg: its own crank angles are those of the paper."""
     text = succeeded(equipoise("plant", "kim-chung-a", "--crank-zero", "90 deg"))
@@ -113,6 +115,8 @@ def test_crank_angles_from_another_direction() -> None:
     assert planted("kim-chung-a", "--crank-zero", "90 deg") == planted("kim-chung-a")
 
 
+# Units of all tables: tests/surface/test_units.py.
+@pytest.mark.exhaustive
 def test_units_of_the_tables() -> None:
     text = succeeded(equipoise("plant", "kim-chung-a", "--units", "cm, km/h, gn,rad"))
     assert "height of the curve, cm" in text and cells(text, "height of the curve") == ["25.16"]
@@ -128,6 +132,8 @@ def test_units_of_the_tables() -> None:
     assert cells(turns, "time in the soil") == ["0.05098"]
 
 
+# Another speed of other tables: tests/surface/test_balance.py and test_respond.py.
+@pytest.mark.exhaustive
 def test_another_speed() -> None:
     text = succeeded(equipoise("plant", "kim-chung-a", "--speed", "-300 rpm"))
     assert "crank driven at 300.0 rpm, clockwise" in text
@@ -213,6 +219,8 @@ def test_a_cusp_is_told() -> None:
     assert "Loops" not in text
 
 
+# Cycles of three turns: tests/unit/planting.
+@pytest.mark.exhaustive
 def test_a_cycle_of_three_turns() -> None:
     eq.save(planetary(depth=0.1), "arm.toml")
     text = succeeded(equipoise("plant", "arm.toml"))
@@ -319,6 +327,8 @@ law = "3-4-5"
 """
 
 
+# Dwells: tests/secondroute/test_planting.py.
+@pytest.mark.exhaustive
 def test_a_tip_that_dwells(tmp_path: Path) -> None:
     """Where it stands still, speed and acceleration are nothing at once; loops, unlike dyads, have
     no pose at a crank angle that is no number.

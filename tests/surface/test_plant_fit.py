@@ -47,6 +47,8 @@ def test_a_new_model_file_and_a_table(folder: Path) -> None:
     assert {path.name for path in folder.iterdir()} == {"target.toml", "kim-chung-a-fit.toml"}
 
 
+# A search by the command: `test_a_new_model_file_and_a_table`.
+@pytest.mark.exhaustive
 def test_json() -> None:
     words = ("--json", "--seed", 5, "--out", "new.toml")
     result = equipoise("plant", "fit", "kim-chung-a", "target.toml", *words)
@@ -99,17 +101,23 @@ def asked(folder: Path, goal: str) -> str:
     return succeeded(equipoise("plant", "fit", "transplanter", "target.toml"))
 
 
+# A search by the command: `test_a_new_model_file_and_a_table`.
+@pytest.mark.exhaustive
 def test_the_smallest_population_and_a_figure_to_be_made_large(folder: Path) -> None:
     text = asked(folder, '"curve.height"\nmake = "largest"\n')
     assert re.search(r"^height of the curve, mm +largest ", text, re.MULTILINE)
     assert " yes" not in text
 
 
+# Tolerances of targets are read in tests/unit/planting/test_search.py.
+@pytest.mark.exhaustive
 def test_a_target_of_0_has_a_tolerance(folder: Path) -> None:
     more = '"lowest.ground_velocity.x"\ntarget = "0 m/s"\n'
     assert " yes" in asked(folder, more)
 
 
+# What gets lost is a figure as others: `test_a_new_model_file_and_a_table`.
+@pytest.mark.exhaustive
 def test_what_gets_lost_is_told(folder: Path) -> None:
     """A search that is not told of the tray misses it."""
     text = asked(folder, '"curve.height"\ntarget = "40 cm"\n')

@@ -29,6 +29,7 @@ def test_every_picture_is_written_and_told(folder: Path) -> None:
     )
 
 
+@pytest.mark.exhaustive(but=["arguments1-written1"])
 @pytest.mark.parametrize(
     ("arguments", "written"),
     [
@@ -91,6 +92,14 @@ PICTURES = {
 }
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "modes yamashita-rig",
+        "respond yamashita-rig",
+        "exposure lines.csv lines.csv --duration '1 h'",
+        "decay decay.csv",
+    ]
+)
 @pytest.mark.parametrize("line", PICTURES)
 def test_pictures_beside_what_is_printed(line: str) -> None:
     time = np.linspace(0.0, 2.6, 800)

@@ -53,6 +53,7 @@ def table(path: str) -> tuple[list[str], np.ndarray[Any, Any]]:
 # -- one speed: tables and JSON --------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(but=["yamashita-rig-counterweight", "riding-transplanter", "yamashita-rig"])
 @pytest.mark.parametrize("name", GAUGES)
 def test_tables_of_an_example(name: str) -> None:
     result = equipoise("respond", name, "--full")
@@ -156,6 +157,7 @@ EQUAL_RANGES = ("20 rpm : 300 rpm", "20:300 rpm", "20 rpm:300 rpm", "20 : 300 rp
                 "2.0943951023932 rad/s : 300 rpm")  # fmt: skip
 
 
+@pytest.mark.exhaustive(but=["20:300 rpm", "20 : 300 rpm"])
 @pytest.mark.parametrize("speeds", EQUAL_RANGES)
 def test_a_range(speeds: str) -> None:
     content = answer("--speed", speeds, "--speeds", "10")
@@ -167,6 +169,7 @@ def test_a_range(speeds: str) -> None:
     assert set(np.searchsorted(speed, found)) <= set(range(1, len(speed)))
 
 
+@pytest.mark.exhaustive(but=["coupled", "linear"])
 @pytest.mark.parametrize("model", MODELS)
 def test_json_of_a_range(model: str) -> None:
     content = answer("--model", model, "--speed", "120:140 rpm", "--speeds", "4")
@@ -188,6 +191,8 @@ def test_json_of_a_range(model: str) -> None:
     assert gauge["peak_to_peak"][1] == pytest.approx(1e-3 * peak(alone), rel=1e-6)
 
 
+# Their tables: tests/unit/vibration; other tables of ranges are read on every change.
+@pytest.mark.exhaustive
 def test_resonances_of_a_range() -> None:
     words = "--speed", "20:300 rpm", "--speeds", "2", "--model", "linear"
     content = answer(*words)
@@ -203,6 +208,8 @@ def test_resonances_of_a_range() -> None:
     )
 
 
+# One speed of the other sense, and ranges, are read on every change.
+@pytest.mark.exhaustive
 def test_a_range_of_the_other_sense() -> None:
     content = answer("--speed", "-20:-300 rpm", "--speeds", "5")
     assert content["speed"] == sorted(content["speed"], reverse=True)
@@ -249,6 +256,7 @@ def test_the_motor_over_a_range() -> None:
     assert min(content["fluctuation"]) > 0
 
 
+@pytest.mark.exhaustive(but=["extra0"])
 @pytest.mark.parametrize("extra", [(), ("--drive",), ("--speed", "-193 rpm")])
 def test_from_rest(extra: tuple[str, ...]) -> None:
     content = read("simulate", RIG, "0.5 s", *extra)
@@ -332,6 +340,8 @@ def test_csv_of_a_range_is_the_json_of_it() -> None:
     assert columns["mounts.spring.rms [N]"] == content["mounts"]["spring"]["rms"]
 
 
+# Those of tables from rest are read on every change.
+@pytest.mark.exhaustive
 def test_units_of_the_tables() -> None:
     text = succeeded(equipoise("respond", "--full", RIG, "--units", "um, rad/s, cm/s, gn, kgf"))
     numbers = cells(text, "gauge")
@@ -465,6 +475,8 @@ def test_orders_beside_json_and_csv() -> None:
 WALKING = "walking-transplanter"
 
 
+# Both states, of a rig: tests/unit/vibration.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("drive", [[], pytest.param(["--drive"], marks=EXHAUSTIVE)])
 def test_the_louder_of_two_steady_states(drive: list[str]) -> None:
     """A float that lets go softens its machine, which then jumps below its resonance."""

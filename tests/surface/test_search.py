@@ -219,6 +219,8 @@ def test_times(seconds: float, said: str) -> None:
     assert time_told(seconds) == said
 
 
+# The number that bounds a search: tests/unit/studies/test_search.py.
+@pytest.mark.exhaustive
 def test_check_tells_what_a_search_computes_at_most() -> None:
     """The estimate and the bound are those of the search itself."""
     study = written(FRONT, ("designs = 200", "designs = 90"))

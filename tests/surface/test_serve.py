@@ -49,6 +49,7 @@ direction = "0 deg"
 """Two dyads that share the point of their inner joints."""
 
 
+@pytest.mark.exhaustive(but=["analyze", "check"])
 @pytest.mark.parametrize("line", ["check", "analyze", "serve --no-browser"])
 def test_two_dyads_that_share_their_inner_point_are_asked_for_and_pasted(line: str) -> None:
     """It took the same side again and again, until Python ended it."""

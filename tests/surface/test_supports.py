@@ -91,6 +91,8 @@ def test_a_motor_that_never_pulls() -> None:
     assert line.startswith("model.toml: drive.motor: its torque nowhere falls through")
 
 
+# A motor that never pulls is refused in the test above.
+@pytest.mark.exhaustive
 def test_a_motor_too_weak_to_turn_the_crank() -> None:
     """Which stands still before the first turn is over: no speed follows from it."""
     weak = ('"1.2 N m"', '"1e-6 N m"\nmean_speed = "free"')
@@ -218,6 +220,7 @@ ONE_SIDED = ("planetary-planting-arm", "geared-counterweight", "kim-chung-b")
 """On which a mount may let go; to look for that takes ten times as long."""
 
 
+@pytest.mark.exhaustive(but=["scotch-yoke"])
 @pytest.mark.parametrize(
     "name",
     few(CARRIED, {"planetary-planting-arm", "scotch-yoke"}),
@@ -236,6 +239,8 @@ def test_any_linkage_on_a_support(name: str) -> None:
         assert values["peak_to_peak"] == pytest.approx(near, rel=0.1), gauge
 
 
+# Mounts that lift off: tests/secondroute/test_vibration.py.
+@pytest.mark.exhaustive
 def test_a_yoke_that_shakes_its_light_support_off_a_mount() -> None:
     light = (('mass = "60 kg"', 'mass = "10 kg"'), ('"4 kg m^2"', '"0.7 kg m^2"'))
     found = every_model(written(example_text("scotch-yoke") + PLANE, *light))
@@ -255,11 +260,13 @@ ODD = {
 }
 
 
+@pytest.mark.exhaustive(but=["flat", "no gauges"])
 @pytest.mark.parametrize("changes", ODD.values(), ids=ODD)
 def test_odd_supports(changes: list[tuple[str, str]]) -> None:
     every_model(changed(RIG, *changes))
 
 
+@pytest.mark.exhaustive(but=["10-support1", "10-support0"])
 @pytest.mark.parametrize(
     "support", few([HEAVE, SURGE, HEAVE + DAMPED, SURGE + DAMPED], {HEAVE, SURGE + DAMPED})
 )

@@ -192,6 +192,8 @@ def test_designs_nearest_to_the_limits_are_drawn() -> None:
         assert "designs that keep every limit" not in text
 
 
+# Bundled studies are checked, and other studies computed, on every change.
+@pytest.mark.exhaustive
 def test_a_bundled_study_and_the_examples() -> None:
     names = {line.split()[0] for line in succeeded(equipoise("examples")).splitlines()}
     assert set(eq.examples("study")) <= names
@@ -221,6 +223,8 @@ def test_processes() -> None:
     assert result.err.splitlines()[-1].startswith("6 designs computed in ")
 
 
+# Interrupts in this process: tests/unit/studies/test_run.py and the test below.
+@pytest.mark.exhaustive
 def test_an_interrupted_sweep_goes_on() -> None:
     study = written(LENGTHS, ("designs = 200", "designs = 500_000"))
     words = command("sweep", study, "-o", "long.zarr")
@@ -403,6 +407,8 @@ def test_another_design_as_a_model_file() -> None:
     assert not Path("bad.toml").exists()
 
 
+# Tools in studies: `test_figures_are_those_that_the_command_prints` of tests/unit/studies.
+@pytest.mark.exhaustive
 def test_a_tool() -> None:
     """Written with what lies beside it; its studies are computed one by one."""
     study = written(
@@ -454,6 +460,8 @@ def test_all_designs_as_one_table() -> None:
 # -- progress --------------------------------------------------------------------------------------
 
 
+# What bars say is rendered in tests of their own.
+@pytest.mark.exhaustive
 @pytest.mark.skipif(os.name != "posix", reason="a terminal is made by posix means")
 def test_a_bar_in_a_terminal() -> None:
     """What it says half way is tested beside searches; this is its last state, and it goes away."""

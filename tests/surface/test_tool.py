@@ -54,6 +54,8 @@ def test_the_paper_as_json() -> None:
     assert found["a8"] is None
 
 
+# The JSON of the paper's tool is read on every change.
+@pytest.mark.exhaustive
 def test_json_is_what_python_has() -> None:
     tool = eq.schema.load_tool("brush-cutter")
     found = told("brush-cutter", "--respond", "6000 : 9000 rpm", "--exposure")
@@ -68,6 +70,7 @@ def test_json_is_what_python_has() -> None:
     assert found["equivalents"].keys() == {"rear-grip", "front-handle"}
 
 
+@pytest.mark.exhaustive(but=["nagamine-irie"])
 @pytest.mark.parametrize("name", few(TOOLS, {*TOOLS} - {"brush-cutter"}))
 def test_every_bundled_tool_is_told(name: str) -> None:
     shown = succeeded(equipoise("tool", "--full", name))
@@ -110,6 +113,8 @@ def test_unrestrained_shaft_names_its_rigid_modes() -> None:
     )
 
 
+# Results of varied tools: tests/unit/handheld; their lines: test_widths.py.
+@pytest.mark.exhaustive
 def test_variation() -> None:
     words = ("vary", "nagamine-irie", "harness position = 0 mm : 154.4 mm", "--number", "5")
     found = told(*words)["variation"]
@@ -183,6 +188,8 @@ def test_design_is_written_and_read_back(folder: Path) -> None:
     )
 
 
+# A design is written and read back on every change.
+@pytest.mark.exhaustive
 def test_design_before_and_after() -> None:
     """One table: what to change, and what that brings; what ends at its range says so."""
     text = example_text("pole-saw")
@@ -202,6 +209,8 @@ def test_design_before_and_after() -> None:
 # -- files -----------------------------------------------------------------------------------------
 
 
+# Pictures of tools: tests/unit/figures; their columns: tests/unit/results.
+@pytest.mark.exhaustive
 def test_pictures_and_columns(folder: Path) -> None:
     words = ("tool", "pole-saw", "--modes", "--respond", "4000:6000 rpm", "--exposure")
     result = equipoise(*words, "--plot", "pictures", "--format", "png", "--csv", "sweep.csv")

@@ -89,6 +89,7 @@ def pump(to: str = "pump.toml", units: str = "") -> str:
     return to
 
 
+@pytest.mark.exhaustive(but=["analyze", "respond", "modes", "check"])
 @pytest.mark.parametrize("words", LINKAGE, ids=" ".join)
 def test_a_pump_jack_is_told_in_numbers_that_can_be_read(words: tuple[str, ...]) -> None:
     text = printed(words, pump())
@@ -97,6 +98,8 @@ def test_a_pump_jack_is_told_in_numbers_that_can_be_read(words: tuple[str, ...])
     assert [one for one in ROUNDING.findall(text) if "more than" not in text] == []
 
 
+# Tables of a terminal have the same numbers.
+@pytest.mark.exhaustive
 def test_masses_of_a_pump_jack_in_its_report() -> None:
     succeeded(equipoise("report", pump(), "--out", "pump.html"))
     page = Path("pump.html").read_text(encoding="utf-8")
@@ -120,6 +123,7 @@ def test_a_machine_of_micrometres() -> None:
     assert re.search(r"shaking force x, nN", told) and "-0" not in cells(told, "shaking force x")
 
 
+@pytest.mark.exhaustive(but=["analyze", "respond", "modes", "check", "balance conditions"])
 @pytest.mark.parametrize("words", LINKAGE, ids=" ".join)
 def test_every_table_follows_the_units_that_are_asked_for(words: tuple[str, ...]) -> None:
     asked = "length=in, force=lbf, mass=lb, angle=rad"
@@ -158,6 +162,8 @@ def test_csv_stays_in_si_units_and_names_them() -> None:
     assert "shaking_force.x [N]" in Path("b.csv").read_text("utf-8").splitlines()[0]
 
 
+# Tables and notebooks follow on every change.
+@pytest.mark.exhaustive
 def test_axes_of_pictures_and_reports_follow() -> None:
     file = pump(units='units = { length = "ft", force = "lbf" }')
     succeeded(equipoise("plot", file, "--only", "force", "--out", "own"))

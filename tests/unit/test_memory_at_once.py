@@ -66,12 +66,14 @@ def test_values_of_a_signal() -> None:
     assert peak_of(lambda: signal.values(np.linspace(0, 1, 1_500))) < 300
 
 
+@pytest.mark.exhaustive(but=["area", "rms"])
 @pytest.mark.parametrize("measure", ["peak", "rms", "area"])
 def test_costs_of_many_phases(measure: Measure) -> None:
     phases = np.random.default_rng(4).uniform(0, 6, (15, 2))
     assert peak_of(lambda: term(measure).values(phases)) < 700
 
 
+@pytest.mark.exhaustive(but=["peak"])
 @pytest.mark.parametrize("measure", ["peak", "area"])
 def test_readings_of_many_boxes(measure: Measure) -> None:
     some = term(measure)
@@ -100,6 +102,8 @@ def test_what_is_computed_in_parts_is_that_of_the_whole(
         assert part == pytest.approx(whole, rel=1e-12)
 
 
+# Other signals and parts hold what is asked for: the tests of this file.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     "figure", few(["drive_torque.peak", "links.rod.stress.peak"], {"links.rod.stress.peak"})
 )
@@ -113,6 +117,8 @@ def test_a_design_with_a_section_holds_what_is_asked_for(figure: str) -> None:
     assert peak_of(lambda: design(np.array([[0.35]]))) < 80
 
 
+# Analyses are given back: `test_a_coarser_analysis_is_gone_before_the_next_finer_one`.
+@pytest.mark.exhaustive
 def test_an_analysis_of_many_crank_angles_is_given_back_at_once() -> None:
     machine = eq.load("slider-crank-engine")
     _ = analyzed(machine, 8, {"summary"})

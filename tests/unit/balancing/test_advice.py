@@ -107,6 +107,7 @@ def test_a_couple_is_aimed_at_where_that_is_what_is_large() -> None:
     assert found.gain == pytest.approx(gain, rel=1e-6) and gain > 0.3
 
 
+@pytest.mark.exhaustive(but=["straw-walker", "hydraulic-loader"])
 @pytest.mark.parametrize("name", ["hydraulic-loader", "quick-return", "straw-walker"])
 def test_where_nothing_large_shakes_the_masses_are_left_as_they_are(name: str) -> None:
     """However large a counterweight would be: a half disc of 360 kg against 2 % of the load."""
@@ -124,6 +125,8 @@ def test_all_that_is_large_is_named_first() -> None:
     )
 
 
+# Aims of gauges: `test_where_a_hand_holds_the_machine_its_gauge_alone_is_an_aim`.
+@pytest.mark.exhaustive
 def test_rows_are_turned_so_that_the_gauges_read_least() -> None:
     """Not the shaking force, whose best phases make yaw 89 % worse."""
     found = advise(RIDING)
@@ -168,6 +171,8 @@ def test_a_gauge_with_a_limit_and_a_hand_stands_for_the_larger(limit: float) -> 
     assert len(own) == 2 and entry.excess == max(own)
 
 
+# Several speeds: tests/unit/balancing/test_effects.py.
+@pytest.mark.exhaustive
 def test_all_speeds_at_which_a_machine_runs_are_aims() -> None:
     """Those of a range, and its resonance at 118.7 rpm."""
     machine = RIG.with_drive(speeds=(100 * RPM, 240 * RPM))
@@ -267,6 +272,8 @@ def test_a_plane_of_its_own_is_said_where_only_a_link_comes_near() -> None:
         assert text.endswith(f", in a plane of its own{said}" if said else "its middle at 0°")
 
 
+# Room: `test_room_is_not_told_by_the_throw_of_a_crank`.
+@pytest.mark.exhaustive
 def test_the_room_of_a_short_crank_is_larger_than_its_throw() -> None:
     """As of a disc with a pin; nobody has said how far it may reach."""
     room = room_about(bare("scotch-yoke"), "crank")
@@ -274,6 +281,8 @@ def test_the_room_of_a_short_crank_is_larger_than_its_throw() -> None:
     assert room.is_limited_by_assumption and advice_for("scotch-yoke").helps
 
 
+# Longer arms: `test_a_longer_arm_is_taken_rather_than_more_mass`.
+@pytest.mark.exhaustive
 def test_what_more_room_would_allow_is_said() -> None:
     """Where it is worth it: a carrier's weight twice as far out is lighter and does more."""
     found = advice_for("planetary-planting-arm")
@@ -371,6 +380,8 @@ def test_what_gains_too_little_for_its_mass_is_not_offered() -> None:
     assert "that is too little" in " ".join(helps_told(found))
 
 
+# Of a single joint or direction: the test below.
+@pytest.mark.exhaustive
 def test_what_leaves_a_headline_figure_worse_is_not_offered() -> None:
     """A lever would take a quarter off the shaking force, and makes the torque swing more."""
     found = advice_for("class-three")
@@ -386,6 +397,7 @@ def test_what_leaves_a_headline_figure_worse_is_not_offered() -> None:
     assert grown in told and "would grow" in told
 
 
+@pytest.mark.exhaustive(but=["four-stroke-engine-shaking force y"])
 @pytest.mark.parametrize(
     ("name", "what"),
     [("knife-drive", "force in joint A"), ("four-stroke-engine", "shaking force y")],
@@ -447,6 +459,8 @@ def test_what_was_nothing_may_not_become_large() -> None:
     assert worse_headlines((), (replace(one, ratio=0.7),), Saving(gain=0.2, excess=3.0))
 
 
+# Couples: `test_a_couple_is_aimed_at_where_that_is_what_is_large`.
+@pytest.mark.exhaustive
 def test_a_couple_larger_than_what_is_saved_is_not_made() -> None:
     """Phases of 0, 180, 270 and 90 deg save 4.2 N m of shaking moment, RMS, and twist the machine
     by 9.6 N m; those that do not twist it are offered.
@@ -467,6 +481,8 @@ def test_a_couple_larger_than_what_is_saved_is_not_made() -> None:
     assert "without couples between the rows" in " ".join(proof_told(found))
 
 
+# Gains: `test_what_gains_too_little_for_its_mass_is_not_offered`.
+@pytest.mark.exhaustive
 def test_a_weight_that_takes_off_less_than_a_quarter_is_not_offered() -> None:
     """A seventh of the links' mass, for 22 % of an RMS and 15 % of the peak that is large."""
     found = advice_for("watt-six-bar")
@@ -518,6 +534,8 @@ def test_the_figure_that_is_large_falls_in_its_own_measure() -> None:
     assert is_worth(np.array([0.41, 0.27]), np.array([0.30, 0.24])).tolist() == [True, False]
 
 
+# Measures: `test_the_figure_that_is_large_falls_in_its_own_measure`.
+@pytest.mark.exhaustive
 def test_the_peak_of_what_is_offered_falls_with_its_rms() -> None:
     for name in ("yamashita-1", "scotch-yoke", "kim-chung-a"):
         found = advice_for(name)
@@ -536,6 +554,8 @@ def test_little_is_added_against_what_is_not_large() -> None:
     assert little and all(0 < one.added_mass <= 0.05 * one.original.mass for one in little)
 
 
+# What is large: `test_all_that_is_large_is_named_first`.
+@pytest.mark.exhaustive
 def test_what_stays_large_is_said_first_and_by_the_yardstick_before() -> None:
     """Added mass makes the yardstick longer, and no moment smaller; 2.22 N m over the weight of
     1.145 kg between pivots that are 89 mm apart.
@@ -546,6 +566,8 @@ def test_what_stays_large_is_said_first_and_by_the_yardstick_before() -> None:
     assert "2.2 times the weight of the moving links at the span" in text
 
 
+# Sentences of what falls: tests/unit/present/test_summary.py.
+@pytest.mark.exhaustive
 def test_what_falls_besides_is_said() -> None:
     """A weight against the torque of a six-bar takes a third off its shaking force."""
     found = advice_for("stephenson-six-bar")
@@ -642,6 +664,8 @@ def advised(name: str) -> eq.Machine:
     return eq.load(ADVISED / f"{name}.toml")
 
 
+# Aims of a torque: `test_beside_a_torque_nothing_that_shakes_may_grow`.
+@pytest.mark.exhaustive
 def test_a_torque_that_weights_can_steady_is_an_aim() -> None:
     found = advice_for("walking-beam")
     assert found.helps and found.plan.objectives == (Objective("drive_torque", "ripple"),)
@@ -684,6 +708,7 @@ def summed(values: Array, count: int) -> Array:
     return np.sum([np.roll(values, k * len(values) // count) for k in range(count)], axis=0)
 
 
+@pytest.mark.exhaustive(but=["planetary-planting-arm-2"])
 @pytest.mark.parametrize(("name", "count"), [("planetary-planting-arm", 2), ("baler-pickup", 4)])
 def test_evenly_spaced_arms_leave_what_their_sum_leaves(name: str, count: int) -> None:
     """The fewest that take nine tenths; the swing of the torque over its mean, likewise."""

@@ -52,6 +52,7 @@ def said(name: str) -> str:
 # -- flywheels -------------------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(but=["slider-crank-engine-shares1-1", "press-shares3-3"])
 @pytest.mark.parametrize(
     ("name", "shares", "ratio"),
     [
@@ -330,6 +331,8 @@ def test_the_resonance_that_moves_the_machine_at_its_speed_is_named(
     assert shown.items[0].startswith(f"{gauge}:")
 
 
+# Mounts: `test_a_resonance_beside_the_speed_is_moved_first`.
+@pytest.mark.exhaustive
 def test_other_mounts_bring_what_is_told() -> None:
     """By whole responses of the machine that stands on them; and no resonance is beside it."""
     machine, mounts = advice_for("sieve").original, beyond("sieve").mounts
@@ -353,6 +356,8 @@ def test_other_mounts_bring_what_is_told() -> None:
             assert not 280 * RPM / np.sqrt(2) < abs(one.speed) < 360 * RPM * np.sqrt(2)
 
 
+# Mounts: `test_a_resonance_beside_the_speed_is_moved_first`.
+@pytest.mark.exhaustive
 def test_a_machine_far_from_its_resonances_keeps_its_mounts() -> None:
     """Twice as fast as the upper one of 255 and 656 rpm."""
     fast = eq.load("sieve").with_balance(None).with_drive(speed=1300 * RPM, speeds=())
@@ -360,6 +365,8 @@ def test_a_machine_far_from_its_resonances_keeps_its_mounts() -> None:
     assert advice is not None and advice.beyond.mounts is None
 
 
+# Mounts: `test_a_resonance_beside_the_speed_is_moved_first`.
+@pytest.mark.exhaustive
 def test_where_phases_of_rows_bring_more_no_mounts_are_named() -> None:
     """A walking transplanter beside its resonance: two rows in turn leave 2 % of what it reads."""
     found = advice_for("walking-transplanter")
@@ -367,6 +374,8 @@ def test_where_phases_of_rows_bring_more_no_mounts_are_named() -> None:
     assert beyond("walking-transplanter").mounts is None
 
 
+# Mounts: `test_a_resonance_beside_the_speed_is_moved_first`.
+@pytest.mark.exhaustive
 def test_a_resonance_that_matters_less_than_masses_is_not_moved_first() -> None:
     """193 rpm beside 119 rpm: a softer spring takes 23 % off, a counterweight 43 %."""
     found, mounts = advice_for("yamashita-rig"), beyond("yamashita-rig").mounts
@@ -377,6 +386,8 @@ def test_a_resonance_that_matters_less_than_masses_is_not_moved_first() -> None:
     assert "Mount spring 2 times softer would take 23 % off" in text
 
 
+# Mounts: `test_a_resonance_beside_the_speed_is_moved_first`.
+@pytest.mark.exhaustive
 def test_a_damped_resonance_that_amplifies_by_half_is_named_beside_a_counterweight() -> None:
     """411 rpm with a damping of 0.2152, run at 300 rpm: 1.8 times what stiff mounts would leave;
     along and across alike.  Its edges by the equation of a mass on a spring and a damper.
@@ -451,6 +462,7 @@ def left_with(force: np.ndarray, square: float, forward: float, backward: float)
     return float(np.sqrt(left / np.mean(np.abs(force) ** 2)))
 
 
+@pytest.mark.exhaustive(but=["four-stroke-engine"])
 @pytest.mark.parametrize("name", ["balance-shafts", "four-stroke-engine"])
 def test_balance_shafts_are_for_the_machine_that_is_advised(name: str) -> None:
     """With the counterweight where one is offered: for the machine as it is they over-balance."""
@@ -501,6 +513,8 @@ def test_a_weight_on_a_slow_crank_takes_the_torque_of_order_1() -> None:
 # -- transmission angles ---------------------------------------------------------------------------
 
 
+# Transmission angles: `test_a_good_transmission_angle_is_not_mentioned` and tests/unit/results.
+@pytest.mark.exhaustive
 def test_a_poor_transmission_angle_names_joint_force_and_length() -> None:
     """Of the walking beam, though a counterweight helps it otherwise."""
     found, poor = advice_for("walking-beam"), beyond("walking-beam").transmission
@@ -567,6 +581,14 @@ def test_a_machine_without_such_arms_is_not_told_of_any() -> None:
         assert beyond(name).arms is None
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "inline-3-rows-ends",
+        "sieve-mounts",
+        "quick-return-flywheels",
+        "hydraulic-loader-cylinder",
+    ]
+)
 @pytest.mark.parametrize(
     ("name", "key"),
     [

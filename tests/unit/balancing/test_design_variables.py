@@ -142,6 +142,8 @@ def plan_of(choice: SpringChoice, objective: Objective = RIPPLE) -> Balance:
     return Balance(springs=(choice,), objectives=(objective,))
 
 
+# Springs that are chosen: tests/secondroute/test_balancing.py.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("measure", few(["ripple", "peak"], {"ripple"}))
 def test_no_other_spring_is_better(measure: str) -> None:
     """The ripple to 1e-6 of the value before; the peak has a kink there, which costs digits."""

@@ -308,6 +308,8 @@ def blind(machine: eq.Machine, objective: Objective, room: float, most: float) -
     )
 
 
+# Readings, differences, bounds and limits of gauges: the other tests of this file.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     "objective", few([RIPPLE, WIDTH], [RIPPLE]), ids=["ripple", "peak to peak"]
 )

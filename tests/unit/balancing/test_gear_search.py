@@ -63,6 +63,8 @@ def by_brute_force() -> dict[tuple[int, int, float], float]:
     return found
 
 
+# Proofs and limits of gears: the other tests of this file.
+@pytest.mark.exhaustive
 def test_two_shafts_with_choices_each(monkeypatch: pytest.MonkeyPatch) -> None:
     """All 45 together; and where not all are tried, one shaft after the other gets there too."""
     brute = by_brute_force()
@@ -111,6 +113,8 @@ def test_two_shafts_with_ranges(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found <= min(grid) * (1 + 1e-6)
 
 
+# Proofs and limits of gears: the other tests of this file.
+@pytest.mark.exhaustive
 def test_order_of_shafts_does_not_count() -> None:
     assert cost(TOOTHED, CRANK) == pytest.approx(cost(CRANK, TOOTHED), rel=1e-6)
 

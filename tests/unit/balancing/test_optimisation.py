@@ -163,6 +163,8 @@ def test_orders_that_there_are_not(order: float) -> None:
         eq.balance(MACHINE, plan)
 
 
+# Limits on gauges: `test_a_limit_is_kept_and_has_its_price` of test_effects.py.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("ratio", few((0.45, 0.5), (0.45,)))
 def test_a_limit_on_a_gauge_is_kept_where_it_is_read(ratio: float) -> None:
     """Added mass makes the support heavier: what counts is the machine that comes out."""

@@ -85,6 +85,7 @@ CASES = tuple((case, step) for step in (4.0, 10.0) for case in WISHES)
 CHOSEN = {(case, 4.0) for case in WISHES} - {("squares", 4.0)} | {("force", 10.0)}
 
 
+@pytest.mark.exhaustive(but=["size-4.0", "area-4.0", "force-10.0"])
 @pytest.mark.parametrize(
     ("case", "step"),
     [pytest.param(*one, marks=() if one in CHOSEN else EXHAUSTIVE) for one in CASES],

@@ -193,6 +193,8 @@ def test_refused(machine: Machine, objectives: list[Objective], step: float, sen
     assert "\n" not in str(caught.value)
 
 
+# Peaks of rows at any phases: tests/laws/test_jumping_rows.py.
+@pytest.mark.exhaustive
 def test_rows_that_share_no_order_have_peaks_all_the_same() -> None:
     """A single row in each order: phases do not change the mean square, but they do the peak."""
     machine = TYPE_II.with_rows([Row(), Row(lateral=1.0), Row(lateral=0.5)])
@@ -257,6 +259,7 @@ def test_row_1_keeps_its_phase_and_rows_their_places() -> None:
     assert [row.lateral for row in found.machine.rows] == [row.lateral for row in machine.rows]
 
 
+@pytest.mark.exhaustive(but=["squares"])
 @pytest.mark.parametrize("combine", ["sum", "squares"])
 def test_combined_value(combine: str) -> None:
     wishes = [replace(FORCE, weight=2.0), Objective("drive_torque", "ripple")]
@@ -277,6 +280,8 @@ def test_objective_that_is_0_before_counts_over_all_rows_alone() -> None:
     assert one > 0
 
 
+# Rows are counted in the tests above.
+@pytest.mark.exhaustive
 def test_many_rows_are_noted() -> None:
     found = choose_phases(rows(6), [FORCE])
     assert np.degrees(found.step) == pytest.approx(10.0)
@@ -289,6 +294,8 @@ def test_many_rows_are_noted() -> None:
     assert more.combined[1] < 0.2
 
 
+# Fewer equal rows: tests/laws/test_phases.py.
+@pytest.mark.exhaustive
 def test_many_equal_rows_are_laid_out_too() -> None:
     """More orders than can be tried: no swap of two rows twists less."""
     machine = rows(10)
@@ -310,6 +317,7 @@ def parts_told(objective: Objective) -> list[list[tuple[int, int]]]:
     return [[*part] for _, part in groupby(told, key=lambda step: step[1])]
 
 
+@pytest.mark.exhaustive(but=["rms"])
 @pytest.mark.parametrize("measure", ["rms", "peak"])
 def test_progress_is_told(measure: Measure) -> None:
     """Of the grid, of the refining and of the proof; each goes on and never back."""

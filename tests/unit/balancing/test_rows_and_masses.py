@@ -73,6 +73,8 @@ def test_together_where_one_after_the_other_is_worse() -> None:
     assert found.bound <= after / before <= found.bound + CLOSE * (1 + 1e-6)
 
 
+# Rows with masses: `test_values_are_those_of_the_machine_that_comes_back`.
+@pytest.mark.exhaustive
 def test_riding_transplanter() -> None:
     """Its rows are in phases in which no mass on the crank does anything to the vertical force."""
     found = eq.balance(RIDING, Balance(masses=(POINT,), phases=PHASES, objectives=(LIFT,)))
@@ -81,6 +83,8 @@ def test_riding_transplanter() -> None:
     assert found.gap <= CLOSE * (1 + 1e-6)
 
 
+# Together they are better than one after the other: the test above.
+@pytest.mark.exhaustive
 def test_no_phases_on_a_grid_with_their_best_masses_are_better() -> None:
     """Masses by a cone program for every phase of two rows at 10 deg."""
     wishes = (LIFT, Objective("shaking_force.x", weight=0.5))
@@ -108,6 +112,8 @@ CASES: dict[str, Balance] = {
 }
 
 
+# Values and bounds of boxes: tests/laws/test_jumping_rows.py.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("case", few(CASES, {"weight"}))
 def test_no_machine_tried_at_random_is_below_the_bound(case: str) -> None:
     plan = CASES[case]
@@ -183,6 +189,8 @@ def test_limits_are_kept_in_other_phases() -> None:
     assert without.cost <= both.cost
 
 
+# Rows with masses: `test_values_are_those_of_the_machine_that_comes_back`.
+@pytest.mark.exhaustive
 def test_mass_that_does_nothing_is_not_added() -> None:
     """A disc that is too light to do better than phases alone do without it."""
     disc = AddedMass("crank", "A", Weight("disc", 0.06, thickness=0.012, density=7850.0))

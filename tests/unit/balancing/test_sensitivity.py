@@ -15,6 +15,7 @@ LARGE = 10_000
 """Crank angles at which the regressor of eight links takes 220 MiB."""
 
 
+@pytest.mark.exhaustive(but=["shaking_force.y"])
 @pytest.mark.parametrize("output", ["shaking_force.y", "drive_torque"])
 def test_parts_give_what_all_crank_angles_at_once_do(
     output: str, monkeypatch: pytest.MonkeyPatch

@@ -99,12 +99,15 @@ def test_more_arms_stand_before_the_plate_that_brings_less() -> None:
     assert second.startswith("Without that: Shaking force, RMS: 40.6 → 22.4 N")
 
 
+# Nearly dead dyads: tests/unit/results/test_headline.py.
+@pytest.mark.exhaustive
 def test_lengths_stand_before_masses_where_a_dyad_is_nearly_dead() -> None:
     """Two arms of a wiper, 18.5 deg from where the first of them is stretched."""
     assert first_lines("wiper")[0].startswith("Transmission angle at C: 162°")
     assert said("wiper").count("Transmission angle at C") == 1
 
 
+@pytest.mark.exhaustive(but=["wiper", "beam-pump", "frame-saw"])
 @pytest.mark.parametrize("name", ["reciprocating-saw", "frame-saw", "beam-pump", "wiper"])
 def test_who_is_told_what_to_do_is_not_told_to_leave_it(name: str) -> None:
     told = " ".join(first_lines(name))
@@ -115,6 +118,7 @@ def test_who_is_told_what_to_do_is_not_told_to_leave_it(name: str) -> None:
 # -- room ------------------------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(but=["kim-chung-b"])
 @pytest.mark.parametrize("name", ["kim-chung-b", "transplanter"])
 def test_a_counterweight_keeps_over_what_is_planted(name: str) -> None:
     found = advice_for(name)
@@ -127,6 +131,8 @@ def test_a_counterweight_keeps_over_what_is_planted(name: str) -> None:
             assert lowest >= OVER_SOIL * (1 - 1e-9)
 
 
+# Planes of their own: tests/unit/balancing/test_advice.py.
+@pytest.mark.exhaustive
 def test_a_weight_that_passes_a_slot_has_a_plane_of_its_own() -> None:
     """The block of a scotch yoke goes 30 mm up and down in it, across which the sector turns."""
     found = advice_for("scotch-yoke")
@@ -203,6 +209,8 @@ def test_shapes_are_compared_by_the_weights_that_a_plan_has(
 # -- what can be built from ------------------------------------------------------------------------
 
 
+# Plates and other shapes: `test_a_plate_names_its_material` and those beside it.
+@pytest.mark.exhaustive
 def test_a_mass_of_two_points_names_both() -> None:
     """Their middle alone has another moment of inertia."""
     found = eq.balance(eq.load("balance-geared-a"))

@@ -53,6 +53,7 @@ def tables_of(base: Machine, source: TermSource, count: int, share: float = 0.02
 # -- the same by NumPy -----------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(but=["four-bar", "planets"])
 @pytest.mark.parametrize(
     ("base", "signals", "turns"),
     [
@@ -348,6 +349,8 @@ def test_threads_that_ask_at_once(fresh: Path) -> None:
     assert answers[0][:, 0] == pytest.approx(values[:, 0] * 0.5**0.5)
 
 
+# Threads that ask at once: the test above.
+@pytest.mark.exhaustive
 def test_one_batch_in_several_threads() -> None:
     base = four_bar(3, 1, 3, 2.5)
     numbers = numbers_of(base, 0.02)

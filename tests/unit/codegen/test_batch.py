@@ -101,6 +101,7 @@ def test_four_bars_of_any_lengths(numpy_engine: None) -> None:
     assert set(same_reasons(FOUR, named(FOUR, *LENGTHS), values)) == {0, 1, 2}
 
 
+@pytest.mark.exhaustive(but=["-4"])
 @pytest.mark.parametrize("power", few([-8, -6, -4, -2], {-8, -4}))
 def test_four_bars_about_the_border(power: int, numpy_engine: None) -> None:
     """Between crank angles a dyad may open, or close, by a hair."""
@@ -118,6 +119,8 @@ def test_four_bars_at_a_change_point(numpy_engine: None) -> None:
     assert set(same_reasons(FOUR, named(FOUR, *LENGTHS), values, (128,))) == {3}
 
 
+# Designs about the border: the tests of four-bars above.
+@pytest.mark.exhaustive
 def test_guides_that_come_to_lie_parallel(numpy_engine: None) -> None:
     """The number of two guides is a square: it touches zero there and is above it all around."""
     base = make("crossed_guides", 1).machine
@@ -126,6 +129,8 @@ def test_guides_that_come_to_lie_parallel(numpy_engine: None) -> None:
     assert {0, 3} <= set(same_reasons(base, numbers, values, (128,)))
 
 
+# Change points: `test_four_bars_at_a_change_point`.
+@pytest.mark.exhaustive
 def test_change_point_before_a_gear(numpy_engine: None) -> None:
     """It is found too where a gear follows the rocker."""
     base, rng = with_gear("rocker", -2.0), np.random.default_rng(4)
@@ -216,6 +221,7 @@ def to_the_border(
             yield own + low * (1 + off) * (other - own)
 
 
+@pytest.mark.exhaustive(but=["slider_crank"])
 @pytest.mark.parametrize(
     "kind",
     few(
@@ -230,6 +236,8 @@ def test_designs_about_the_border(kind: str, numpy_engine: None) -> None:
     assert {0, 2} <= set(same_reasons(base, numbers, values, (60, 128)))
 
 
+# Designs about the border: the tests of four-bars above.
+@pytest.mark.exhaustive
 def test_block_that_passes_near_the_pivot_of_its_guide(numpy_engine: None) -> None:
     """The pivot may lie closer to the block than the guide's offset for a moment only."""
     base = machine(
@@ -265,6 +273,7 @@ def five_bar(ratio: float) -> Machine:
     )
 
 
+@pytest.mark.exhaustive(but=["-8.0"])
 @pytest.mark.parametrize("ratio", few([2.5, -8.0, 12.0, -20.0], {-8.0, 12.0}))
 def test_dyad_on_a_fast_gear(ratio: float, numpy_engine: None) -> None:
     """Its number dips as fast as the gear turns."""
@@ -309,6 +318,8 @@ def mixed(count: int, seed: int = 0) -> Array:
     return values
 
 
+# Failed designs among others: `test_designs_of_every_kind`.
+@pytest.mark.exhaustive
 def test_failed_designs_leave_others_alone() -> None:
     values = mixed(200)
     figures, reasons = compiled_batch()(values)
@@ -332,6 +343,8 @@ def test_order_and_splitting_change_no_bit(angles: int | None) -> None:
         assert np.concatenate(parts).tobytes() == figures.tobytes()
 
 
+# Order and splitting change none either: the test above.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("angles", few([None, 360], {360}))
 def test_threads_change_no_bit(angles: int | None) -> None:
     values = mixed(4500)
@@ -357,6 +370,8 @@ def test_values_may_lie_in_memory_as_they_like() -> None:
     assert batch(np.repeat(values, 2, axis=0)[::2])[0].tobytes() == figures.tobytes()
 
 
+# What is not asked for: `test_each_figure_alone`.
+@pytest.mark.exhaustive
 def test_nothing_varies_and_nothing_is_wanted() -> None:
     told = eq.analyze(FOUR, 60).summary["drive_torque"].rms
     batch = Batch(FOUR, [], wanted_of(SIGNALS, "rms"), angles=60)
@@ -414,6 +429,7 @@ SMOOTH = ["shaking_force.x", "shaking_moment", "drive_torque"]
 """Signals without a kink: the length of a vector has one where the vector passes zero."""
 
 
+@pytest.mark.exhaustive(but=["0.0001", "0.001"])
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
 def test_tolerance_is_kept(tolerance: float) -> None:
     """Figures stand beside those at 8192 crank angles as close as was asked."""
@@ -431,6 +447,7 @@ def test_tolerance_is_kept(tolerance: float) -> None:
         assert worst <= 1.0, f"{figure} is {worst:.2g} times the tolerance off"
 
 
+@pytest.mark.exhaustive(but=["0.001"])
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
 def test_tolerance_of_places(tolerance: float) -> None:
     """Places of extremes are held against a whole turn."""
@@ -443,6 +460,8 @@ def test_tolerance_of_places(tolerance: float) -> None:
     assert np.max(np.minimum(apart, 2 * pi - apart)) <= tolerance * 2 * pi
 
 
+# Doubled angles: `test_doubled_angles_are_the_same_as_all_at_once`.
+@pytest.mark.exhaustive
 def test_means_and_rms_need_few_angles() -> None:
     """They converge faster than any power; 128 crank angles leave rounding."""
     numbers = geometry_of(FOUR, 0.02)
@@ -457,6 +476,7 @@ def test_means_and_rms_need_few_angles() -> None:
     assert np.max(np.abs(settled - many) / scale) < 1e-9
 
 
+@pytest.mark.exhaustive(but=["rocker"])
 @pytest.mark.parametrize("driver", ["crank", "rocker"])
 def test_doubled_angles_are_the_same_as_all_at_once(driver: str, numpy_engine: None) -> None:
     """Only new crank angles are computed; but angles that are counted on start afresh."""
@@ -535,6 +555,7 @@ def test_balanced_outputs_stand_still(tolerance: float, numpy_engine: None) -> N
     assert np.all(np.abs(figures) < 1e-12 * values[:, :1] ** 2)
 
 
+@pytest.mark.exhaustive(but=["2.2"])
 @pytest.mark.parametrize("stop", few([0.5, 1.0, 2.2, 3.0], {0.5, 2.2}))
 def test_loads_that_end_in_a_step(stop: float, numpy_engine: None) -> None:
     """The mean of a torque that acts over an odd part of the turn comes closer as 1 / N only.

@@ -67,6 +67,8 @@ def designs(count: int, share: float) -> Array:
     return drawn(geometry_of(TRIAD, share), count, 7)
 
 
+# Loops against dyads: `test_loops_give_what_dyads_give`; against machines: the test below.
+@pytest.mark.exhaustive
 def test_designs_are_what_their_own_machines_are() -> None:
     """Those that turn, and those that fail at the start or half way round the cycle."""
     batch, numbers = compiled()
@@ -84,6 +86,8 @@ def test_designs_are_what_their_own_machines_are() -> None:
             assert reason == found
 
 
+# Loops against dyads, compiled: `test_loops_give_what_dyads_give`.
+@pytest.mark.exhaustive
 def test_numpy_gives_the_same(tmp_path: Path) -> None:
     batch, _ = compiled()
     values = designs(24, 0.06)
@@ -122,6 +126,7 @@ def test_the_march_begins_where_the_file_tells_the_pose(angle: float, tmp_path: 
     np.testing.assert_allclose(found, right, rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.exhaustive(but=["floating_watt", "slider-crank-engine", "scotch-yoke"])
 @pytest.mark.parametrize("name", ["yamashita-1", "slider-crank-engine", "quick-return",
                                   "scotch-yoke", "watt-six-bar", "floating_watt"])  # fmt: skip
 def test_loops_give_what_dyads_give(name: str, tmp_path: Path) -> None:

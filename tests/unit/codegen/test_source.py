@@ -130,6 +130,7 @@ def same_under_other_names(
     same_figures(figures[0], called, known, 24, 1e-10)
 
 
+@pytest.mark.exhaustive(but=["quotes", "builtins", "umlauts", "the same identifier"])
 @pytest.mark.parametrize("names", STRANGE)
 def test_strange_names(names: str, numpy_engine: None) -> None:
     signals = {
@@ -144,6 +145,8 @@ def test_strange_names(names: str, numpy_engine: None) -> None:
     same_under_other_names(every_dyad(), STRANGE[names], signals)
 
 
+# The same names without compiling: the test above.
+@pytest.mark.exhaustive
 def test_strange_names_compiled() -> None:
     names = ["lambda", "rrr", "x0", "B 1", "B_1", "ä", "1", "state"]
     signals = {"shaking_force": "shaking_force", "joints.C": "joints.{C}"}

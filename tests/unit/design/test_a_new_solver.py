@@ -105,6 +105,8 @@ def test_balance_chooses_gears_by_it(added: RandomSearch) -> None:
     SOLVERS.insert(0, added)
 
 
+# Balancing by it: the other tests of this file.
+@pytest.mark.exhaustive
 def test_the_page_balances_by_it(added: RandomSearch) -> None:
     session, _ = opened("balance-geared-a")
     _, shown, _ = ask(session, "balance")

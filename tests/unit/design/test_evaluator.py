@@ -122,6 +122,7 @@ def test_a_search_of_geometry_is_the_same_with_any_number_of_workers(at_once: li
     assert at_once
 
 
+@pytest.mark.exhaustive(but=["100-sizes0"])
 @pytest.mark.parametrize(("count", "sizes"), [(100, {32}), (41, {20})])
 def test_what_arrays_compute_is_sent_in_large_parts(
     count: int, sizes: set[int], at_once: list[Any]

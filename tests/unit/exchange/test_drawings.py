@@ -105,6 +105,7 @@ def test_cams_are_drawn_by_their_surfaces(tmp_path: Path) -> None:
     assert {*links} == {*eq.load("cam-pusher").links, "block1"}
 
 
+@pytest.mark.exhaustive(but=["balance-shafts"])
 @pytest.mark.parametrize("name", ["balance-shafts", "kim-chung-c"])
 def test_counterweights_weigh_what_they_are_to(name: str, tmp_path: Path) -> None:
     """Area of the closed outline, read back, times thickness and density; arcs in 2000 chords.

@@ -58,6 +58,7 @@ def run(name: str, path: Path, **options: Any) -> tuple[eq.Machine, Any]:
     return machine, fmpy.simulate_fmu(str(path), **options)
 
 
+@pytest.mark.exhaustive(but=["quick-return", "rack"])
 @compiled
 @pytest.mark.parametrize("name", [*RUNNING, *MADE])
 def test_every_output_over_a_turn(name: str, tmp_path: Path) -> None:

@@ -56,6 +56,8 @@ def test_signals_and_summary(analysis: Any, book: Any) -> None:
     assert ("rod", "C", 0.09, 0.0) in [*book["Points"].values]
 
 
+# The same cells of a small cycle: `test_signals_and_summary`.
+@pytest.mark.exhaustive
 def test_large_cycles_are_written_row_by_row(
     analysis: Any, book: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

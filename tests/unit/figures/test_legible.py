@@ -201,6 +201,8 @@ def test_the_vibration_of_hands_is_named_on_its_axis(language: str) -> None:
     assert "aₕᵥ" in axis and "ISO 5349-1" in axis and "m/s²" in axis
 
 
+# Names in modes: tests/unit/figures/test_vibration_charts.py.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("language", few(["en", "ja", "ko"], {"ja"}))
 def test_no_label_of_a_mode_covers_another(language: str) -> None:
     """Of a support in space with nine mounts and gauges, and of a tool with numbered nodes."""

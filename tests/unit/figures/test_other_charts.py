@@ -183,6 +183,8 @@ def test_files_are_the_same_on_every_run(kind: str, start: bytes) -> None:
         assert stamp not in file
 
 
+# In this process: the test above.
+@pytest.mark.exhaustive
 def test_the_same_bytes_in_another_process() -> None:
     program = (
         "import equipoise as eq, hashlib\n"

@@ -92,6 +92,16 @@ ALIKE |= {f"planting: {kind}" for kind in ("slow", "fast", "deep", "still", "bac
 """Laid out like others."""
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "vibration: rig",
+        "planting: tray",
+        "planting: springs",
+        "tools: odd names",
+        "balancing: rows",
+        "planting: block",
+    ]
+)
 @pytest.mark.parametrize("name", few(ODD, {*ODD} - BUNDLED - ALIKE))
 def test_charts_of_odd_machines(name: str) -> None:
     """With long and foreign names, many of everything, and nothing of what is usual."""

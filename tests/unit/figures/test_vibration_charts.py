@@ -58,6 +58,8 @@ def test_names() -> None:
         pictures_of(3)
 
 
+# What gauges read: `test_curves_are_what_gauges_read`.
+@pytest.mark.exhaustive
 def test_gauges_read_what_was_found() -> None:
     response = respond(plane())
     for name, gauge in response.gauges.items():
@@ -93,6 +95,8 @@ def test_mounts_and_what_they_carry_at_rest() -> None:
         assert rest.y[0] == rest.y[1]
 
 
+# What mounts carry: `test_mounts_and_what_they_carry_at_rest`.
+@pytest.mark.exhaustive
 def test_lift_off_is_shaded() -> None:
     response = respond(eq.load("walking-transplanter"), model="exact")
     share = response.mounts["float"].lifts_off
@@ -110,6 +114,8 @@ def test_lift_off_is_shaded() -> None:
     assert "does not touch" in words(response_charts(respond(plane(mounts=mounts)))["mounts"])
 
 
+# Curves of a response over the crank angle: the tests above.
+@pytest.mark.exhaustive
 def test_drive_torque_and_crank_speed() -> None:
     response = exact("walking-transplanter")
     chart = pictures("walking-transplanter")["exact drive"]
@@ -214,6 +220,8 @@ def test_speed_of_work_is_marked_with_what_is_read_there() -> None:
     assert f"{1e3 * mark.y:.4g}" in words(chart)
 
 
+# Bands: `test_quiet_bands_are_paler`.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("sense", few([1, -1], {-1}))
 def test_bands_to_keep_away_from(sense: int) -> None:
     sweep = sweep_speed(plane(), sense * 3, sense * 60, speeds=6)
@@ -296,6 +304,8 @@ def test_the_map_shows_where_orders_meet_modes() -> None:
     assert "order 1" in words(empty).split("\n") and "keep away" not in words(empty)
 
 
+# Names in order: tests/unit/figures/test_balance_charts.py.
+@pytest.mark.exhaustive
 def test_many_gauges_stand_in_their_order() -> None:
     labels = [c.label for c in pictures("space")["sweep response"].panels[0].curves]
     assert [one for one in labels if one] == ["middle", "left", "right"]

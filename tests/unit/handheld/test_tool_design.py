@@ -117,6 +117,8 @@ def built(plan: DesignPlan, values: Array) -> Tool:
     return tool
 
 
+# A minimum within limits: the tests of this file.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", few(PLANS, {*PLANS} - {"masses"}))
 def test_nothing_better_by_chance(name: str) -> None:
     """Differential evolution, which knows nothing of slopes, comes to nothing lower by 1e-3."""
@@ -199,6 +201,8 @@ def test_a_design_is_judged_by_a_day_of_work(hours: float, verdict: str) -> None
     assert not isinstance(next(iter(design_blocks(plain))), Text)
 
 
+# Limits: `test_added_mass_is_limited`.
+@pytest.mark.exhaustive
 @problems
 def test_limits_matter(name: str) -> None:
     """Both problems end at a limit, and without limits end lower, beyond them."""
@@ -292,6 +296,8 @@ def test_a_narrow_resonance_in_the_band_is_resolved() -> None:
     assert found.searches > 1
 
 
+# No design: the test below.
+@pytest.mark.exhaustive
 def test_nothing_within_the_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(design, "TRIED", 16)
     variables = PLANS["masses"].variables[:1]
@@ -306,6 +312,8 @@ def test_no_design() -> None:
         design_tool(brush_cutter(None))
 
 
+# Progress of searches: tests/unit/design.
+@pytest.mark.exhaustive
 def test_progress_is_told() -> None:
     """How many searches are done, of how many, in order."""
     calls: list[tuple[int, int]] = []

@@ -84,6 +84,7 @@ def _scaled(shape: Array) -> Array:
     return np.asarray(shape / shape[np.argmax(np.abs(shape))])
 
 
+@pytest.mark.exhaustive(but=["euler-bernoulli"])
 @pytest.mark.parametrize("theory", THEORIES)
 def test_shapes_of_finite_elements(theory: str) -> None:
     """2e-5: other modes by 3e-5 squared, some thousand times as loud, and the elements' error."""

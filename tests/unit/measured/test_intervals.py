@@ -58,6 +58,8 @@ CASES = {
 NAMES = ("natural_angular_frequency", "damping_ratio", "coulomb_displacement")
 
 
+# Intervals and their width: the other tests of this file.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("case", few(CASES.values(), [CASES["Coulomb only"]]), ids=CASES)
 def test_intervals_hold_the_truth_as_often_as_they_say(case: tuple[float, float, float]) -> None:
     """Nineteen times in twenty; the line's frequency more often, its intervals being wide."""

@@ -448,6 +448,7 @@ NOD = AngleLaw(
 )
 
 
+@pytest.mark.exhaustive(but=["roller tappet", "flat lever"])
 @pytest.mark.parametrize(
     "given",
     [

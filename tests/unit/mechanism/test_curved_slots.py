@@ -171,6 +171,7 @@ def test_points_on_a_line_are_a_slider() -> None:
     np.testing.assert_allclose(values["speed"], travel.velocity, atol=1e-10)
 
 
+@pytest.mark.exhaustive(but=["egg", "open"])
 @EVERY
 def test_motion_and_forces_by_a_second_route(name: str) -> None:
     """Newton's method on the distance from SciPy's spline, and all free bodies at once."""

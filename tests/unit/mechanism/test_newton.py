@@ -143,6 +143,7 @@ def test_angles_in_any_order_lie_on_one_branch() -> None:
         np.testing.assert_allclose(again.points[name].place, want, rtol=0, atol=1e-13)
 
 
+@pytest.mark.exhaustive(but=["strides1"])
 @pytest.mark.parametrize("strides", [(), (np.radians(6),)])
 def test_wide_steps_lead_where_narrow_ones_do(
     strides: tuple[float, ...], monkeypatch: pytest.MonkeyPatch
@@ -286,6 +287,8 @@ def test_angles_start_within_half_a_turn() -> None:
     assert all(abs(link.angle[0]) <= pi for link in motion.links.values())
 
 
+# The angle: the test below.
+@pytest.mark.exhaustive
 def test_a_triad_that_cannot_turn_tells_the_angle() -> None:
     with refusals.refused(MotionError, low="-140.91 deg", high="77.66 deg") as caught:
         eq.move(stuck(), 36)
@@ -343,6 +346,7 @@ def test_split_and_regressor_go_through_loops() -> None:
         np.testing.assert_allclose(got, joint.value, rtol=0, atol=1e-12 * force)
 
 
+@pytest.mark.exhaustive(but=["0.7"])
 @pytest.mark.parametrize("lean", [0.7, radians(0.25)])
 def test_a_bifurcation_is_called_one(lean: float) -> None:
     """A four-bar of equal opposite sides: where it lies in line it goes on parallel or crossed."""

@@ -197,6 +197,8 @@ def test_a_coasting_machine_loses_force_times_way_until_it_stands_still() -> Non
     assert 2.0 < found.turned < 200.0
 
 
+# Resistances in a turn: the other tests of this file.
+@pytest.mark.exhaustive
 def test_the_cutter_bar_of_the_examples() -> None:
     """A turn costs twice the area below the cut's force, and the guide's over twice the stroke, to
     what the speed of a steady state may differ by.  Later friction holds the bar.

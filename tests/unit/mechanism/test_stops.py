@@ -94,6 +94,7 @@ def test_the_drive_gives_what_stops_store_and_lose() -> None:
     np.testing.assert_allclose(found.forces.frame_moment, bare.forces.frame_moment, atol=1e-8)
 
 
+@pytest.mark.exhaustive(but=["1.0-0.5"])
 @pytest.mark.parametrize(
     ("restitution", "speed"),
     few_together([(0.3, 1.2), (0.8, 0.5), (1.0, 0.5)], {(0.3, 1.2), (1.0, 0.5)}),

@@ -64,6 +64,7 @@ def stack(name: str, wanted: Any = None) -> dict[str, Any]:
     return tip_figures(curve, *soil_crossings(curve), wanted=wanted)
 
 
+@pytest.mark.exhaustive(but=["kim-chung-a"])
 @pytest.mark.parametrize("name", NAMES)
 def test_a_stack_of_designs_has_the_figures_of_each(name: str) -> None:
     found = stack(name)
@@ -113,6 +114,7 @@ def test_designs_that_do_not_enter_or_leave_have_no_crossings() -> None:
 BOTH = ("curve", "curve.smallest_radius")
 
 
+@pytest.mark.exhaustive(but=["wanted1", "wanted3"])
 @pytest.mark.parametrize("wanted", [BOTH, ("entry", "limits"), ("ratio", "soil"), ()])
 def test_only_what_is_wanted(wanted: tuple[str, ...]) -> None:
     everything, some = stack("kim-chung-a"), stack("kim-chung-a", wanted)
@@ -189,6 +191,7 @@ def stay(figures: PlantingFigures) -> Array:
     return entry + sense * np.linspace(0.0, travel, SAMPLES)
 
 
+@pytest.mark.exhaustive(but=["three turns", "backward", "kim-chung-a", "spinner"])
 @every_machine
 def test_travel_time_and_depth(name: str) -> None:
     figures, theta = found(name), stay(found(name))
@@ -245,6 +248,7 @@ def cuts(figures: PlantingFigures, base: str) -> Array:
     return np.asarray(x[foot.imag >= level])
 
 
+@pytest.mark.exhaustive(but=["kim-chung-a-C", "kim-chung-b-B"])
 @pytest.mark.parametrize("finger_from", ["B", "C"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_hole_by_sampling(name: str, finger_from: str) -> None:
@@ -282,6 +286,7 @@ def test_a_machine_at_rest_has_no_ground_figures_of_the_stay() -> None:
 # -- limits ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(but=["three turns--1"])
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("name", few(["kim-chung-a", "twice", "three turns"], {"three turns"}))
 def test_at_the_highest_speed_the_limit_is_just_met(name: str, sense: int) -> None:
@@ -501,6 +506,7 @@ def sampled(name: str) -> tuple[Array, Any]:
     return theta, tip_at(CURVES[name](), theta)
 
 
+@pytest.mark.exhaustive(but=["kim-chung-c", "backward", "twice"])
 @every_curve
 def test_size_and_length(name: str) -> None:
     figures, (_, tip) = read_off(name), sampled(name)

@@ -136,6 +136,8 @@ def test_what_is_as_small_as_was_found_is_not_called_proved() -> None:
     assert "the optimum is not proved" in told_of(fit)
 
 
+# What is called proved: `test_what_is_as_small_as_was_found_is_not_called_proved`.
+@pytest.mark.exhaustive
 def test_a_design_that_meets_every_target_is_proved() -> None:
     """By the figures of the new machine itself; a target out of reach is not met."""
     machine, few = eq.load("kim-chung-c"), {"generations": 20, "population": 15}
@@ -152,6 +154,8 @@ def test_a_design_that_meets_every_target_is_proved() -> None:
     assert far.to_dict()["proved"] is False
 
 
+# Progress of searches: tests/unit/studies and tests/unit/handheld.
+@pytest.mark.exhaustive
 def test_progress_is_told() -> None:
     told: list[tuple[int, int, float]] = []
     goals = [Requirement("curve.width", target=0.1, tolerance=1e-9)]
@@ -247,6 +251,8 @@ def test_arms_on_gears_are_found_again() -> None:
     assert starts[0] == pytest.approx(starts[1], abs=1e-6)
 
 
+# Other goals of a search: `test_the_same_seed_gives_the_same_result`.
+@pytest.mark.exhaustive
 def test_shaking_is_kept_small() -> None:
     """It is that of `analyze`, and falls where the second arm moves against the first."""
     machine = two_arms(np.radians(100))
@@ -312,6 +318,8 @@ def test_designs_are_judged_without_following_their_cycle(monkeypatch: pytest.Mo
     assert outcome.worst[0] > 0.1
 
 
+# Points that vary: `test_coordinates_of_any_point_can_vary`.
+@pytest.mark.exhaustive
 def test_a_tip_at_the_origin_of_its_link_can_vary() -> None:
     machine = eq.load("kim-chung-a")
     points = {
@@ -326,6 +334,8 @@ def test_a_tip_at_the_origin_of_its_link_can_vary() -> None:
     assert fit.met == {"curve.height": True}
 
 
+# Other goals of a search: `test_the_same_seed_gives_the_same_result`.
+@pytest.mark.exhaustive
 def test_two_goals_of_one_figure() -> None:
     goals = [Requirement("curve.height", at_least=0.26), Requirement("curve.height", at_most=0.2)]
     vary = {"tip.x": (-0.2, -0.1)}
@@ -385,6 +395,7 @@ FREE = {
 """Kinds of shape: what the wanted machine has, which number is looked for, and where."""
 
 
+@pytest.mark.exhaustive(but=["limacon", "ratio"])
 @pytest.mark.parametrize("kind", FREE)
 def test_gears_of_any_shape_can_be_judged(kind: str) -> None:
     """A table is scaled so that its curves close, whatever a number of it becomes."""

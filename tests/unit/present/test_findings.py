@@ -65,6 +65,7 @@ def pictured(name: str) -> list[LazyPicture]:
     return pictures(of(name))
 
 
+@pytest.mark.exhaustive(but=["yamashita-rig-some0", "four-row-transplanter-some1"])
 @pytest.mark.parametrize(
     ("name", "some"),
     [

@@ -57,6 +57,8 @@ def test_the_share_of_an_order_is_that_of_the_force() -> None:
     assert seen == f"{100 * share:.0f} % of the shaking force is order 1"
 
 
+# Lines of other machines: tests/unit/present/test_same_numbers.py.
+@pytest.mark.exhaustive
 def test_lines_are_of_this_machine_at_this_speed() -> None:
     slow, fast = (
         {
@@ -101,6 +103,7 @@ def test_drives_that_only_swing_have_no_speed_in_rpm() -> None:
     assert any("60.00 cycles a minute" in text for text in texts)
 
 
+@pytest.mark.exhaustive(but=["yamashita-rig-en"])
 @pytest.mark.parametrize(
     ("name", "language"),
     [
@@ -158,6 +161,7 @@ def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
         assert wanted and set(wanted) <= titles
 
 
+@pytest.mark.exhaustive(but=["yamashita-rig", "brush-cutter"])
 @pytest.mark.parametrize("name", ["yamashita-rig", "brush-cutter", "straw-walker"])
 def test_details_stand_in_the_appendix_and_no_picture_is_lost(name: str) -> None:
     told = document(name)
@@ -173,6 +177,7 @@ def test_details_stand_in_the_appendix_and_no_picture_is_lost(name: str) -> None
     assert not [title for title in tried if title.startswith("Candidates for reducing")]
 
 
+@pytest.mark.exhaustive(but=["yamashita-rig-9", "yamashita-1-7"])
 @pytest.mark.parametrize(
     ("name", "most"), [("yamashita-1", 7), ("yamashita-rig", 9), ("stephenson-six-bar", 7)]
 )
@@ -203,6 +208,7 @@ FOOT = 0.935
 """Above the footer, of the height of a page."""
 
 
+@pytest.mark.exhaustive(but=["yamashita-rig", "jansen-leg"])
 @pytest.mark.parametrize(
     "name",
     few(
@@ -347,6 +353,8 @@ def test_what_the_summary_says_is_not_said_again(name: str) -> None:
     assert summary.isdisjoint(texts)
 
 
+# Pictures before and after: tests/unit/figures/test_balance_charts.py.
+@pytest.mark.exhaustive
 def test_what_helps_is_told_before_and_after_at_once() -> None:
     found = findings_of("kim-chung-c")
     assert isinstance(found, Findings) and found.after is not None
@@ -357,6 +365,7 @@ def test_what_helps_is_told_before_and_after_at_once() -> None:
     assert shown["shaking moment, peak"].after == ""  # is the same about the crank's pivot
 
 
+@pytest.mark.exhaustive(but=["yamashita-rig-12"])
 @pytest.mark.parametrize(
     ("name", "most"),
     few_together(
@@ -373,6 +382,8 @@ def pages(data: bytes) -> int:
     return len(re.findall(rb"/Type ?/Page\b", data))
 
 
+# Fonts of pages: the test below.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     "name", few(["yamashita-1", "yamashita-rig", "brush-cutter"], {"yamashita-rig"})
 )
@@ -387,6 +398,7 @@ def test_pages_end_alike_whatever_fonts_a_computer_has(
     assert composed.families("en") == ["DejaVu Sans"]
 
 
+@pytest.mark.exhaustive(but=["ko"])
 @pytest.mark.parametrize("language", [code for code in KNOWN if KNOWN[code].fonts])
 def test_eastern_letters_are_of_a_font_that_has_them(language: str) -> None:
     try:
@@ -397,6 +409,7 @@ def test_eastern_letters_are_of_a_font_that_has_them(language: str) -> None:
     assert any(wanted.replace(" ", "").lower() in name.decode().lower() for name in names)
 
 
+@pytest.mark.exhaustive(but=["ko", "en"])
 @pytest.mark.parametrize("language", COMPLETE)
 def test_names_of_the_file_are_told_from_words(language: str) -> None:
     seen = drawn_of(document("yamashita-rig", language))["gauge-gauge"].headline

@@ -132,6 +132,8 @@ def test_names_are_never_read_as_markup(document):
     assert pdf(evil).startswith(b"%PDF")
 
 
+# Charts as PDF are the same on every run: tests/unit/figures/test_other_charts.py.
+@pytest.mark.exhaustive
 def test_the_pdf_is_the_same_on_every_run(document):
     made = pdf(document)
     assert made == pdf(document)
@@ -154,6 +156,8 @@ def test_missing_fonts_and_a_missing_extra_are_told(monkeypatch, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+# Letters of fonts: tests/unit/present/test_headlines.py.
+@pytest.mark.exhaustive
 def test_letters_that_no_font_has_are_told_of_a_pdf(document, monkeypatch, tmp_path):
     """An English report has Japanese and Korean in its sources and in the file that it tells."""
     monkeypatch.setattr(paint, "fonts_for", lambda signs: ((), "".join(sorted(signs))))
@@ -172,6 +176,8 @@ def test_other_names_and_languages_are_refused(tmp_path):
         eq.report("scotch-yoke", tmp_path / "report.html", language="fr")
 
 
+# Colours of pictures in grey: tests/unit/figures.
+@pytest.mark.exhaustive
 def test_words_that_have_to_be_seen_are_dark_in_grey_print():
     ink, gray = lightness("#1a1a1a"), lightness("#4d5359")
     assert ink < lightness(PRINTED_STRESS) < gray

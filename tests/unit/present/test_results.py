@@ -83,6 +83,17 @@ def tables(blocks: Any) -> list[Table]:
     return [one for part in parts for one in part if isinstance(one, Table)]
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "tool modes-60",
+        "transient-60",
+        "run-60",
+        "tool sweep-60",
+        "free vibration-60",
+        "response-60",
+        "slider-60",
+    ]
+)
 @pytest.mark.parametrize("width", few([60, 80, 120], {60}))
 @pytest.mark.parametrize("name", RESULTS)
 def test_no_line_is_longer_than_the_terminal(name: str, width: int) -> None:
@@ -142,6 +153,20 @@ def test_every_result_can_be_set_by_typst(language: str) -> None:
 # -- as data ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "response",
+        "balanced",
+        "exact response",
+        "slider",
+        "tool sweep",
+        "front",
+        "planting",
+        "transient",
+        "sweep",
+        "conditions",
+    ]
+)
 @pytest.mark.parametrize("name", RESULTS)
 def test_every_result_is_a_dataset_and_a_frame(name: str) -> None:
     pytest.importorskip("xarray"), pytest.importorskip("pandas")

@@ -144,6 +144,7 @@ def document(name: str) -> Any:
     return report_of(name)
 
 
+@pytest.mark.exhaustive(but=["yamashita-rig", "hydraulic-loader"])
 @pytest.mark.parametrize(
     "name", few(MACHINES, {*MACHINES} - {"riding-transplanter", "sieve", "four-stroke-engine"})
 )
@@ -308,6 +309,8 @@ def test_a_peak_has_its_sign() -> None:
     assert text == "\N{MINUS SIGN}153.2"
 
 
+# Machines of several rows: the other tests of this file.
+@pytest.mark.exhaustive
 def test_cards_and_titles_speak_of_all_rows() -> None:
     found, made = findings_of("riding-transplanter"), document("riding-transplanter")
     summary = found.analysis.summary
@@ -331,6 +334,8 @@ def test_a_cam_is_called_a_cam() -> None:
     assert not any("teeth" in title for title in titles)
 
 
+# Resonances: tests/unit/vibration.
+@pytest.mark.exhaustive
 def test_of_resonances_the_loud_one_is_told() -> None:
     """At 320 rpm a mode is met at 328 that adds 4 % of what the one at 255 does."""
     found = find("sieve", speed=320 * np.pi / 30)

@@ -30,6 +30,7 @@ def test_a_table_of_other_columns_follows_whole() -> None:
     assert (second.title, second.rows) == ("Forces, after", after.rows)
 
 
+@pytest.mark.exhaustive(but=["exudyn-slider-crank"])
 @pytest.mark.parametrize("name", ["exudyn-slider-crank", "riding-transplanter", "sieve"])
 def test_reports_of_machines_on_mounts_can_be_laid_out(name: str) -> None:
     """After what helps, more orders may be told than before."""

@@ -132,6 +132,7 @@ def test_headings_of_harmonics(language: str, title: str) -> None:
     assert [one.rows[0][0] for one in tables] == ["0"] * 6 and tables[2].title == title
 
 
+@pytest.mark.exhaustive(but=["ko"])
 @pytest.mark.parametrize("language", few(["en", "ja", "ko"], {"en", "ko"}))
 def test_it_stands_in_the_report(power: None, language: str) -> None:
     machine = eq.load("yamashita-1")

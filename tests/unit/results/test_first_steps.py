@@ -171,6 +171,9 @@ SAME: dict[str, tuple[Callable[[], Any], Callable[[], Any]]] = {
 }
 
 
+@pytest.mark.exhaustive(
+    but=["analyze", "arranged", "at", "keys", "parts", "mounts", "places", "respond", "simulate"]
+)
 @pytest.mark.parametrize("name", SAME)
 def test_a_text_with_a_unit_is_the_same_number(name: str) -> None:
     """To the last digit or two: a text is rounded once, a product twice."""
@@ -204,6 +207,8 @@ def test_a_wrong_text_is_refused_with_its_argument(make: Callable[[], Any], word
 # -- what else is looked for -----------------------------------------------------------------------
 
 
+# Machines and their files: the other tests of this file.
+@pytest.mark.exhaustive
 def test_a_machine_is_reported_as_its_file_is(tmp_path: Path) -> None:
     """The page is the same but for the name that the file has."""
     path = tmp_path / "made.toml"

@@ -221,6 +221,22 @@ def test_it_is_in_a_table(case: Case) -> None:
     assert 0.25 in shown and "largest" in heads
 
 
+@pytest.mark.exhaustive(
+    but=[
+        "tool modes",
+        "mount",
+        "gauge",
+        "response",
+        "tool exposure",
+        "balance",
+        "modes",
+        "transient",
+        "sweep",
+        "joint",
+        "exposure",
+        "curve",
+    ]
+)
 def test_studies_have_it_and_know_its_dimension(case: Case) -> None:
     if not case.of:
         pytest.skip("no study runs that command")

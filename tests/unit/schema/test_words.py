@@ -60,6 +60,7 @@ def test_words_in_other_languages() -> None:
     assert said("yamashita-1", path, "ko") == "crank의 질량중심, y"
 
 
+@pytest.mark.exhaustive(but=["flap-folder", "geared-counterweight", "pole-saw", "nagamine-irie"])
 @pytest.mark.parametrize("name", few(MODELS, {*eq.examples("tool"), *DISTINCT[::4]}))
 def test_words_tell_every_number_of_a_model_from_the_others(name: str) -> None:
     """But for the length of a body, which is a coordinate and a distance at once."""

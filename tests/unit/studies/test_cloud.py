@@ -81,6 +81,8 @@ def test_blocks_do_not_matter() -> None:
         np.testing.assert_array_equal(column, other.some[name])
 
 
+# Blocks of fewer designs are drawn by the other tests of this file.
+@pytest.mark.exhaustive
 def test_millions_take_no_more_memory_than_a_block() -> None:
     block = designs(10_000)
     times = 150

@@ -78,6 +78,8 @@ def test_few_chunks_are_under_way_at_a_time(tmp_path: Path) -> None:
             assert len(list(tmp_path.iterdir())) <= count + pool.room
 
 
+# Designs at which processes always die: the test below.
+@pytest.mark.exhaustive
 def test_processes_that_die_are_replaced_and_their_chunks_computed_again(tmp_path: Path) -> None:
     orders = Orders(STUDY, tmp_path, deadly={40: 1, 160: 1})
     with closing(Processes(orders.task, 2)) as pool:
@@ -122,6 +124,7 @@ with closing(Processes(orders.task, 2)) as pool:  # not below a question for __m
 """
 
 
+@pytest.mark.exhaustive(but=["9-2"])
 @pytest.mark.parametrize("begun", few([0, 2], {2}))
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_processes_end_with_the_one_that_started_them(
@@ -237,6 +240,8 @@ def test_what_the_study_itself_raises_passes_through(address: str, tmp_path: Pat
         assert not isinstance(caught.value, StoppedError)
 
 
+# A cluster computes a study in the test above.
+@pytest.mark.exhaustive
 def test_a_cluster_computes_for_a_search_and_a_map_too(
     address: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -270,6 +275,8 @@ def test_workers_of_this_machine_have_no_place_beside_a_cluster() -> None:
         search(study, workers=2, cluster="tcp://127.0.0.1:9")
 
 
+# Clusters at work are started before a release; the other refusals of executors stay.
+@pytest.mark.exhaustive
 def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -292,6 +299,8 @@ def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
     assert capfd.readouterr() == ("", "")
 
 
+# Clusters at work are started before a release; the other refusals of executors stay.
+@pytest.mark.exhaustive
 def test_no_scheduler_is_told_in_a_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -117,6 +117,8 @@ def test_quick_and_slow_way_agree(name: str, objective: eq.balancing.Objective) 
             assert found.values[row, column] == pytest.approx(value, rel=1e-9)
 
 
+# Points against machines: `test_each_point_is_what_an_analysis_of_that_machine_gives`.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("name", "output", "measure"),
     [
@@ -155,6 +157,7 @@ def test_a_map_of_masses_makes_no_machine_for_each_point(monkeypatch: pytest.Mon
     assert len(calls) < 10
 
 
+@pytest.mark.exhaustive(but=["drive_torque"])
 @pytest.mark.parametrize(
     "output",
     ["belts.shaft to crank.right",

@@ -127,6 +127,8 @@ def test_a_front_that_is_known() -> None:
     assert found.objectives == {"f": "smallest", "g": "smallest"}
 
 
+# Fronts: `test_many_objectives`.
+@pytest.mark.exhaustive
 def test_one_down_and_one_up() -> None:
     """Largest x for smallest x squared, where y only harms: the front is y = 0."""
     outputs = (*made("low"), *made("high", make="largest"))
@@ -149,6 +151,8 @@ def test_many_objectives() -> None:
     assert np.all(np.min(found.figures, axis=0) < 0.03)
 
 
+# Fronts: `test_many_objectives`.
+@pytest.mark.exhaustive
 def test_the_volume_grows_until_it_stands_still() -> None:
     found = searched(made("f", "g"), two_bowls, population=40)
     assert np.all(np.diff(found.volumes) >= -1e-12)

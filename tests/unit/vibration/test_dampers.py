@@ -39,6 +39,7 @@ def rig(heavier: float, **elements: Any) -> Machine:
     return replace(machine, support=support, **elements)
 
 
+@pytest.mark.exhaustive(but=["stop", "linear"])
 @pytest.mark.parametrize("law", LAWS)
 def test_on_a_support_that_stands_still_the_crank_obeys_the_equation_of_a_run(law: str) -> None:
     """J q.. + J' q.^2 / 2 = Q + T, with q.. by the derivative of the speed along the way.

@@ -390,6 +390,7 @@ def test_share_is_that_of_the_peaks() -> None:
 # -- sweeps ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(but=["coupled", "linear"])
 @pytest.mark.parametrize("model", ["linear", "moment", "coupled", "exact"])
 def test_a_sweep_is_one_response_after_another(model: Model) -> None:
     machine = springs().with_rows([Row(), Row(phase=2.0)])

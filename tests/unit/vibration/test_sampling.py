@@ -39,6 +39,7 @@ def drawn(name: str) -> tuple[Sweep, Linear]:
     return sweep, Linear.of(machine, "linear" if sweep.model == "linear" else "moment")
 
 
+@pytest.mark.exhaustive(but=["exudyn-slider-crank"])
 @pytest.mark.parametrize("name", few(SUPPORTED, {"sieve", "exudyn-slider-crank"}))
 def test_curves_between_speeds_are_where_they_are_drawn(name: str) -> None:
     """Whatever is computed between two speeds lies within a point of the line that joins them."""
@@ -60,6 +61,7 @@ def test_curves_between_speeds_are_where_they_are_drawn(name: str) -> None:
             assert np.max(off) < 1.0, (gauge, quantity, float(middles[np.argmax(off)]))
 
 
+@pytest.mark.exhaustive(but=["exudyn-slider-crank"])
 @pytest.mark.parametrize("name", few(SUPPORTED, {"sieve", "exudyn-slider-crank"}))
 def test_speed_of_the_machine_is_one_of_them(name: str) -> None:
     sweep, _ = drawn(name)

@@ -27,6 +27,8 @@ DAMPED = {"s": Mount(axis="pitch", torsional_stiffness=STIFFNESS, torsional_damp
 LINE = Motor(26.0, 6.0, inertia=0.002)
 
 
+# Decay and steady state: the tests beside it and tests/secondroute/test_vibration.py.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("speed", few([SPEED, -SPEED], {-SPEED}))
 def test_it_dies_out_into_the_steady_state(speed: float) -> None:
     """100 times the paper's damping takes 1e-10 of the start in 3 s.
@@ -79,6 +81,8 @@ def run_up() -> Transient:
     return eq.simulate(rig(mounts=DAMPED).with_drive(motor=LINE), 4.5, drive=True, samples=3001)
 
 
+# A motor that stalls, and one on solid ground: the tests of this file.
+@pytest.mark.exhaustive
 def test_a_motor_runs_up_to_the_steady_speed(run_up: Transient) -> None:
     """Held: the curve is shifted so that the mean speed is that of the drive."""
     steady = respond(run_up.machine, drive=True)
@@ -115,6 +119,8 @@ def test_on_solid_ground() -> None:
     assert np.min(late) == pytest.approx(float(steady.drive.speed.extreme(-1)[0]), rel=1e-3)
 
 
+# One-sided mounts: tests/secondroute/test_vibration.py.
+@pytest.mark.exhaustive
 def test_a_one_sided_mount_never_pulls() -> None:
     feet = {
         "foot": Mount((0.16, -0.2, 0.0), stiffness=900.0, damping=20.0, one_sided=True),
@@ -182,6 +188,7 @@ def press(force: float, mean_speed: str, way: int = 1) -> eq.Machine:
     return replace(given, loads=(load,))
 
 
+@pytest.mark.exhaustive(but=["respond-held--1", "simulate-free--1"])
 @pytest.mark.parametrize("way", few([1, -1], {-1}))
 @pytest.mark.parametrize("mean_speed", ["held", "free"])
 @pytest.mark.parametrize("of", ["respond", "simulate"])

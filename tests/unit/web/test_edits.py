@@ -26,6 +26,7 @@ CASES = [
 ]
 
 
+@pytest.mark.exhaustive(but=["geared-counterweight-200", "yamashita-1-100"])
 @pytest.mark.parametrize(("name", "at"), CASES)
 def test_only_what_is_dragged_moves(name: str, at: int) -> None:
     session, before = opened(name)
@@ -179,6 +180,7 @@ def test_newton_begins_where_the_machine_is() -> None:
     np.testing.assert_allclose(places, session.shown.motion.points[point].place, atol=1e-9)
 
 
+@pytest.mark.exhaustive(but=["R3-wanted1"])
 @pytest.mark.parametrize(
     ("point", "wanted"),
     [

@@ -79,6 +79,9 @@ def compare(figures: Any, analysis: eq.Analysis, tolerance: float) -> None:
             assert got == pytest.approx(wanted, rel=0, abs=close), (name, figure)
 
 
+@pytest.mark.exhaustive(
+    but=["cam-pusher", "kim-chung-b", "scotch-yoke", "hydraulic-loader", "sieve"]
+)
 @node
 @pytest.mark.parametrize("name", few(eq.examples("linkage"), DISTINCT))
 def test_figures_are_those_of_an_analysis(name: str, tmp_path: Path) -> None:
@@ -104,6 +107,7 @@ FEWER = [
 """Of some of whose numbers scripts can be written, and one of several rows."""
 
 
+@pytest.mark.exhaustive(but=["yamashita-1", "pick-and-place"])
 @node
 @pytest.mark.parametrize("name", [*CHANGED, *FEWER])
 def test_changed_numbers_are_those_of_a_changed_machine(name: str, tmp_path: Path) -> None:
@@ -322,6 +326,7 @@ def compare_drawings(got: Any, known: Any, size: float) -> None:
             assert np.all(np.abs(np.subtract(row, there)) <= near), key
 
 
+@pytest.mark.exhaustive(but=["yamashita-1", "sieve"])
 @node
 @pytest.mark.parametrize(
     "name",

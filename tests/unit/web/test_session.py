@@ -161,6 +161,8 @@ def test_balancing_again_replaces_the_counterweight(name: str) -> None:
     assert force["after"] == table["value"]
 
 
+# Of a machine with a plan: the test below.
+@pytest.mark.exhaustive
 def test_advice_ends_where_nothing_more_helps() -> None:
     """The second time nothing is better than what is on the crank already."""
     session, _ = opened("kim-chung-c")
@@ -179,6 +181,7 @@ def test_advice_ends_where_nothing_more_helps() -> None:
     assert session.shown is before
 
 
+@pytest.mark.exhaustive(but=["balance-crank"])
 @pytest.mark.parametrize("name", ["balance-crank", "four-row-transplanter"])
 def test_what_is_balanced_has_nothing_to_gain(name: str) -> None:
     session, _ = opened(name)
@@ -254,6 +257,8 @@ def test_rows_have_the_same_figures_in_the_panel_and_the_table() -> None:
     assert table["value"] > 1
 
 
+# Counterweights on the page: `test_balancing_again_replaces_the_counterweight`.
+@pytest.mark.exhaustive
 def test_a_sector_keeps_its_own_inertia_on_the_page() -> None:
     session, _ = opened("balance-rig")
     ask(session, "balance")
@@ -302,6 +307,9 @@ def test_downloads() -> None:
     assert "no language of reports is called 'xx'" in refusal(replies[1:])
 
 
+# Cranks that swing: `test_a_crank_that_cannot_turn_swings_and_goes_on_being_made` of
+# test_sketch.py.
+@pytest.mark.exhaustive
 def test_a_crank_that_cannot_turn_swings_and_can_be_dragged() -> None:
     session = Session()
     first = state(ask(session, "open", seq=1, name="s.toml", text=STUCK)[0]).content
@@ -350,6 +358,8 @@ def test_a_file_with_a_byte_order_mark_is_opened() -> None:
     assert state(ask(session, "open", name="m.toml", text=text)[0]).content["name"] == "m.toml"
 
 
+# Steps of undo: the first test of this file.
+@pytest.mark.exhaustive
 def test_steps_of_undo_keep_no_motion() -> None:
     """Hundreds of designs would keep hundreds of motions, and the answers of large machines."""
     session, _ = opened("yamashita-rig")

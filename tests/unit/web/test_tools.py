@@ -48,6 +48,7 @@ def setting(desk: PageBackend, text: str, commit=True, path=PATH):
     return ask(desk, "edit", commit=commit, label=path, edits=edits)
 
 
+@pytest.mark.exhaustive(but=["nagamine-irie"])
 @pytest.mark.parametrize("name", TOOLS)
 def test_a_tool_is_told_from_the_side_with_its_modes(name) -> None:
     desk = begun(name)()
@@ -102,6 +103,7 @@ def desk() -> PageBackend:
     return begun("brush-cutter")()
 
 
+@pytest.mark.exhaustive(but=["asked0-got 23 mm inside of 20 mm", "asked2-shaft.colour"])
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
@@ -122,6 +124,8 @@ def test_what_cannot_be_is_refused_and_nothing_changes(desk: PageBackend, asked,
     assert figures(shown(ask(desk, "ready"))) == before
 
 
+# A machine after a tool: `test_a_new_machine_takes_the_place_of_a_tool` of test_sketch.py.
+@pytest.mark.exhaustive
 def test_tools_and_machines_are_opened_in_turn() -> None:
     desk = begun("yamashita-1")()
     assert shown(ask(desk, "open", example="pole-saw"))["name"] == "pole-saw"
@@ -149,6 +153,8 @@ def path(tmp_path: Path) -> Path:
     return path
 
 
+# Files of linkages are saved by the same function: tests/unit/web/test_server.py.
+@pytest.mark.exhaustive
 def test_the_file_of_a_tool_is_saved_in_place(path: Path) -> None:
     begin = begun(str(path))
     one, other = begin(), begin()

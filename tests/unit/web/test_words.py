@@ -77,6 +77,7 @@ def english(values: object, names: set[str]) -> Iterator[str]:
             yield values
 
 
+@pytest.mark.exhaustive(but=["transplanter", "yamashita-1"])
 @pytest.mark.parametrize(
     "name",
     few(["yamashita-1", "transplanter", "sieve", "riding-transplanter"],

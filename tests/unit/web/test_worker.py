@@ -113,6 +113,7 @@ def test_a_run_is_computed_beside_of_the_design_that_was_shown(page: Foreground)
     assert old["design"] != page.desk.session.number_of(page.desk.session.current())
 
 
+@pytest.mark.exhaustive(but=["run"])
 @pytest.mark.parametrize("what", ["balance", "run"])
 def test_what_takes_long_can_be_cancelled(page: Foreground, what: str) -> None:
     asked(page, what)
