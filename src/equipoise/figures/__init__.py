@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from equipoise.errors import UsageError
@@ -63,6 +64,33 @@ def standalone_svg(picture: Chart) -> tuple[str, bool]:
 
     wide = is_wide(picture)
     return svg_of(lay_out(picture, WIDE if wide else HALF, headed=False)), wide
+
+
+LOW = 260.0
+"""Height of a picture that need not be parted, points: a third of a page."""
+
+
+def standalone_rows(picture: Chart) -> tuple[str, ...]:
+    """Rows of panels of a high picture that runs across a page, each as SVG of its own.
+
+    The last row stands with the one before where it has fewer panels, which would be wider alone.
+    There are none of drawings, whose scale is that of the whole picture.
+    """
+    from equipoise.figures.layout import HIGH, WIDE, lay_out
+    from equipoise.figures.vector import svg_of
+
+    panels, columns = picture.panels, picture.columns
+    drawings = any(panel.equal and panel.y.label for panel in panels)
+    if drawings or not is_wide(picture) or len(panels) < 2 * columns:
+        return ()
+    if lay_out(picture, WIDE, headed=False).height <= LOW:
+        return ()
+    usual = HIGH[min(-(-len(panels) // columns), max(HIGH))]
+    panels = tuple(replace(panel, height=panel.height or usual) for panel in panels)
+    starts = range(0, len(panels) - columns + 1, columns)
+    ends = (*starts[1:], len(panels))
+    rows = (replace(picture, panels=panels[i:j]) for i, j in zip(starts, ends, strict=True))
+    return tuple(svg_of(lay_out(row, WIDE, headed=False)) for row in rows)
 
 
 def plot(result: Any, name: str = "", ax: Axes | None = None) -> Figure:

@@ -11,6 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from equipoise.dataclass import dataclass
+from equipoise.figures import standalone_rows
 from equipoise.figures import standalone_svg as svg_of
 from equipoise.i18n import say, to_say
 from equipoise.present import headlines, tool_summary
@@ -510,6 +511,7 @@ def _draw(findings: Findings | ToolFindings, sections: Collection[str]) -> Drawi
         text = say("; ").join((chart.what, *chart.words))
         svg, wide = svg_of(chart)
         headline, caption = picture.headline(), say(picture.caption)
-        block = SvgPicture(picture.name, text, svg, headline, caption, wide, picture.detail)
+        rows = standalone_rows(chart)
+        block = SvgPicture(picture.name, text, svg, headline, caption, wide, picture.detail, rows)
         pictures.setdefault(picture.section, []).append(block)
     return pictures

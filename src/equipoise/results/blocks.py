@@ -193,6 +193,8 @@ class SvgPicture:
     caption : what is drawn.  headline : what is seen in it.  instead : for those who cannot see it.
     wide : whether it takes the width of a page, not half of it.
     detail : whether it stands in the appendix of a report.
+    rows : a high picture once more, each row of its panels on its own, for pages that have no room
+        for all of them.
     """
 
     kind: ClassVar[str] = "drawn"
@@ -203,6 +205,7 @@ class SvgPicture:
     instead: str = ""
     wide: bool = True
     detail: bool = False
+    rows: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

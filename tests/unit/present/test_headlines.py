@@ -239,8 +239,8 @@ def empty(name: str) -> list[float]:
 @pytest.mark.parametrize(
     "name",
     few(
-        ("brush-cutter", "straw-walker", "transplanter", "balance-crank", "yamashita-1"),
-        {"brush-cutter", "straw-walker"},
+        (*eq.examples("linkage"), *eq.examples("tool")),
+        {"brush-cutter", "straw-walker", "sieve", "twin-engine"},
     ),
 )
 def test_no_third_of_a_page_is_empty_but_of_the_last(name: str) -> None:
@@ -279,18 +279,48 @@ def test_no_heading_stands_alone_at_the_foot_of_a_page(heading: str, kind: str) 
 
 
 def test_what_has_room_comes_before_a_picture_that_has_none() -> None:
-    """Of the same section, whose last line stays the last."""
+    """Of the same section."""
     parts = (
         '("head", [= Name])',
         '("whole", [#rect(height: 500pt) <first>])',
         '("whole", [#rect(height: 400pt) <second>])',
         '("prose", [a sentence <sentence>])',
-        '("last", [the last <last>])',
         '("head", [= Other <other>])',
     )
-    labels = dict.fromkeys(("first", "second", "sentence", "last"), 1)
+    labels = dict.fromkeys(("first", "second", "sentence"), 1)
     pages = pages_of(labels, f"#flow(({', '.join(parts)},))")
-    assert pages == {"first": [1], "second": [2], "sentence": [1], "last": [2]}
+    assert pages == {"first": [1], "second": [2], "sentence": [1]}
+
+
+def test_a_high_picture_that_has_no_room_goes_on_by_rows() -> None:
+    """On the next page; what has room whole comes before.  Where it has room, it is drawn whole."""
+    rows = "".join(f"rect(height: 150pt)[#[] <row-{number}>], " for number in range(4))
+    high = f'("rows", ([#rect(height: 600pt) <whole>], ({rows})))'
+    low = '("whole", [#rect(height: 20pt) <low>])'
+    labels = {"whole": 0, "row-0": 1, "row-1": 1, "row-2": 1, "row-3": 1, "low": 1}
+    pages = pages_of(labels, f'#flow((("whole", rect(height: 300pt)), {high}, {low}))')
+    assert [*pages.values()] == [[], [1], [1], [2], [2], [1]]
+    alone = {"whole": 1, "row-0": 0, "low": 1}
+    assert [*pages_of(alone, f"#flow(({high}, {low}))").values()] == [[1], [], [1]]
+
+
+def test_rows_of_a_high_picture_are_drawn_like_the_whole() -> None:
+    """With all panels once, each as large as in the whole; drawings are not parted."""
+    parted = {b.name: b for b in drawn_of(document("twin-engine")).values() if b.rows}
+    assert {"joints", "joint-polars"} <= {*parted} and "modes" not in parted
+    for block in parted.values():
+        titles = re.findall(r">([^<>]+: [^<>]+ on [^<>]+)</text>", block.svg)
+        assert titles and len(block.rows) > 1, block.name
+        each_row = [title for svg in block.rows for title in titles if f">{title}</text>" in svg]
+        assert sorted(each_row) == sorted(titles), block.name
+
+
+def test_no_remark_on_the_appendix_begins_a_page() -> None:
+    """It stands below the heading that it is about, which stays with what follows."""
+    source = composed._source(document("balance-geared-a"))
+    heads = re.findall(r'\("head", \[(.*?)\]\),\n', source, re.DOTALL)
+    remarks = source.count("Pictures in the appendix: ")
+    assert 1 < remarks == sum("Pictures in the appendix: " in head for head in heads)
 
 
 def test_pictures_of_half_the_width_fill_both_columns_of_a_page() -> None:
