@@ -17,14 +17,13 @@ from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.kinematics.strokes import dead_positions
 from equipoise.mechanism.parts.force_elements import GasTable, Load
-from equipoise.mechanism.parts.indicator_diagrams import IndicatorDiagram
+from equipoise.mechanism.parts.indicator_diagrams import ALIKE, IndicatorDiagram
+from equipoise.quantities import Dimension
 from equipoise.quantities.numbers import format_quantity
 
 STEP, FINER = 2 * pi / 360, 4
 """rad: crank angles between which pressure is linear, beside those of the rows of a diagram; and
 parts of it in which the way of the piston is taken for a straight line, to find those."""
-ALIKE = 0.02
-"""Share of the stroke by which the span of a diagram may differ from it, as recorded volumes do."""
 BESIDE, SAME = 1e-4, 1e-9
 """rad between rows at one place, where pressure jumps; and between crank angles that are one."""
 
@@ -64,16 +63,8 @@ def _by_angle(linkage: Linkage, where: str, load: Load) -> Load:
     own = diagram.span / (load.area if diagram.over == "volume" else 1.0)
     if abs(own - strokes.length) > ALIKE * strokes.length:
         raise ModelError(f"{where}.indicator", _other_stroke(diagram, load.area, strokes.length))
-    if not _fits(diagram, strokes):
-        note = Note(
-            "the diagram turns back {times} times, and the piston {strokes} times in {turns}, at "
-            "its dead centres alone; give the rows in the order in which it passes them, and "
-            "smooth between dead centres",
-            times=len(diagram.ends),
-            strokes=len(strokes.dead),
-            turns=Note("{count} turns", count=turns),
-        )
-        raise ModelError(f"{where}.indicator", note)
+    if (row := _row_elsewhere(diagram, strokes)) is not None:
+        raise ModelError(f"{where}.indicator", _no_dead_centre(diagram, row, strokes))
     angle, pressure = _pressures(diagram, strokes)
     if strokes.sense < 0:
         angle, pressure = -angle[::-1], pressure[::-1]
@@ -81,16 +72,28 @@ def _by_angle(linkage: Linkage, where: str, load: Load) -> Load:
     return replace(load, indicator=None, gas=gas)
 
 
-def _fits(diagram: IndicatorDiagram, strokes: _Strokes) -> bool:
-    """Whether a diagram turns back as often as its piston, or a fraction of that, and as far out as
-    one of its dead centres.
+def _row_elsewhere(diagram: IndicatorDiagram, strokes: _Strokes) -> int | None:
+    """The first row at which a diagram turns back at no dead centre of its piston; None where it
+    fits.  It then turns back as often, or a fraction of that, as its turns are in the cycle.
     """
-    ends, dead = len(diagram.ends), strokes.travel(strokes.dead)
-    if len(dead) % ends:
-        return False
     ways = np.array(diagram.loop[0])[[*diagram.ends]] * (strokes.length / diagram.span)
-    nearest = np.min(np.abs(np.subtract.outer(ways, dead)), axis=1)
-    return bool(np.all(nearest <= ALIKE * strokes.length))
+    nearest = np.min(np.abs(np.subtract.outer(ways, strokes.travel(strokes.dead))), axis=1)
+    wrong = np.flatnonzero(nearest > ALIKE * strokes.length)
+    return diagram.ends[wrong[0]] if len(wrong) else None
+
+
+def _no_dead_centre(diagram: IndicatorDiagram, row: int, strokes: _Strokes) -> Note:
+    kind: Dimension = "length" if diagram.over == "position" else "volume"
+    ways = np.sort(strokes.travel(strokes.dead)) * (diagram.span / strokes.length)
+    dead = min(diagram.places) + ways
+    shown = [format_quantity(float(place), kind, scale=diagram.span) for place in dead]
+    return Note(
+        "row {row}: the diagram turns back at {place}, which is no dead centre of the piston "
+        "({dead}); give the rows in the order in which it passes them",
+        row=row + 1,
+        place=format_quantity(diagram.places[row], kind),
+        dead=", ".join(dict.fromkeys(shown)),
+    )
 
 
 def _other_stroke(diagram: IndicatorDiagram, area: float, stroke: float) -> Note:
@@ -159,11 +162,14 @@ def _pressures(diagram: IndicatorDiagram, strokes: _Strokes) -> tuple[Array, Arr
 
 
 def _branches(ways: Array, pressure: Array, ends: tuple[int, ...]) -> Iterator[tuple[Array, Array]]:
-    """Ways, m, and pressures of each stroke of a loop, from row to row at which it turns back."""
+    """Ways, m, and pressures of each stroke of a loop, from row to row at which it turns back.  A
+    row that noise sets back stands at the way that is reached before it.
+    """
     count = len(ways)
     for begin, end in zip(ends, (*ends[1:], ends[0] + count), strict=True):
         rows = np.arange(begin, end + 1) % count
-        yield ways[rows], pressure[rows]
+        sense = np.sign(ways[rows[-1]] - ways[begin])
+        yield sense * np.maximum.accumulate(sense * ways[rows]), pressure[rows]
 
 
 def _first_branch(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
 from typing import Literal
 
 from equipoise.errors import ModelError
@@ -13,8 +12,11 @@ from equipoise.keys.csv_tables import CsvTable
 
 OVER = ("volume", "position")
 LEAST_ROWS = 3
+ALIKE = 0.02
+"""Share of the stroke to which the places of a recorded diagram are known: by so much its span may
+differ from the stroke, its ends miss a dead centre, and its rows go back within a stroke."""
 TINY = 1e-9
-"""Share of the range of a diagram below which a step back is rounding."""
+"""Share of the range of a diagram within which places are one."""
 
 
 @declared
@@ -52,8 +54,10 @@ class IndicatorDiagram(CsvTable):
 
     @property
     def ends(self) -> tuple[int, ...]:
-        """Rows of the loop at which it turns back, in their order; of several there the first."""
-        return tuple(sorted(_turns_back(self.loop[0], TINY * self.span)))
+        """Rows of the loop at which it turns back, in their order; of several there the first.
+        Where it goes back by no more than the share `ALIKE` of its span, that is noise.
+        """
+        return tuple(sorted(_turns_back(self.loop[0], self.span)))
 
     @property
     def turns(self) -> int:
@@ -61,14 +65,21 @@ class IndicatorDiagram(CsvTable):
         return max(1, len(self.ends) // 2)
 
 
-def _turns_back(places: Sequence[float], least: float) -> Iterator[int]:
-    """Rows of a closed loop at which its places turn back, without steps of rounding."""
-    count = len(places)
-    steps = [places[(k + 1) % count] - places[k] for k in range(count)]
-    moving = [k for k in range(count) if abs(steps[k]) > least]
-    for before, after in pairwise([moving[-1] - count, *moving] if moving else []):
-        if steps[before] * steps[after] < 0:
-            yield (before + 1) % count
+def _turns_back(places: Sequence[float], span: float) -> Iterator[int]:
+    """Rows of a closed loop at which its places turn back, each the outermost between two strokes,
+    from the largest place on, which comes last.
+    """
+    count, extreme, sense = len(places), places.index(max(places)), -1
+    for k in range(extreme + 1, extreme + count + 1):
+        row = k % count
+        way = sense * (places[row] - places[extreme])
+        if way < -ALIKE * span:
+            yield extreme
+            sense = -sense
+        if way < -ALIKE * span or way > TINY * span:
+            extreme = row
+    if span > 0:
+        yield extreme
 
 
 def wrong_diagram(where: str, diagram: IndicatorDiagram) -> Iterator[ModelError]:
