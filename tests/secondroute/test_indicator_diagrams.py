@@ -136,6 +136,8 @@ def test_a_compiled_study_has_the_same_torque() -> None:
     assert found[0] == pytest.approx(torque.rms, rel=1e-9)
     with pytest.raises(UsageError, match="indicator diagram"):
         Batch(machine, ["links.rod.points.C.x"], [figure])
+    with pytest.raises(UsageError, match="no such number that can be a column"):
+        Batch(machine, ["loads[1].back_pressure"], [figure])(np.array([[BAR]]))
 
 
 def test_a_duty_state_scales_what_is_beyond_the_back_pressure() -> None:

@@ -31,10 +31,11 @@ from itertools import pairwise
 import numpy as np
 
 from equipoise.balancing.cylinder_phasing import AREA_SAMPLES, Cost, PhaseObjective, by_orders
-from equipoise.balancing.jump_bounds import TINY, JumpBounds
+from equipoise.balancing.jump_bounds import JumpBounds
 from equipoise.balancing.jump_readings import Forms, JumpReadings, linear_forms
 from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows, smoothed
 from equipoise.balancing.phase_grid import alike
+from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.balance import Measure
 from equipoise.signals import AT_ONCE, Array, Periodic

@@ -29,8 +29,6 @@ MOST_SIDES, MOST_LEADING = 64, 8
 """Sides of jumps and bends of a row that are looked at closely; rows with which angles go."""
 AT_ONCE = 4_000_000
 """Values that are held at a time."""
-TINY = 1e-300
-"""At least so much is divided by, so that what is 0 stays 0."""
 SIGNS = (1.0, -1.0)
 """Of the highest and of the lowest value, each as the highest of a signal."""
 SLACK = 1e-11

@@ -24,11 +24,11 @@ from equipoise.balancing.jump_bounds import (
     SEGMENTS,
     SIGNS,
     SLACK,
-    TINY,
     BoxExtremes,
     CubicPieces,
 )
 from equipoise.balancing.jumping_rows import JumpingDesigns
+from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.balance import Measure
 from equipoise.signals import Array

@@ -25,7 +25,7 @@ from equipoise.balancing.cylinder_phasing import (
     squared,
     tops,
 )
-from equipoise.balancing.jump_bounds import TINY
+from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
 from equipoise.signals import Array, Periodic
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from equipoise.codegen.backends import processors, run_loop
 from equipoise.codegen.coupled import known_by_crank
-from equipoise.codegen.emit import emit, moves_piston, moves_shared, moves_soil
+from equipoise.codegen.emit import emit, own_motion
 from equipoise.codegen.extremes import CurveTops, GridTops, PanelTops
 from equipoise.codegen.figures import (
     CHANGE_POINT,
@@ -191,27 +191,8 @@ class Batch:
         if angles is not None and angles < 1:
             raise UsageError(Note("got {angles} crank angles; give at least 1", angles=angles))
         self.base = assemble(machine)
-        if moves_shared(self.base, paths):
-            raise UsageError(
-                Note(
-                    "got lengths of an overconstrained linkage; each design has to be checked by "
-                    "itself for compatible lengths"
-                )
-            )
-        if moves_soil(self.base, paths):
-            raise UsageError(
-                Note(
-                    "got numbers that move a finger in soil; each design has to be computed by "
-                    "itself, as its own motion tells where the finger goes in"
-                )
-            )
-        if moves_piston(self.base, paths):
-            raise UsageError(
-                Note(
-                    "got numbers that move a piston with an indicator diagram; each design has to "
-                    "be computed by itself, as its own motion tells where the piston is"
-                )
-            )
+        if (why := own_motion(self.base, paths)) is not None:
+            raise UsageError(why)
         self.paths, self.wanted = tuple(paths), tuple(wanted)
         self.angles, self.tolerance = angles, tolerance
         self.threads = threads or processors()

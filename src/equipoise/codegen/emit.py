@@ -358,37 +358,57 @@ def emit(
     return source_of(signals.trace, gathered, values, has_shares)
 
 
+OWN_MOTION: Sequence[tuple[Callable[[Linkage], bool], Note]] = (
+    (
+        lambda linkage: linkage.shared is not None,
+        Note(
+            "got lengths of an overconstrained linkage; each design has to be checked by "
+            "itself for compatible lengths"
+        ),
+    ),
+    (
+        lambda linkage: linkage.machine.in_soil,
+        Note(
+            "got numbers that move a finger in soil; each design has to be computed by "
+            "itself, as its own motion tells where the finger goes in"
+        ),
+    ),
+    (
+        lambda linkage: any(load.indicator is not None for load in linkage.machine.loads),
+        Note(
+            "got numbers that move a piston with an indicator diagram; each design has to "
+            "be computed by itself, as its own motion tells where the piston is"
+        ),
+    ),
+)
+"""Which linkages need a computation of each design's motion, and why."""
+
+
+def own_motion(linkage: Linkage, paths: Sequence[str]) -> Note | None:
+    """Why designs in which these numbers differ have to be computed each by itself; None where a
+    loop computes them.
+    """
+    if _moves(linkage, paths):
+        return next((why for needs, why in OWN_MOTION if needs(linkage)), None)
+    return None
+
+
 def moves_shared(linkage: Linkage, paths: Sequence[str]) -> bool:
     """Whether these numbers change the motion of a linkage whose lengths have to agree."""
+    return linkage.shared is not None and _moves(linkage, paths)
+
+
+def _moves(linkage: Linkage, paths: Sequence[str]) -> bool:
+    """Whether the motion by crank angle depends on one of these numbers."""
     tables = force_kinds(type(linkage.machine))
-    return linkage.shared is not None and not all(
-        _of_forces(KeyPath.parse(path), tables) for path in paths
-    )
-
-
-def moves_soil(linkage: Linkage, paths: Sequence[str]) -> bool:
-    """Whether these numbers change where a finger goes into the soil, which each design's motion
-    over a cycle tells.
-    """
-    tables = force_kinds(type(linkage.machine))
-    return linkage.machine.in_soil and not all(
-        _of_forces(KeyPath.parse(path), tables) for path in paths
-    )
-
-
-def moves_piston(linkage: Linkage, paths: Sequence[str]) -> bool:
-    """Whether these numbers change where a piston passes the rows of an indicator diagram."""
-    tables = force_kinds(type(linkage.machine))
-    return any(load.indicator is not None for load in linkage.machine.loads) and not all(
-        _of_forces(KeyPath.parse(path), tables) for path in paths
-    )
+    return not all(_of_forces(KeyPath.parse(path), tables) for path in paths)
 
 
 def _of_forces(path: KeyPath, tables: Collection[str]) -> bool:
     """Whether forces depend on a number and the motion by crank angle does not."""
     if path[0] == "links" and len(path) > 2:
         return path[2] in ("mass", "inertia", "center_of_mass", "bodies")
-    return path[0] in ("drive", "gravity", *tables)
+    return path[0] in ("drive", "gravity", "loads", *tables)
 
 
 def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:
@@ -396,7 +416,7 @@ def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:
     linkage = assemble(machine)
     if not can_emit(linkage) or not all(can_vary(machine, path) for path in paths):
         return False
-    if any(moves(linkage, paths) for moves in (moves_shared, moves_soil, moves_piston)):
+    if own_motion(linkage, paths) is not None:
         return False
     try:
         emit(linkage, Gathered.of([figure]), paths)

@@ -392,12 +392,7 @@ def _drags(root: ET.Element, tree: Tree) -> None:
     may close a loop, that of a tendon as long as its angle.
     """
     for joint in rubbing_joints(assemble(tree.machine)):
-        given = joint.given
-        if joint.slider is None:
-            rates = given.torsional_damping, given.drag_torque
-        else:
-            rates = given.damping, given.drag_force
-        named = zip(("damping", "frictionloss"), rates, strict=True)
+        named = zip(("damping", "frictionloss"), joint.unloaded, strict=True)
         numbers = {name: repr(rate) for name, rate in named if rate}
         if joint.slider is None:
             _turning(root, tree, (joint.on, joint.by), numbers)

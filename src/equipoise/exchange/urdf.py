@@ -140,13 +140,9 @@ def _joint(root: ET.Element, tree: Tree, link: Hung) -> None:
 def _dynamics(joint: ET.Element, tree: Tree, link: Hung) -> None:
     """What resists in a joint whatever presses there: its damping and its drag."""
     for own in rubbing_joints(assemble(tree.machine)):
-        given, ends = own.given, {own.on, own.by}
-        if ends != {link.name, link.parent} or (own.slider is None) != (link.kind == "hinge"):
-            continue
-        pin = own.slider is None
-        damping = given.torsional_damping if pin else given.damping
-        drag = given.drag_torque if pin else given.drag_force
-        ET.SubElement(joint, "dynamics", damping=repr(damping), friction=repr(drag))
+        if {own.on, own.by} == {link.name, link.parent} and own.slides == (link.kind != "hinge"):
+            damping, drag = own.unloaded
+            ET.SubElement(joint, "dynamics", damping=repr(damping), friction=repr(drag))
 
 
 def _way(machine: Machine, link: Hung) -> float:

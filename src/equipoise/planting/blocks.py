@@ -12,7 +12,6 @@ from equipoise.dataclass import dataclass
 from equipoise.design.solvers import UNPROVED
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.outputs.declared import joint_named
 from equipoise.planting.arms import SHARED
 from equipoise.planting.names import (
@@ -30,6 +29,7 @@ from equipoise.planting.names import (
 from equipoise.planting.stroke import finger_base
 from equipoise.quantities import PER_RPM, Dimension, angle, format_quantity, number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value, broken_if
+from equipoise.results.remarks import linkage_remarks
 
 if TYPE_CHECKING:
     from equipoise.planting.search import Fit
@@ -313,7 +313,7 @@ def fit_blocks(fit: Fit) -> Iterator[Block]:
     yield _changes(fit)
     yield _figures(fit)
     missed = [figure_named(name) for name, met in fit.met.items() if not met]
-    notes: list[Note | str] = [*fit.after.notes, *remarks(assemble(fit.machine))]
+    notes: list[Note | str] = [*fit.after.notes, *linkage_remarks(assemble(fit.machine))]
     if missed:
         template = to_say(
             "not met: {names}; widen the limits of [vary], loosen the goals, or try another seed"

@@ -29,7 +29,7 @@ from equipoise.results.machine_blocks import (
     span,
 )
 from equipoise.results.outputs import CAUSES, tops_of
-from equipoise.results.remarks import remarks_of
+from equipoise.results.remarks import Place, remarks_of
 from equipoise.results.scales import TOTALS, scale_of
 from equipoise.signals import EQUAL, Array, Periodic
 
@@ -62,8 +62,11 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
 
 
 def question_blocks(analysis: Analysis) -> Iterator[Block]:
-    """What may not be meant as the file gives it."""
-    if asked := (*remarks_of(analysis, "end"),):
+    """What may not be meant as the file gives it; without masses also what else stands beside
+    tables of forces, which there are none of.
+    """
+    place: Place | None = "end" if analysis.solved is not None else None
+    if asked := (*remarks_of(analysis, place),):
         yield Notes(asked)
 
 

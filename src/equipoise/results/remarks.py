@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Literal, NamedTuple, Protocol
 
 from equipoise.i18n import Note
+from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.dynamics.assessment import joint_remarks, mass_remarks, questions
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.reactions import idle_told
@@ -42,22 +43,24 @@ class RemarkKind(NamedTuple):
     place : beside which tables of an analysis it stands, or at their end.
     of : remarks of a machine that has been analysed, a sentence each.
     of_forces : whether there are none without masses.
+    of_linkage : remarks of a linkage, where they need no motion; in the place of `of`.
     """
 
     place: Place
-    of: Callable[[AnalyzedMachine], Iterable[Note | str]]
+    of: Callable[[AnalyzedMachine], Iterable[Note | str]] = lambda _: ()
     of_forces: bool = False
+    of_linkage: Callable[[Linkage], Iterable[Note | str]] = lambda _: ()
 
 
 KINDS = (
-    RemarkKind("end", lambda analysis: mass_remarks(analysis.machine)),
-    RemarkKind("joints", lambda analysis: joint_remarks(analysis.motion.linkage)),
+    RemarkKind("end", of_linkage=lambda linkage: mass_remarks(linkage.machine)),
+    RemarkKind("joints", of_linkage=joint_remarks),
     RemarkKind(
         "joints",
         lambda analysis: idle_told(analysis.motion.linkage, analysis.forces.solved.state),
         of_forces=True,
     ),
-    RemarkKind("end", lambda analysis: questions(analysis.motion.linkage)),
+    RemarkKind("end", of_linkage=questions),
     RemarkKind("end", lambda analysis: unreached_tables(analysis.motion)),
     RemarkKind("cams", lambda analysis: lost_contacts(analysis.forces), of_forces=True),
     RemarkKind(
@@ -74,4 +77,11 @@ def remarks_of(analysis: AnalyzedMachine, place: Place | None = None) -> Iterato
     """What may not be meant, and where the machine fails; of one place alone if that is given."""
     for kind in KINDS:
         if place in (None, kind.place) and not (kind.of_forces and analysis.solved is None):
+            yield from kind.of_linkage(analysis.motion.linkage)
             yield from kind.of(analysis)
+
+
+def linkage_remarks(linkage: Linkage) -> Iterator[Note | str]:
+    """What may not be meant, as far as a linkage shows it without its motion."""
+    for kind in KINDS:
+        yield from kind.of_linkage(linkage)

@@ -370,7 +370,7 @@ def header_of(
                 line, Note("got the column {given}; {right}", given=shortened(cell), right=right)
             )
         if match is None:
-            unit = KINDS[_column(name, forms)[0]].si
+            unit = _column(name, forms)[1]
             raise wrong(
                 line, Note("the unit is missing; {name} [{unit}]", name=name, unit=unit), name
             )

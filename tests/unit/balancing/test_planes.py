@@ -16,13 +16,15 @@ from equipoise.balancing.sentences import freedoms
 from equipoise.balancing.workshop import covers
 from equipoise.errors import ModelError
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.out_of_plane import statics
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.parts.bodies import Body
 from equipoise.mechanism.parts.links import Bearing, Slider
 from equipoise.mechanism.parts.machine import Drive, Link, Machine
 from equipoise.mechanism.parts.support import Row
+from equipoise.results.analysis_blocks import analysis_blocks
+from equipoise.results.blocks import Notes
+from equipoise.results.remarks import linkage_remarks
 from equipoise.vibration.forced import respond
 from support.refusals import refused
 from unit.vibration.build import cart
@@ -162,7 +164,19 @@ def test_what_statics_leaves_open_is_told() -> None:
     assert not [*statics(assemble(machine)).notes()]
     bent = machine.with_link("rocker", planes={"C": 0.05})
     assert statics(assemble(bent)).open == ("B", "C")
-    assert any("tilting moments" in str(one) for one in remarks(assemble(bent)))
+    assert any("tilting moments" in str(one) for one in linkage_remarks(assemble(bent)))
+
+
+def test_what_statics_leaves_open_is_told_without_masses_too() -> None:
+    """`analyze` prints no joint forces then, beside which it stands else."""
+    machine = eq.load("yamashita-1").with_link("coupler", plane=0.02)
+    for link in machine.links:
+        machine = machine.with_link(link, mass=None, inertia=None, center_of_mass=None)
+    analysis = eq.analyze(machine.with_link("rocker", planes={"C": 0.05}), 30)
+    assert analysis.solved is None
+    notes = [note for block in analysis_blocks(analysis) if isinstance(block, Notes)
+             for note in block.notes]  # fmt: skip
+    assert sum("tilting moments" in str(note) for note in notes) == 1
 
 
 def test_a_plan_tells_two_counterweights_on_one_shaft_apart() -> None:

@@ -11,10 +11,10 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError
 from equipoise.mechanism.dynamics.applied_loads import acting_elements, resistance, soil_force
-from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.parameters import spring_units
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.field import Planting, Soil, SoilTable
+from equipoise.results.remarks import linkage_remarks
 from support import refusals
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, refused
 
@@ -236,8 +236,8 @@ def test_springs_leave_the_motion_as_it_is() -> None:
     """Nothing is solved again, and the frame's point is in use."""
     linkage = eq.mechanism.assemble(FOUR)
     assert eq.mechanism.assemble(sprung()).groups is linkage.groups
-    assert list(remarks(linkage)) == ["frame.points.S is not used by any joint or spring"]
-    assert not list(remarks(eq.mechanism.assemble(sprung())))
+    assert list(linkage_remarks(linkage)) == ["frame.points.S is not used by any joint or spring"]
+    assert not list(linkage_remarks(eq.mechanism.assemble(sprung())))
 
 
 # -- force -----------------------------------------------------------------------------------------

@@ -14,12 +14,12 @@ import equipoise as eq
 from equipoise.errors import ModelError, MotionError, UsageError
 from equipoise.mechanism import Belt, Position, Rack
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.kinematics.motion import crossings
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.results.analysis_blocks import analysis_blocks
 from equipoise.results.belt_blocks import slack
 from equipoise.results.blocks import Notes
+from equipoise.results.remarks import linkage_remarks
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from support import refusals
@@ -224,7 +224,7 @@ def test_a_strand_across_a_link_that_turns_beside_it(length: float, told: float 
     one = Belt(FRAME, "planet", radii=(0.1, 0.1), carrier="arm")
     gears = (eq.Gear(FRAME, "rod", ratio=-1.0, carrier="arm"),)
     given = machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 2.0), gears=gears, belts=(one,))
-    found = [str(one) for one in remarks(assemble(given)) if "strand" in str(one)]
+    found = [str(one) for one in linkage_remarks(assemble(given)) if "strand" in str(one)]
     sentence = (
         "belts[1]: a strand lies across 'rod' at crank angle {} deg; move B, change the radii, or "
         "give 'rod' a plane of its own"

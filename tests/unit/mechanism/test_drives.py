@@ -15,10 +15,10 @@ from equipoise.codegen.figures import Figure
 from equipoise.codegen.gram import MassBatch
 from equipoise.errors import MobilityError, ModelError, MotionError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
 from equipoise.mechanism.parts.machine import Drive, FurtherDrive, Link, Machine
+from equipoise.results.remarks import linkage_remarks
 from equipoise.web.design import Design
 from equipoise.web.edits import solved
 from equipoise.web.sketch import Sketch
@@ -98,14 +98,16 @@ def test_a_jump_of_acceleration_is_noted_and_is_no_place_without_effect():
     """A trapezoid of speed, whose acceleration jumps at four crank angles; a cycloid has none."""
     ways = (AngleSegment(pi, 0.8, "trapezoid"), AngleSegment(pi, 0.0, "trapezoid"))
     pendulum = crank_rocker().with_drive(motion=AngleLaw(segments=ways))
-    (told,) = [str(one) for one in remarks(assemble(pendulum)) if "infinite jerk" in str(one)]
+    (told,) = [
+        str(one) for one in linkage_remarks(assemble(pendulum)) if "infinite jerk" in str(one)
+    ]
     assert "'crank' commands jumps at crank angle 60, 120, 240, 300 deg, an" in told
     found = sensitivities(pendulum, "drive_torque")
     theta = found["rocker.inertia"].no_effect_at
     away = np.abs(theta[:, None] - np.arange(7) * pi / 3)
     assert len(theta) and np.min(away) > 1e-6
     smooth = AngleLaw(segments=tuple(replace(way, law="cycloidal") for way in ways))
-    told = map(str, remarks(assemble(pendulum.with_drive(motion=smooth))))
+    told = map(str, linkage_remarks(assemble(pendulum.with_drive(motion=smooth))))
     assert not any("jerk" in one for one in told)
 
 

@@ -12,10 +12,10 @@ import pytest
 import equipoise as eq
 from equipoise.errors import MassError, ModelError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.loads import load_at, work_in_cycle
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
 from equipoise.mechanism.parts.machine import FRAME
+from equipoise.results.remarks import linkage_remarks
 from laws.transforms import renamed
 from support.refusals import refused
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
@@ -217,7 +217,7 @@ def test_force_at_a_point_of_the_crank() -> None:
 
 
 def remarked(given: eq.Machine) -> list[str]:
-    return list(remarks(eq.mechanism.assemble(given)))
+    return list(linkage_remarks(eq.mechanism.assemble(given)))
 
 
 def test_a_good_machine_gives_no_remark() -> None:

@@ -176,15 +176,15 @@ def test_a_wrong_file_is_named(tmp_path: Path, slip: tuple[str, str], sentence: 
 SHORT = GasTable((0.0, 1.0, 2.0), (1e5, 4e5, 2e5))
 UNEQUAL = GasTable((0.0, 2 * np.pi), (1e5, 4e5))
 WRONG: list[tuple[dict[str, Any], str]] = [
-    ({"bore": None}, ".bore: missing; gas acts on the area"),
+    ({"bore": None}, ".bore: missing; pressure acts on the area"),
     ({"bore": -0.1}, ".bore: got -0.1 m"),
-    ({"axes": "link"}, ".axes: gas pushes a piston along its slider"),
+    ({"axes": "link"}, ".axes: pressure pushes a piston along its slider"),
     ({"force": (1.0, 0.0)}, ": give exactly one of force, torque, table, gas and indicator"),
     ({"gas": SHORT}, ".outside: missing; the table goes from"),
     ({"gas": UNEQUAL}, ".gas: the table has 1 bar at 0 deg and 4 bar at 360 deg"),
     ({"gas": GasTable((0.0, 1.0), (1e5,))}, ".gas: the columns differ in length"),
     ({"gas": GasTable((), ())}, ".gas: the table has no rows"),
-    ({"gas": None, "force": (1.0, 0.0)}, ".bore: goes with gas"),
+    ({"gas": None, "force": (1.0, 0.0)}, ".bore: goes with gas or indicator"),
     ({"gas": None, "force": (1.0, 0.0), "bore": None, "back_pressure": 1e5},
      ".back_pressure: goes with gas"),
     ({"gas": None, "force": (1.0, 0.0), "bore": None, "side": "behind"}, ".side: goes with gas"),

@@ -113,7 +113,10 @@ BAD: dict[str, list[tuple[str | None, str]]] = {
             "line 2: got 4 values; the header has 2 columns; "
             "decimal commas need semicolons between values",
         ),
-        ("crank_angle,torque [N m]\n0,1\n", "column crank_angle: the unit is missing; crank_angle"),
+        (
+            "crank_angle,torque [N m]\n0,1\n",
+            "column crank_angle: the unit is missing; crank_angle [deg]",
+        ),
         ("crank_angle [mm],torque [N m]\n0,1\n", "line 1, column crank_angle: got '0 mm'; mm is"),
         ("crank_angle [deg],torque [N m],torque [N m]\n0,1,1\n", "column torque: given twice"),
         ("crank_angle [deg],torque [N m]\n", "there are no rows"),

@@ -191,13 +191,6 @@ def _jerks(machine: Machine) -> Iterator[Note]:
             )
 
 
-def remarks(linkage: Linkage) -> Iterator[Note | str]:
-    """Things worth a second look, each one sentence; none of them keeps a model from running."""
-    yield from mass_remarks(linkage.machine)
-    yield from joint_remarks(linkage)
-    yield from questions(linkage)
-
-
 def joint_remarks(linkage: Linkage) -> Iterator[Note]:
     """Which forces in joints statics leaves open, in the plane and across it."""
     yield from indeterminate_reactions(linkage).notes()

@@ -16,19 +16,16 @@ Engineering Design, chapter 11):
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
-from math import copysign, exp, log, pi
+from collections.abc import Iterable, Mapping, Sequence
+from math import exp, log, pi
 from typing import Any
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
-from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Array, Reaction
-from equipoise.mechanism.dynamics.forces import Forces
-from equipoise.mechanism.dynamics.forces import forces as forces_of
+from equipoise.mechanism.dynamics.forces import Forces, WorkingState
 from equipoise.mechanism.dynamics.pin_bearings import joint_properties, ring_speed
 from equipoise.mechanism.kinematics.strokes import figure
 from equipoise.mechanism.parts.joint_properties import RollingBearing
@@ -106,34 +103,6 @@ def bearing_life(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class WorkingState:
-    """A machine in one state of its duty.
-
-    share : of the operating time; the shares of all states sum up to 1.
-    """
-
-    share: float
-    forces: Forces
-
-
-def working_states(forces: Forces) -> Iterator[WorkingState]:
-    """The states of a machine's duty, at the crank angles of an analysis; that analysis itself of a
-    machine that tells none.
-    """
-    motion, machine = forces.motion, forces.motion.machine
-    if not machine.duty:
-        yield WorkingState(1.0, forces)
-        return
-    total = sum(state.share for state in machine.duty)
-    for state in machine.duty:
-        speed = motion.speed if state.speed is None else copysign(state.speed, machine.drive.speed)
-        loaded = replace(machine, loads=state.scaled(machine.loads), duty=())
-        # loads do not move links, so that the positions are those of the analysis
-        moving = replace(motion.at(speed), linkage=assemble(loaded))
-        yield WorkingState(state.share / total, forces_of(moving, forces.about))
-
-
 def bearing_lives(forces: Forces) -> Mapping[str, BearingLife]:
     """Figures of rolling bearings by joint, over all duty states of the machine; none where the
     crank is not turned evenly, or the crank angles are not those of a whole cycle.
@@ -146,8 +115,7 @@ def bearing_lives(forces: Forces) -> Mapping[str, BearingLife]:
         for name, (reaction, item) in joint_properties(motion).items()
         if item.bearing is not None and name in forces.joints
     }
-    states = tuple(working_states(forces)) if rolling else ()
-    return {name: _life_over(states, name, *both) for name, both in rolling.items()}
+    return {name: _life_over(forces.working_states, name, *both) for name, both in rolling.items()}
 
 
 def _life_over(

@@ -8,9 +8,10 @@ stack of them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
+from math import copysign
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from equipoise.dataclass import dataclass
 from equipoise.displays import Displayed
 from equipoise.errors import MassError
 from equipoise.i18n import Note, key_names
+from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Array, p, planar, u
 from equipoise.mechanism.dynamics import applied_loads
 from equipoise.mechanism.dynamics.force_readings import ForceReadings
@@ -224,6 +226,17 @@ class Forces(ForceReadings, Displayed):
             motion, *masses_across(motion), loads, springs, exerted_in(self.solved), outer
         )
 
+    @property
+    def working_states(self) -> Sequence[WorkingState]:
+        """States of the machine's duty, at the crank angles of these forces; these forces alone
+        where it has no duty.
+        """
+        return self._duty_states if self.motion.machine.duty else (WorkingState(1.0, self),)
+
+    @cached_property
+    def _duty_states(self) -> Sequence[WorkingState]:
+        return tuple(_duty_states(self))
+
     @cached_property
     def split(self) -> Split:
         """Every output by cause and by link."""
@@ -249,6 +262,29 @@ class Forces(ForceReadings, Displayed):
     def anchor(self, link: str) -> str:
         """The point of a link about which its demand's moment is taken."""
         return self.motion.linkage.anchors[link]
+
+
+@dataclass(frozen=True, eq=False)
+class WorkingState:
+    """A machine in one state of its duty.
+
+    share : of the operating time; the shares of all states sum up to 1.
+    """
+
+    share: float
+    forces: Forces
+
+
+def _duty_states(result: Forces) -> Iterator[WorkingState]:
+    """States of the duty of a machine, at the crank angles of its forces."""
+    motion, machine = result.motion, result.motion.machine
+    total = sum(state.share for state in machine.duty)
+    for state in machine.duty:
+        speed = motion.speed if state.speed is None else copysign(state.speed, machine.drive.speed)
+        loaded = replace(machine, loads=state.scaled(machine.loads), duty=())
+        # loads do not move links, so that the positions are those of the analysis
+        moving = replace(motion.at(speed), linkage=assemble(loaded))
+        yield WorkingState(state.share / total, forces(moving, result.about))
 
 
 def forces(motion: Motion, about: str | Vector | complex | None = None) -> Forces:

@@ -95,9 +95,7 @@ class FrictionLaw:
                 slides = reach * rates[k] / item.stribeck_speed
                 mu = mu + (item.static_friction - mu) * np.exp(-(slides**2))
             grip[k] = senses[k] * mu * reach
-            drag, damping = item.drag_torque, item.torsional_damping
-            if joint.slides:
-                drag, damping = item.drag_force, item.damping
+            damping, drag = joint.unloaded
             given[k] = senses[k] * drag + damping * rates[k]
         return cls(tuple(joints), rates, grip, given)
 

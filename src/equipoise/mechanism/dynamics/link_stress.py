@@ -19,9 +19,8 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics.bearing_life import WorkingState, working_states
 from equipoise.mechanism.dynamics.elastic import elastic_link, other_places
-from equipoise.mechanism.dynamics.forces import Forces
+from equipoise.mechanism.dynamics.forces import Forces, WorkingState
 from equipoise.mechanism.dynamics.section_loads import FIBRES, SectionLoads
 from equipoise.mechanism.kinematics.strokes import figure
 from equipoise.mechanism.parts.machine import Link
@@ -219,8 +218,7 @@ def link_stresses(forces: Forces) -> Mapping[str, LinkStress]:
     motion = forces.motion
     if not motion.whole_cycle or motion.acceleration or not motion.speed or not forces.sections:
         return {}
-    states = tuple(working_states(forces))
-    return {name: _over(states, name) for name in forces.sections}
+    return {name: _over(forces.working_states, name) for name in forces.sections}
 
 
 def _over(states: Sequence[WorkingState], name: str) -> LinkStress:
@@ -243,9 +241,9 @@ def _over(states: Sequence[WorkingState], name: str) -> LinkStress:
             buckling_safety=_least(figures.buckling_safety for figures in each),
             **{load: max(getattr(figures, load) for figures in each) for load in LARGEST},
         )
-    cycles, fatigue_safety = _fatigue([(state, state.forces.sections[name]) for state in states])
-    rate = sum(state.share / _period(state) for state in states)
-    life = None if cycles is None else cycles / rate
+    rates = [_rate(state) for state in states]
+    cycles, fatigue_safety = _fatigue(rates, [state.forces.sections[name] for state in states])
+    life = None if cycles is None else cycles / sum(rates)
     return replace(worst, fatigue_safety=fatigue_safety, cycles_to_failure=cycles, life=life)
 
 
@@ -259,10 +257,10 @@ def _least(values: Iterable[float | None]) -> float | None:
     return min((value for value in values if value is not None), default=None)
 
 
-def _period(state: WorkingState) -> float:
-    """Time of a cycle in a duty state, s."""
+def _rate(state: WorkingState) -> float:
+    """Cycles in a duty state per second of operating time."""
     motion = state.forces.motion
-    return 2 * pi * motion.turns / abs(motion.speed)
+    return state.share / (2 * pi * motion.turns / abs(motion.speed))
 
 
 def _figures(loads: SectionLoads, link: Link, angles: Array) -> LinkStress:
@@ -274,23 +272,27 @@ def _figures(loads: SectionLoads, link: Link, angles: Array) -> LinkStress:
     stress = float(most.stresses[side, k])
     pressed = max(most.compression, 0.0)
     buckles = section.buckling_load(loads.length)
+    frequency, deflection, deflection_at, path_error = _elastic(loads, link, angles)
     return LinkStress(
-        FIBRES[int(side)],
-        stress,
-        float(cut.at[n]),
-        float(angles[n]),
-        max(most.tension, 0.0),
-        pressed,
-        most.shear,
-        float(np.max(most.bending_moment)),
-        section.yield_strength / stress if section.yield_strength and stress else None,
-        buckles / pressed if buckles is not None and pressed > 0 else None,
-        None,
-        None,
-        None,
-        loads.mass.rod,
-        min(loads.mass.first, loads.mass.last),
-        *_elastic(loads, link, angles),
+        fibre=FIBRES[int(side)],
+        stress=stress,
+        place=float(cut.at[n]),
+        stress_at=float(angles[n]),
+        tension=max(most.tension, 0.0),
+        compression=pressed,
+        shear=most.shear,
+        bending_moment=float(np.max(most.bending_moment)),
+        safety=section.yield_strength / stress if section.yield_strength and stress else None,
+        buckling_safety=buckles / pressed if buckles is not None and pressed > 0 else None,
+        fatigue_safety=None,
+        cycles_to_failure=None,
+        life=None,
+        rod_mass=loads.mass.rod,
+        least_end_mass=min(loads.mass.first, loads.mass.last),
+        natural_frequency=frequency,
+        deflection=deflection,
+        deflection_at=deflection_at,
+        path_error=path_error,
     )
 
 
@@ -309,18 +311,19 @@ def _elastic(
 
 
 def _fatigue(
-    states: Sequence[tuple[WorkingState, SectionLoads]],
+    rates: Sequence[float], states: Sequence[SectionLoads]
 ) -> tuple[float | None, float | None]:
     """Cycles of the machine to failure at the worst place, None where it is endless; and safety
-    of the fatigue limit.  Of duty states cycles as often as they come in the operating time.
+    of the fatigue limit.
+
+    rates : cycles in each duty state per second of operating time.  states : loads of the link.
     """
-    section = states[0][1].section
+    section = states[0].section
     if section.fatigue_limit is None:
         return None, None
     line = WoehlerLine(section.fatigue_limit, section.knee_cycles, section.slope)
-    rates = [state.share / _period(state) for state, _ in states]
     damages, largest = dict[tuple[float, bool, int], float](), 0.0
-    for rate, (_, loads) in zip(rates, states, strict=True):
+    for rate, loads in zip(rates, states, strict=True):
         share = rate / sum(rates)
         for cut in (item for item in loads.cuts if item.fixed):
             for side, stress in enumerate(loads.in_fibres(loads.in_cut(cut))):

@@ -104,6 +104,16 @@ class RubbingJoint:
         return self.given.mesh_loss or self.given.friction or 0.0
 
     @property
+    def unloaded(self) -> tuple[float, float]:
+        """What resists whatever presses in it: damping, and a drag that is always against the
+        motion; N s/m and N where it slides, else N m s/rad and N m.
+        """
+        given = self.given
+        if self.slides:
+            return given.damping, given.drag_force
+        return given.torsional_damping, given.drag_torque
+
+    @property
     def jumps(self) -> bool:
         """Whether its friction changes suddenly where it turns back."""
         given = self.given

@@ -55,7 +55,6 @@ def _by_angle(linkage: Linkage, where: str, load: Load) -> Load:
         return load
     assert load.area is not None
     try:
-        turns = linkage.cycle.turns
         strokes = _Strokes.of(linkage, load)
     except MotionError as error:
         note = Note("an indicator diagram needs a crank that turns fully: {what}", what=error.note)

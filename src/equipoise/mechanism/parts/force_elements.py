@@ -207,11 +207,16 @@ class Load(Frozen):
         example="diagram.csv",
     )
     bore: float | None = key(
-        "length", "diameter of the area on which `gas` acts", default=None, example="68 mm", above=0
+        "length",
+        "diameter of the area on which the pressure of `gas` or `indicator` acts",
+        default=None,
+        example="68 mm",
+        above=0,
     )
     back_pressure: float = key(
         "modulus",
-        "on the other side of the piston, in the same way absolute or gauge as `gas`",
+        "on the other side of the piston, in the same way absolute or gauge as the pressure of "
+        "`gas` or `indicator`",
         default=0.0,
         shown="0 bar",
     )
@@ -477,14 +482,16 @@ def _wrong_gas(where: str, load: Load) -> Iterator[ModelError]:
         given_keys = load.bore is not None, bool(load.back_pressure), load.side != "ahead"
         for name, given in zip(OF_GAS, given_keys, strict=True):
             if given:
-                yield ModelError(f"{where}.{name}", Note("goes with gas; leave it out"))
+                yield ModelError(
+                    f"{where}.{name}", Note("goes with gas or indicator; leave it out")
+                )
         return
     if load.indicator is not None:
         yield from wrong_diagram(f"{where}.indicator", load.indicator)
     if load.bore is None:
-        yield ModelError(f"{where}.bore", Note("missing; gas acts on the area of a bore"))
+        yield ModelError(f"{where}.bore", Note("missing; pressure acts on the area of a bore"))
     if load.axes != "slider":
-        wrong = Note('gas pushes a piston along its slider; give axes = "slider"')
+        wrong = Note('pressure pushes a piston along its slider; give axes = "slider"')
         yield ModelError(f"{where}.axes", wrong)
     if load.gas is not None and len(load.gas.pressure) != len(load.gas.crank_angle):
         yield ModelError(f"{where}.gas", Note("the columns differ in length"))

@@ -54,12 +54,14 @@ CAMS = "cams"
 """The list of couplings whose followers slide, with friction as sliders have it."""
 OF_PIN = ("radius", "torsional_damping", "drag_torque", "width", "bearing")
 OF_SLIDER = ("guide_length", "damping", "drag_force")
-RUBBING = ("friction", "mesh_loss", "damping", "torsional_damping", "drag_force", "drag_torque")
+LOADED = ("friction", "mesh_loss")
+"""Keys of what resists in proportion to what presses in the joint."""
+UNLOADED = ("damping", "torsional_damping", "drag_force", "drag_torque")
+"""Keys of what resists whatever presses in the joint."""
+RUBBING = (*LOADED, *UNLOADED)
 """Keys of which each alone makes a joint resist its motion."""
 APART = ("radius", "width", "bearing", "stiffness")
 """Keys that have nothing to do with friction."""
-UNLOADED = ("damping", "torsional_damping", "drag_force", "drag_torque")
-"""Keys of what resists whatever presses in the joint."""
 
 
 def family_of(kind: str) -> str:
@@ -180,7 +182,7 @@ class JointProperties(Frozen):
     @property
     def rubs_by_load(self) -> bool:
         """Whether what presses in it makes it resist its motion."""
-        return any(getattr(self, name) for name in ("friction", "static_friction", "mesh_loss"))
+        return any(getattr(self, name) for name in (*LOADED, "static_friction"))
 
     def without_friction(self, drags: bool = False) -> JointProperties:
         """Properties of this joint if it moved freely.
