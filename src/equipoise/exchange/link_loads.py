@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from equipoise.errors import MassError, ModelError, UsageError, unknown
@@ -11,7 +9,7 @@ from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, to_say
 from equipoise.limits import check_memory
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.dynamics.section_loads import Cut, SectionLoads
+from equipoise.mechanism.dynamics.section_loads import SectionLoads
 from equipoise.results.analysis import ANGLES, Analysis, analyze
 from equipoise.schema.files import csv_text
 from equipoise.signals import Array
@@ -58,28 +56,20 @@ def export_bytes(job: Job) -> str:
     link = link_of(job)
     analysis = analysis_of(job)
     loads = analysis.forces.sections[link]
-    cuts, angles = different_cuts(loads.cuts), analysis.crank_angle
-    what = Note("loads in {cuts} cuts at {angles} crank angles", cuts=len(cuts), angles=len(angles))
-    check_memory(len(cuts) * len(angles) * ROW, what)
-    return csv_text(_columns(angles, loads, cuts))
+    cuts, angles = len(loads.cuts), analysis.crank_angle
+    what = Note("loads in {cuts} cuts at {angles} crank angles", cuts=cuts, angles=len(angles))
+    check_memory(cuts * len(angles) * ROW, what)
+    return csv_text(_columns(angles, loads))
 
 
-def different_cuts(cuts: Sequence[Cut]) -> list[Cut]:
-    """Cuts without those that are the same as a former one at all crank angles."""
-    fixed = {(float(cut.at[0]), cut.behind): cut for cut in cuts if cut.fixed}
-    return [*fixed.values(), *(cut for cut in cuts if not cut.fixed)]
-
-
-def _columns(
-    angles: Array, loads: SectionLoads, cuts: Sequence[Cut]
-) -> list[tuple[str, str, Array]]:
+def _columns(angles: Array, loads: SectionLoads) -> list[tuple[str, str, Array]]:
     """One crank angle after the other, from the first end of the link to the last, and before what
     acts at a place to behind it.
     """
-    every = [loads.in_cut(cut) for cut in cuts]
+    every = [loads.in_cut(cut) for cut in loads.cuts]
     stress = np.stack([loads.in_fibres(item) for item in every], axis=1)
-    places = np.array([cut.at for cut in cuts])
-    behind = np.broadcast_to(np.array([[cut.behind] for cut in cuts]), places.shape)
+    places = loads.places
+    behind = np.broadcast_to(np.array([[cut.behind] for cut in loads.cuts]), places.shape)
     order = np.lexsort((behind, places), axis=0)
     table = (
         ("crank_angle", "rad", np.broadcast_to(angles, places.shape)),

@@ -8,7 +8,7 @@ that all cycles use up add to 1 where it breaks (Palmgren and Miner).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import inf, pi
@@ -21,7 +21,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics.elastic import elastic_link, other_places
 from equipoise.mechanism.dynamics.forces import Forces, WorkingState
-from equipoise.mechanism.dynamics.section_loads import FIBRES, SectionLoads
+from equipoise.mechanism.dynamics.section_loads import FIBRES, Cut, SectionLoads
 from equipoise.mechanism.kinematics.strokes import figure
 from equipoise.mechanism.parts.machine import Link
 from equipoise.signals import Array
@@ -241,9 +241,8 @@ def _over(states: Sequence[WorkingState], name: str) -> LinkStress:
             buckling_safety=_least(figures.buckling_safety for figures in each),
             **{load: max(getattr(figures, load) for figures in each) for load in LARGEST},
         )
-    rates = [_rate(state) for state in states]
-    cycles, fatigue_safety = _fatigue(rates, [state.forces.sections[name] for state in states])
-    life = None if cycles is None else cycles / sum(rates)
+    cycles, fatigue_safety = _fatigue(states, name)
+    life = None if cycles is None else cycles / sum(map(_rate, states))
     return replace(worst, fatigue_safety=fatigue_safety, cycles_to_failure=cycles, life=life)
 
 
@@ -263,21 +262,56 @@ def _rate(state: WorkingState) -> float:
     return state.share / (2 * pi * motion.turns / abs(motion.speed))
 
 
+@dataclass(frozen=True, eq=False)
+class StressPeak:
+    """Where, and at which crank angle, the normal stress in a link is largest in size.
+
+    loads : along the link.  cut : of them.  side : number in `FIBRES`.
+    angle : number of the crank angle.
+    """
+
+    loads: SectionLoads
+    cut: Cut
+    side: int
+    angle: int
+
+    @classmethod
+    def of(cls, loads: SectionLoads) -> StressPeak:
+        """Of all cuts, fibres and crank angles the first with the largest stress."""
+        sizes = loads.envelope.stresses
+        side, k = map(int, np.unravel_index(int(np.argmax(sizes)), sizes.shape))
+        stress = loads.in_fibres(loads.in_cut(loads.cuts[k]))[side]
+        return cls(loads, loads.cuts[k], side, int(np.argmax(np.abs(stress))))
+
+    @property
+    def place(self) -> float:
+        """From the first point of the link, m."""
+        return float(self.cut.at[self.angle])
+
+    @property
+    def stress(self) -> float:
+        """Normal stress with its sign, Pa."""
+        return float(self.loads.in_fibres(self.loads.in_cut(self.cut))[self.side, self.angle])
+
+
+def largest_stress(forces: Forces, name: str) -> tuple[WorkingState, StressPeak]:
+    """State of the duty in which the stress in a link is largest, and where it is there."""
+    each = ((state, StressPeak.of(state.forces.sections[name])) for state in forces.working_states)
+    return max(each, key=lambda item: abs(item[1].stress))
+
+
 def _figures(loads: SectionLoads, link: Link, angles: Array) -> LinkStress:
     """Figures of a link in one duty state, without those of fatigue."""
-    section, most = loads.section, loads.envelope
-    side, k = np.unravel_index(int(np.argmax(most.stresses)), most.stresses.shape)
-    cut = loads.cuts[int(k)]
-    n = int(np.argmax(np.abs(loads.in_fibres(loads.in_cut(cut))[side])))
-    stress = float(most.stresses[side, k])
+    section, most, peak = loads.section, loads.envelope, StressPeak.of(loads)
+    stress = abs(peak.stress)
     pressed = max(most.compression, 0.0)
     buckles = section.buckling_load(loads.length)
     frequency, deflection, deflection_at, path_error = _elastic(loads, link, angles)
     return LinkStress(
-        fibre=FIBRES[int(side)],
+        fibre=FIBRES[peak.side],
         stress=stress,
-        place=float(cut.at[n]),
-        stress_at=float(angles[n]),
+        place=peak.place,
+        stress_at=float(angles[peak.angle]),
         tension=max(most.tension, 0.0),
         compression=pressed,
         shear=most.shear,
@@ -310,29 +344,54 @@ def _elastic(
     return elastic.natural_frequency, float(sizes[n]), float(angles[n]), worst
 
 
-def _fatigue(
-    rates: Sequence[float], states: Sequence[SectionLoads]
-) -> tuple[float | None, float | None]:
-    """Cycles of the machine to failure at the worst place, None where it is endless; and safety
-    of the fatigue limit.
+@dataclass(frozen=True, eq=False)
+class FatiguePlace:
+    """Cycles of stress in an outermost fibre of a cut that is the same at all crank angles.
 
-    rates : cycles in each duty state per second of operating time.  states : loads of the link.
+    cut, side : which of a link; side is the number in `FIBRES`.
+    cycles : in a cycle of the machine in each duty state.
     """
-    section = states[0].section
+
+    cut: Cut
+    side: int
+    cycles: Sequence[LoadCycles]
+
+    def largest(self, tensile_strength: float | None) -> float:
+        """Largest amplitude about 0 that does as much as one of the cycles, Pa."""
+        amplitudes = [amplitudes_about_zero(item, tensile_strength) for item in self.cycles]
+        return float(np.max(np.concatenate(amplitudes), initial=0.0))
+
+
+def fatigue_places(states: Sequence[WorkingState], name: str) -> Iterator[FatiguePlace]:
+    """Cycles of stress at all places of a link in all duty states."""
+    loads = [state.forces.sections[name] for state in states]
+    for cut in (item for item in loads[0].cuts if item.fixed):
+        stresses = [item.in_fibres(item.in_cut(cut)) for item in loads]
+        for side in range(len(FIBRES)):
+            yield FatiguePlace(cut, side, [rainflow(item[side], repeats=True) for item in stresses])
+
+
+def critical_place(states: Sequence[WorkingState], name: str) -> FatiguePlace:
+    """Place of a link where a cycle of stress comes nearest to its fatigue limit."""
+    section = states[0].forces.sections[name].section
+    places = fatigue_places(states, name)
+    return max(places, key=lambda place: place.largest(section.tensile_strength))
+
+
+def _fatigue(states: Sequence[WorkingState], name: str) -> tuple[float | None, float | None]:
+    """Cycles of the machine to failure of a link at the worst place, None where it is endless; and
+    safety of the fatigue limit.
+    """
+    section = states[0].forces.sections[name].section
     if section.fatigue_limit is None:
         return None, None
     line = WoehlerLine(section.fatigue_limit, section.knee_cycles, section.slope)
-    damages, largest = dict[tuple[float, bool, int], float](), 0.0
-    for rate, loads in zip(rates, states, strict=True):
-        share = rate / sum(rates)
-        for cut in (item for item in loads.cuts if item.fixed):
-            for side, stress in enumerate(loads.in_fibres(loads.in_cut(cut))):
-                counted = rainflow(stress, repeats=True)
-                place = float(cut.at[0]), cut.behind, side
-                done = share * damage(counted, line, section.tensile_strength)
-                damages[place] = damages.get(place, 0.0) + done
-                amplitudes = amplitudes_about_zero(counted, section.tensile_strength)
-                largest = max(largest, float(np.max(amplitudes, initial=0.0)))
-    worst = max(damages.values(), default=0.0)
+    rates = [_rate(state) for state in states]
+    worst, largest = 0.0, 0.0
+    for place in fatigue_places(states, name):
+        each = [damage(cycles, line, section.tensile_strength) for cycles in place.cycles]
+        shares = (rate / sum(rates) * done for rate, done in zip(rates, each, strict=True))
+        worst = max(worst, sum(shares))
+        largest = max(largest, place.largest(section.tensile_strength))
     safety = None if largest == 0 else section.fatigue_limit / largest if largest < inf else 0.0
     return (1 / worst if worst > 0 else None), safety

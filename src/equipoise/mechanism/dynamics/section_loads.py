@@ -232,19 +232,31 @@ def section_loads(motion: Motion, solved: JointReactions, link: str) -> SectionL
     ends: list[tuple[Array, Array, Array]] = []
     for place, force, torque in _acting_on(motion, solved, link):
         spot = full(motion, (place - begin) / turn, complex)
-        inside = np.round(np.clip(spot.real / length, 0.0, 1.0), SAME_PLACE) * length
+        inside = np.round(np.clip(spot.real / length, 0.0, 1.0), SAME_PLACE) * length + 0.0  # no -0
         own = full(motion, force / turn, complex)
         at.append(inside)
         ends.append((inside, own, full(motion, torque, float) + cross(spot - inside, own)))
     for lump, end in ((mass.first, 0.0), (mass.last, length)):
         own = lump * (still + growing * end)
         ends.append((np.full(len(turn), end), own, cross(1j * mass.aside, own)))
-    grid = np.linspace(0.0, length, CUTS)
-    count = len(turn)
-    cuts = [Cut(np.broadcast_to(s, count), False) for s in grid]
+    return SectionLoads(
+        body.section, length, mass, _cuts(at, length, len(turn)), (still, growing), ends
+    )
+
+
+def _cuts(at: Sequence[Array], length: float, count: int) -> list[Cut]:
+    """Places along a line, each once, where several forces act on one; the last behind all of it.
+
+    at : (N,) where something acts, m.  count : of crank angles.
+    """
+    last = Cut(np.broadcast_to(length, count), True)
+    cuts = [Cut(np.broadcast_to(s, count), False) for s in np.linspace(0.0, length, CUTS)]
     cuts += [Cut(s, behind) for s in at for behind in (False, True)]
-    cuts.append(Cut(np.broadcast_to(length, count), True))
-    return SectionLoads(body.section, length, mass, cuts, (still, growing), ends)
+    by_place: dict[tuple[bytes, bool], Cut] = {}
+    for cut in cuts:
+        by_place.setdefault((cut.at.tobytes(), cut.behind), cut)
+    by_place.pop((last.at.tobytes(), True), None)
+    return [*by_place.values(), last]
 
 
 def _field(
