@@ -43,12 +43,19 @@ NOTHING = 1e-11
 # -- words and samples -----------------------------------------------------------------------------
 
 
-def title(analysis: Analysis, what: str, remark: str = "", of_one: bool = False) -> str:
+def title(
+    analysis: Analysis,
+    what: str,
+    remark: str = "",
+    of_one: bool = False,
+    speed: float | None = None,
+) -> str:
     """What is shown, at which speed, and a remark.
 
     of_one : whether it is of one row where there are several.
+    speed : rad/s, where it is not that of the analysis, as in a state of the duty.
     """
-    values = {"what": what, "speed": told_speed(analysis.motion.speed)}
+    values = {"what": what, "speed": told_speed(analysis.motion.speed if speed is None else speed)}
     if of_one and len(analysis.machine.rows) > 1:
         text = say("{what} of one row, at {speed}", **values)
     else:

@@ -44,7 +44,8 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     points move; ``centrodes`` where links roll; ``gears-LINK`` where a ratio varies, ``belt-LINK``
     where belts pull; where masses are known ``polar``, ``force``,
     ``moment``, ``torque`` (``torque-2`` and so on of further drives), ``joints`` and
-    ``joint-polars``, with ``joints-2`` and so on where there are many; ``spectrum`` where the crank
+    ``joint-polars``, with ``joints-2`` and so on where there are many; ``stress-LINK`` of links
+    with a section and ``haigh-LINK`` of those with a fatigue limit; ``spectrum`` where the crank
     angles are those of a whole cycle, at least 90 in a turn.
 
     Of a single crank angle there is the linkage alone.
@@ -53,6 +54,7 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     """
     from equipoise.figures import couplings, forces, points
     from equipoise.figures.analysis import joint_polars, joints
+    from equipoise.figures.link_strength import link_charts
     from equipoise.figures.linkage import centrodes, linkage, rolling
     from equipoise.figures.side import side
 
@@ -75,7 +77,8 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     if analysis.has_orders:
         pictures["spectrum"] = forces.spectrum(analysis)
     of_joints = (*joints(analysis), *joint_polars(analysis))
-    return pictures | {chart.name: chart for chart in of_joints}
+    pictures |= {chart.name: chart for chart in of_joints}
+    return pictures | {chart.name: chart for chart, _ in link_charts(analysis)}
 
 
 def planting_pictures(figures: PlantingFigures) -> Pictures:

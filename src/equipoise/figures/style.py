@@ -200,6 +200,10 @@ LOOKS |= {
     for number, (color, sign) in enumerate(KINDS)
 }
 LOOKS |= {
+    f"cycles {number}": DrawingStyle(color, 1.0, sign=sign, size=4.5, order=4.1)
+    for number, (color, sign) in enumerate(KINDS)
+}
+LOOKS |= {
     f"instant {name}": DrawingStyle(INK, 1.1, sign=sign, size=5, hollow=True, order=4)
     for name, sign in zip(
         ("pick-up", "entry", "lowest", "release", "exit"), ("D", "v", "o", "s", "^"), strict=True

@@ -301,6 +301,7 @@ def _joints(findings: Findings) -> Iterator[PictureEntry]:
         return
     from equipoise.figures.analysis import joint_polars, joints
     from equipoise.figures.couplings import curves
+    from equipoise.figures.link_strength import link_charts
 
     for chart, caption in curves(findings.analysis):
         yield PictureEntry(chart.name, caption, partial(unchanged, chart), detail=True)
@@ -320,6 +321,8 @@ def _joints(findings: Findings) -> Iterator[PictureEntry]:
         partial(headlines.joint_acting, findings.analysis),
         detail=True,
     )
+    for chart, caption in link_charts(findings.analysis):
+        yield PictureEntry(chart.name, caption, partial(unchanged, chart), detail=True)
 
 
 def _vibration(findings: Findings) -> Iterator[PictureEntry]:

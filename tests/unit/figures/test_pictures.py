@@ -24,7 +24,13 @@ from equipoise.results.result import in_own_words
 from support.chosen import DISTINCT, few
 from support.findings import findings_of
 from support.gallery import Kept, keep
-from unit.figures import balance_samples, samples, tool_samples, vibration_samples
+from unit.figures import (
+    balance_samples,
+    link_samples,
+    samples,
+    tool_samples,
+    vibration_samples,
+)
 from unit.figures.checks import Laid, check
 
 EXAMPLES = (*eq.examples("linkage"), *eq.examples("tool"))
@@ -34,6 +40,7 @@ ODD = {
     **{f"vibration: {kind}": kind for kind in vibration_samples.KINDS},
     **{f"balancing: {kind}": kind for kind in balance_samples.EVERY},
     **{f"tools: {kind}": kind for kind in tool_samples.MACHINES},
+    **{f"links: {kind}": kind for kind in link_samples.EVERY},
 }
 
 
@@ -55,6 +62,7 @@ def of_odd(name: str) -> dict[str, Chart]:
         "vibration": vibration_samples.pictures,
         "balancing": balance_samples.pictures,
         "tools": tool_samples.pictures,
+        "links": link_samples.pictures,
     }
     return rooms[room](kind)
 
