@@ -21,7 +21,7 @@ from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phasing import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.rounding import NEARLY
-from equipoise.balancing.solution import Solution
+from equipoise.balancing.solution import SAME_FRICTION, Solution
 from equipoise.balancing.workshop import Change, covers
 from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, all_of
@@ -570,18 +570,34 @@ def bending_notes(original: Machine) -> Iterator[Note]:
     return slender_links(original.links, original.drive.speed)
 
 
+def _of_friction(solution: Solution) -> Note:
+    """That friction changes with what is free, and how far the bound holds for that."""
+    outputs = all_of([*solution.problem.rubs], commas=True)
+    if solution.settled:
+        return Note(
+            "friction in joints makes {outputs} nonlinear in the masses; it was recomputed from "
+            "each result until the objectives and limits changed by less than {tolerance:.0e} of "
+            "their values before; the bound assumes that friction is constant",
+            outputs=outputs,
+            tolerance=SAME_FRICTION,
+        )
+    return Note(
+        "friction in joints makes {outputs} nonlinear in the masses; it was recomputed from each "
+        "result but did not settle: objectives and limits with the friction of this result differ "
+        "by up to {change:.2g} of their values before from those with the friction that was "
+        "assumed; the bound assumes the latter",
+        outputs=outputs,
+        change=solution.friction_change,
+    )
+
+
 def _notes(solution: Solution) -> Iterator[Note]:
     """What a reader has to know."""
     problem, rows = solution.problem, len(solution.problem.machine.rows)
     if problem.machine.drive.acceleration:
         yield Note("the acceleration of the drive is ignored: the crank speed is taken as constant")
     if problem.rubs:
-        yield Note(
-            "friction in joints makes {outputs} nonlinear in the masses: it was taken from the "
-            "machine before and computed anew with each result, until that stayed as it was; the "
-            "bound holds for friction as it is there",
-            outputs=all_of([*problem.rubs], commas=True),
-        )
+        yield _of_friction(solution)
     if problem.reads_gauges and problem.supports_more:
         yield Note(
             "added mass increases the mass of the support, which makes the problem nonlinear: "

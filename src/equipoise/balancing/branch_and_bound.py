@@ -127,6 +127,7 @@ def minimise(
     scale: float = 1.0,
     progress: Progress | None = None,
     above: float = inf,
+    most: int = MOST_NODES,
 ) -> ProvedSolution:
     """The least cost.
 
@@ -136,12 +137,13 @@ def minimise(
     scale : of the cost.
     above : a cost that has been reached already; a problem whose bound lies above is not looked
         into, and its bound returned as if it were its cost.
+    most : programs that are solved at most once there is a solution.
 
     Raises
     ------
     NoSolutionError : the constraints cannot be met.
     """
-    return _Search(program, squares, scale).run(progress, above)
+    return _Search(program, squares, scale).run(progress, above, most)
 
 
 class _Search:
@@ -152,7 +154,7 @@ class _Search:
         self.nodes = 0
         self.lost = inf  # the least bound of intervals that could not be looked into
 
-    def run(self, progress: Progress | None, above: float) -> ProvedSolution:
+    def run(self, progress: Progress | None, above: float, most: int) -> ProvedSolution:
         self.nodes += 1
         intervals = tuple((square.low, square.high) for square in self.squares)
         root = _Node(intervals, self._solved(self.program))  # which keeps to the intervals already
@@ -164,7 +166,7 @@ class _Search:
         order = count()
         waiting = [(root.solved.bound, next(order), root)]
         bound = root.solved.bound
-        while waiting and self.nodes < MOST_NODES:
+        while waiting and self.nodes < (MOST_NODES if self.best is None else most):
             bound = waiting[0][0]
             if self._closed(bound):
                 break

@@ -39,6 +39,8 @@ WITHOUT_EFFECT = 1e-9
 """Over the RMS of an output: change by a unit of every number that is taken for none."""
 ROUNDING = 1e-11
 """Over the effect of a unit of a number: an objective that is nothing but rounding."""
+KEPT = 1e-8
+"""Over the value before: by how much a limit may be passed, as solvers do."""
 HIGHEST = 100
 """Order that is told; what 720 angles in a turn tell well."""
 ADDED = Note("added mass")
@@ -174,6 +176,32 @@ class Problem:
         )
         return self.plan.combined(
             [max(measured(s.at(x), how, s.sampling) for s in signals) for how, signals in each]
+        )
+
+    def friction_change(self, numbers: list[Array], machine: Machine) -> float:
+        """By how much objectives and limits of a machine change at most, over their scales, from
+        the friction that is taken as known to its own.
+
+        numbers : of the parts, which make the machine.
+        """
+        asked = [objective for objective in self.asked if objective.output in self.rubs]
+        x, own = np.concatenate(numbers), self.values_of(machine, asked)
+        changes = [
+            abs(
+                value / self.scale(item)
+                - max(measured(s.at(x), item.measure, s.sampling) for s in self.signals[item.name])
+            )
+            for item, value in zip(asked, own, strict=True)
+        ]
+        return max(changes, default=0.0)
+
+    def keeps_limits_with_friction(self, machine: Machine) -> bool:
+        """Whether a machine keeps the limits of what its friction changes."""
+        limits = [limit for limit in self.plan.limits if limit.objective.output in self.rubs]
+        values = self.values_of(machine, [limit.objective for limit in limits])
+        return all(
+            value - limit.most(self.before[limit.name]) <= KEPT * self.scale(limit.objective)
+            for limit, value in zip(limits, values, strict=True)
         )
 
     def scale(self, objective: Objective) -> float:

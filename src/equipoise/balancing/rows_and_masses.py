@@ -27,7 +27,8 @@ from equipoise.balancing.phase_search import PhaseSearch, Progress, stepped, wit
 from equipoise.balancing.phasing import Phasing, phasing_of
 from equipoise.balancing.problem import WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import NoSolutionError, Program
-from equipoise.balancing.solution import Solution, solve_problem
+from equipoise.balancing.solution import ROUNDS as FRICTION_ROUNDS
+from equipoise.balancing.solution import SAME_FRICTION, Solution, solve_problem
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
@@ -59,6 +60,28 @@ class PhaseMassSolution:
     solution: Solution
 
 
+@dataclass(frozen=True, eq=False)
+class EachRow:
+    """What objectives and limits read of each row, with the friction that a problem takes as known.
+
+    problem : of masses.  measured : objectives, and limits of what phases change.
+    """
+
+    problem: Problem
+    measured: list[Objective]
+
+    @cached_property
+    def jumping(self) -> list[JumpingDesigns | None]:
+        """Of each: the rows as functions of the crank angle, where forces jump."""
+        return [jumping_designs(self.problem.effects, item) for item in self.measured]
+
+    @cached_property
+    def amplitudes(self) -> list[Array]:
+        """Signals of each row where the support carries the same with any mass."""
+        problem = self.problem
+        return [of_each_row(problem.effects, item, problem.close) for item in self.measured]
+
+
 class JointPhaseMassOptimizer:
     """Masses and phases of one problem.
 
@@ -67,6 +90,7 @@ class JointPhaseMassOptimizer:
 
     def __init__(self, problem: Problem, search: PhaseSearch) -> None:
         self.problem, self.search = _counting_alike(problem, search), search
+        self.each_row = EachRow(self.problem, self._measured)
         self.best: PhaseMassSolution | None = None
         self.tries, self.turns = TRIES, problem.effects.motion.turns
         self.after: Step = lambda: None
@@ -104,6 +128,7 @@ class JointPhaseMassOptimizer:
                 Note("no phases were found with which masses keep the limits")
             )
         self._in_turn(self.best.phases, self.best.solution, ROUNDS, NO_GAIN)
+        self._settle_friction()
         proof, cost = self._proof(progress), self.search.cost
         needed = len(self._measured) < len(self.problem.asked)  # for limits in joints
         if needed or np.min(cost.values(alone)) > self.best.cost + NO_GAIN * cost.whole:
@@ -161,7 +186,25 @@ class JointPhaseMassOptimizer:
         after = replace(self.search, machine=machine, known_cost=self._cost(solution))
         best = after.best(np.vstack([after.present, self.best.phases]))
         phasing = phasing_of(after, best, proof)
-        return replace(solution, machine=phasing.machine), phasing
+        # with the friction that the proof takes as known
+        return replace(solution, problem=self._turned(best), machine=phasing.machine), phasing
+
+    def _settle_friction(self) -> None:
+        """Take the friction of the best as known, and look for better masses and phases with it,
+        until it is that of the best.
+        """
+        assert self.best is not None
+        for _ in range(FRICTION_ROUNDS if self.problem.rubs else 0):
+            numbers = self.best.solution.numbers
+            machine = self.problem.machine_with(numbers)
+            if self.problem.friction_change(numbers, machine) <= SAME_FRICTION:
+                break
+            self.problem = self.problem.linearized_at(numbers)
+            self.each_row = EachRow(self.problem, self._measured)
+            known, self.best = self.best, None
+            self._offer(known.phases, known.solution)
+            self._in_turn(known.phases, known.solution, ROUNDS, NO_GAIN)
+            self.best = self.best or known
 
     def _improved(self, phases: Array, cost: float) -> tuple[Array, float]:
         """Masses and phases in turn, begun where a box looks better."""
@@ -200,14 +243,19 @@ class JointPhaseMassOptimizer:
             phases = phases - phases[0]
 
     def _turned(self, phases: Array) -> Problem:
-        """The problem with rows in phases (m,) relative to row 1; what was before stays."""
+        """The problem with rows in phases (m,) relative to row 1; what was before stays, and
+        friction that is taken as known.
+        """
+        problem, rubbing = self.problem, self.problem.effects.rubbing
         start, like = (
-            with_phases(item, phases, self.period)
-            for item in (self.problem.start, self.problem.machine)
+            with_phases(item, phases, self.period) for item in (problem.start, problem.machine)
         )
-        counts = self.problem.before
         return replace(
-            self.problem, start=start, close=LinearizationPoint(like), counts=counts, known=None
+            problem,
+            start=start,
+            close=LinearizationPoint(like),
+            counts=problem.before,
+            known=rubbing and Effects(start, problem.parts, rubbing=rubbing),
         )
 
     def _offer(self, phases: Array, solution: Solution) -> float:
@@ -240,27 +288,16 @@ class JointPhaseMassOptimizer:
         near : whose mass the support has to carry.
         """
         if not self._bent:
-            return self._of_any
+            return self.each_row.amplitudes
         return [
             of_each_row(self.problem.effects, item, LinearizationPoint(machine))
             for item in self._measured
         ]
 
-    @cached_property
-    def _jumping(self) -> list[JumpingDesigns | None]:
-        """Of each: the rows as functions of the crank angle, where forces jump."""
-        return [jumping_designs(self.problem.effects, item) for item in self._measured]
-
     @property
     def _bent(self) -> bool:
         """Whether the support has to carry more with other masses."""
         return self.problem.reads_gauges and self.problem.supports_more
-
-    @cached_property
-    def _of_any(self) -> list[Array]:
-        """Signals of each row where the support carries the same with any mass."""
-        problem = self.problem
-        return [of_each_row(problem.effects, item, problem.close) for item in self._measured]
 
     @cached_property
     def _scales(self) -> list[float]:
@@ -277,7 +314,7 @@ class JointPhaseMassOptimizer:
         """The cost as a function of phases, for a share of the numbers of a solution."""
         terms, numbers = [], share * np.concatenate(solution.numbers)
         columns = self._amplitudes(solution.machine)
-        each_term = zip(self._measured, self._scales, columns, self._jumping, strict=True)
+        each_term = zip(self._measured, self._scales, columns, self.each_row.jumping, strict=True)
         for item, scale, each, designs in each_term:
             whole = each[0] + np.tensordot(numbers, each[1:], 1)
             jumping = None if designs is None else designs.at(numbers)
@@ -319,7 +356,7 @@ class JointPhaseMassOptimizer:
         low, high = np.array([least(e) for e in ends]), -np.array([least(-e) for e in ends])
         start = np.clip(np.concatenate(self.best.solution.numbers)[used], low, high)
         columns = tuple(each[1:][used] for each in amplitudes)
-        jumping = tuple(each and each.of_numbers(used.tolist()) for each in self._jumping)
+        jumping = tuple(each and each.of_numbers(used.tolist()) for each in self.each_row.jumping)
         return Numbers(columns, low, high, start, least, jumping)
 
 

@@ -7,13 +7,14 @@ limits, the fewest that clash are told, and how far one of them can be met.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 from math import inf, isfinite
 
 import numpy as np
 
-from equipoise.balancing.branch_and_bound import ProvedSolution, minimise
+from equipoise.balancing.branch_and_bound import MOST_NODES, ProvedSolution, minimise
 from equipoise.balancing.design_variables import DesignVariables, MovedCenter
 from equipoise.balancing.objectives import mean_square_rows, unit_of
 from equipoise.balancing.problem import ADDED, WITHOUT_EFFECT, Problem
@@ -36,8 +37,11 @@ solver and as read off the signals."""
 STILL, SETTLED, ROUNDS = 1e-9, 1e-8, 20
 """Changes of cost and of numbers at which gauges have been read near enough; steps from near to
 nearer."""
-SAME_COST = 1e-8
-"""Change of cost, over that before, at which friction is that of the solution."""
+SAME_FRICTION = 1e-8
+"""Change of objectives and limits, over their values before, at which friction has settled."""
+FEW_NODES, PROOFS = 3, 3
+"""Programs that are solved at most while friction has not settled; how often a proof may find
+better numbers elsewhere, from which friction has to settle again."""
 SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.003)
 """Of a step towards the best of a nearby problem that are tried."""
 
@@ -60,6 +64,26 @@ class Solution:
     weighed: int = 1
     gears_left: bool = False
 
+    @cached_property
+    def friction_change(self) -> float:
+        """By how much objectives and limits change at most, over their values before, from the
+        friction that was taken as known to that of the solution itself; 0 without friction.
+        """
+        return self.problem.friction_change(self.numbers, self.machine)
+
+    @property
+    def settled(self) -> bool:
+        """Whether the friction that was taken as known is that of the solution itself."""
+        return self.friction_change <= SAME_FRICTION
+
+
+class LimitsClashError(UsageError):
+    """Limits cannot be met; `limits` has the names of those that clash."""
+
+    def __init__(self, message: Note, limits: Sequence[str]) -> None:
+        super().__init__(message)
+        self.limits = tuple(limits)
+
 
 def solve_problem(
     problem: Problem, progress: Progress | None = None, above: float = inf
@@ -70,10 +94,11 @@ def solve_problem(
     above : of several problems, the least cost so far.
     """
     problem = _begun(problem)
-    solution = _solve_once(problem, progress, above)
     bent = problem.reads_gauges and problem.supports_more
+    solve = _with_its_friction if problem.rubs else _solve_once
+    solution = solve(problem, progress, above)
     if not bent and not problem.flips:
-        return _with_its_friction(solution, progress) if problem.rubs else solution
+        return solution
     cost, limits_gauges = problem.cost_of(solution.machine), bool(_gauged(problem))
     for _ in range(ROUNDS):
         linearized = problem.linearized_at(solution.numbers)
@@ -85,22 +110,85 @@ def solve_problem(
         else:
             better = _on_the_way(linearized, solution, towards, cost)
         if better is None:
-            return replace(solution, best=towards.best)
+            return replace(solution, problem=linearized, best=towards.best)
         solution, cost = better, problem.cost_of(better.machine)
     return solution
 
 
-def _with_its_friction(solution: Solution, progress: Progress | None) -> Solution:
-    """The best with the friction of its own forces, from that with the friction of a machine near
-    it, whose limits it keeps with that friction only.
+def _with_its_friction(problem: Problem, progress: Progress | None, above: float = inf) -> Solution:
+    """The best numbers with the friction of their own forces."""
+    try:
+        return _settled(problem, progress, above)
+    except LimitsClashError as error:
+        kept = _nearest_to_limits(problem, error)
+    try:
+        solution = _settled(problem.linearized_at(kept), progress, above)
+        if solution.settled:
+            return solution
+    except LimitsClashError:  # with the friction of a result, if not with that of these numbers
+        pass
+    return _within_limits(problem, kept, progress)
+
+
+def _settled(problem: Problem, progress: Progress | None, above: float) -> Solution:
+    """The best numbers with the friction of the problem, then of each result in turn, until that
+    is its own.  Only then is it proved that nothing is better, as that takes most of the time.
     """
-    problem = solution.problem
+    solution, proofs = _solve_once(problem, None, most=FEW_NODES), 0
     for _ in range(ROUNDS):
-        before = problem.cost_of(solution.machine)
-        solution = _solve_once(problem.linearized_at(solution.numbers), progress)
-        if abs(problem.cost_of(solution.machine) - before) <= SAME_COST * problem.whole:
+        if solution.settled:
+            if solution.best.nodes < FEW_NODES or solution.best.bound > above:
+                return solution
+            solution, proofs = _solve_once(solution.problem, progress), proofs + 1
+            if solution.settled or proofs == PROOFS:
+                return solution
+        linearized = problem.linearized_at(solution.numbers)
+        solution = _solve_once(linearized, None, most=FEW_NODES)
+    return _solve_once(solution.problem, progress)
+
+
+def _within_limits(problem: Problem, kept: list[Array], progress: Progress | None) -> Solution:
+    """Good numbers with the friction of their own forces, where limits leave so little room that
+    they cannot be kept with that of other numbers; the gap tells how much better others may be.
+
+    kept : numbers that keep the limits with their own friction.
+
+    Raises
+    ------
+    LimitsClashError : they do not.
+    """
+    for _ in range(ROUNDS):
+        linearized = problem.linearized_at(kept)
+        towards = _solve_once(linearized, None, most=FEW_NODES)
+        cost = problem.cost_of(linearized.close.machine)
+        start = replace(towards, numbers=kept, machine=linearized.close.machine)
+        better = _on_the_way(linearized, start, towards, cost)
+        if better is None:
             break
-    return solution
+        kept = better.numbers
+    linearized = problem.linearized_at(kept)
+    proved = _solve_once(linearized, progress)
+    return replace(proved, numbers=kept, machine=linearized.close.machine)
+
+
+def _nearest_to_limits(problem: Problem, error: LimitsClashError) -> list[Array]:
+    """Numbers at which the first of the clashing outputs that depend on friction is least, with
+    its own friction.
+
+    With that of another machine a limit may look as if it could not be met, or by how much.
+
+    Raises
+    ------
+    LimitsClashError : the other limits cannot be met either, or friction has no part in it.
+    """
+    clashing = (limit for limit in problem.plan.limits if limit.name in error.limits)
+    limit = next((item for item in clashing if item.objective.output in problem.rubs), None)
+    if limit is None or not problem.moves(limit.objective):
+        raise error
+    others = tuple(other for other in problem.plan.limits if other != limit)
+    plan = replace(problem.plan, objectives=(limit.objective,), limits=others)
+    first = replace(problem, plan=plan, counts=problem.before, known=problem.effects)
+    return _with_its_friction(first, None).numbers
 
 
 def _begun(problem: Problem) -> Problem:
@@ -126,19 +214,23 @@ def _gauged(problem: Problem) -> list[Limit]:
 def _on_the_way(
     problem: Problem, solution: Solution, towards: Solution, cost: float
 ) -> Solution | None:
-    """A solution between two that costs less than the first; None where there is none."""
+    """A solution between two that costs less than the first, and with friction keeps the limits;
+    None where there is none.
+    """
     for share in SHARES:
         pairs = zip(solution.numbers, towards.numbers, strict=True)
         numbers = problem.project_feasible(
             [(1 - share) * item + share * two for item, two in pairs]
         )
         machine = problem.machine_with(numbers)
-        if problem.cost_of(machine) < cost - STILL:
+        if problem.cost_of(machine) < cost - STILL and problem.keeps_limits_with_friction(machine):
             return replace(towards, numbers=numbers, machine=machine)
     return None
 
 
-def _solve_once(problem: Problem, progress: Progress | None, above: float = inf) -> Solution:
+def _solve_once(
+    problem: Problem, progress: Progress | None, above: float = inf, most: int = MOST_NODES
+) -> Solution:
     problem.check_influence()
     numbers = closed_form(problem)
     if numbers is not None:
@@ -150,7 +242,7 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
         return Solution(problem, best, numbers, machine, Note("closed form"))
     built = problem.built
     try:
-        best = minimise(built.program, built.squares, problem.whole, progress, above)
+        best = minimise(built.program, built.squares, problem.whole, progress, above, most)
     except StalledError as error:
         raise UsageError(
             Note("{error}; change a limit a little, or free less", error=error.note)
@@ -258,13 +350,14 @@ def infeasibility(problem: Problem) -> UsageError:
         sentence = all_of([_limit_in_words(problem, name) for name in clash], commas=True)
         alone = len(clash) == 1
         which = Note("this limit cannot be met") if alone else Note("these limits clash")
-        return UsageError(
+        return LimitsClashError(
             Note(
                 "{which}: {told}; {way_out}",
                 which=which,
                 told=sentence,
                 way_out=_way_out(problem, clash),
-            )
+            ),
+            clash,
         )
     return UsageError(
         Note(
@@ -308,7 +401,8 @@ def _way_out(problem: Problem, clash: list[str]) -> Note:
     others = tuple(other for other in plan.limits if other.name in clash and other != limit)
     relaxed = replace(plan, objectives=(limit.objective,), limits=others)
     try:
-        asked = Problem(problem.machine, relaxed, problem.start, problem.parts, problem.close)
+        # with the same friction, and the same flanks of gears
+        asked = replace(problem, plan=relaxed, counts=problem.before, known=problem.effects)
         least = asked.built.program.solve().value * asked.scale(limit.objective)
     except NoSolutionError:
         return Note("allow more of one of them")
@@ -316,8 +410,10 @@ def _way_out(problem: Problem, clash: list[str]) -> Note:
     unit = unit_of(limit.objective, problem.machine)
     text = {"name": limit.name, "least": least, "unit": unit}
     note = Note("{name} can become {least:.4g} {unit} at the least", **text)
-    if len(clash) == 1:
-        return note
     if len(clash) == 2:
-        return Note("{found} while the other is kept", found=note)
-    return Note("{found} while the others are kept", found=note)
+        note = Note("{found} while the other is kept", found=note)
+    if len(clash) > 2:
+        note = Note("{found} while the others are kept", found=note)
+    if limit.objective.output not in problem.rubs:
+        return note
+    return Note("{found}, with the friction of the best machine found", found=note)
