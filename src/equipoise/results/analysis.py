@@ -20,6 +20,10 @@ from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.dynamics.link_stress import LinkStress, link_stresses
 from equipoise.mechanism.dynamics.losses import Losses, losses_of
+from equipoise.mechanism.dynamics.plain_bearing_duty import (
+    PlainBearingDuty,
+    plain_bearing_duties,
+)
 from equipoise.mechanism.dynamics.reactions import indeterminate_reactions
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.jumps import jumps_of, resolved
@@ -144,6 +148,11 @@ class Analysis(Result):
         crank angles are no whole cycle.
         """
         return {} if self.solved is None else bearing_lives(self.resolved.forces)
+
+    @cached_property
+    def plain_bearings(self) -> Mapping[str, PlainBearingDuty]:
+        """Pressure, and pressure times speed, of plain bearings by joint."""
+        return {} if self.solved is None else plain_bearing_duties(self.resolved.forces)
 
     @cached_property
     def sections(self) -> Mapping[str, LinkStress]:

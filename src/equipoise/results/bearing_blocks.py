@@ -9,7 +9,6 @@ from equipoise.i18n import say
 from equipoise.mechanism.outputs.declared import joint_named
 from equipoise.quantities import percent
 from equipoise.results.blocks import Block, Cell, Column, Table, Value
-from equipoise.results.machine_blocks import largest
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -19,7 +18,7 @@ def bearing_blocks(analysis: Analysis) -> Iterator[Block]:
     """Tables of rolling and of plain bearings, where there are any."""
     if analysis.rolling_bearings:
         yield _rolling(analysis)
-    if analysis.resolved.forces.plain_bearings:
+    if analysis.plain_bearings:
         yield _plain(analysis)
 
 
@@ -57,16 +56,25 @@ def _rolling(analysis: Analysis) -> Table:
 
 
 def _plain(analysis: Analysis) -> Table:
-    motion, rows = analysis.resolved.motion, []
-    for name, plain_bearing in analysis.resolved.forces.plain_bearings.items():
-        pressure, warms = (
-            motion.figures(x) for x in (plain_bearing.pressure, plain_bearing.pressure_speed)
+    rows = [
+        (
+            joint_named(name),
+            Value(item.pressure, at=item.pressure_at),
+            Value(item.pressure_speed, at=item.pressure_speed_at),
+            Value(item.mean_pressure_speed),
         )
-        rows.append((joint_named(name), largest(pressure), largest(warms), Value(warms.mean)))
+        for name, item in analysis.plain_bearings.items()
+    ]
     columns = (
         "",
         Column(say("largest pressure"), "modulus"),
         Column(say("largest pressure times speed"), "pressure times speed"),
         Column(say("mean"), "pressure times speed"),
     )
-    return Table.of(say("Plain bearings in joints; largest with its crank angle"), columns, rows)
+    title = say("Plain bearings in joints; largest with its crank angle")
+    if states := len(analysis.machine.duty):
+        title = say(
+            "Plain bearings in joints, over {count} duty states; largest with its crank angle",
+            count=states,
+        )
+    return Table.of(title, columns, rows)

@@ -18,6 +18,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.bearing_life import BearingLife
 from equipoise.mechanism.dynamics.cam_contacts import CamFigures
 from equipoise.mechanism.dynamics.link_stress import LinkStress
+from equipoise.mechanism.dynamics.plain_bearing_duty import PlainBearingDuty
 from equipoise.mechanism.dynamics.reactions import refuse_unbounded
 from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.kinematics.strokes import DeadPosition, Stroke, declared_figures
@@ -358,8 +359,12 @@ def tops_of(outputs: Iterable[tuple[AnalysisOutput, Array]]) -> dict[Dimension |
     return tops
 
 
-NAMED_FIGURES: dict[str, type] = {"cams": CamFigures, "rolling_bearings": BearingLife,
-                                  "sections": LinkStress}  # fmt: skip
+NAMED_FIGURES: dict[str, type] = {
+    "cams": CamFigures,
+    "rolling_bearings": BearingLife,
+    "plain_bearings": PlainBearingDuty,
+    "sections": LinkStress,
+}
 """Classes with declared figures by attribute of an `Analysis`, which maps names to them, and key
 of the JSON object."""
 

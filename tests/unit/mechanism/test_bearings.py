@@ -155,6 +155,38 @@ def test_pressure_of_a_plain_bearing() -> None:
     assert "joints.B.pressure [Pa]" in to_csv(found).partition("\n")[0]
 
 
+@pytest.mark.parametrize("gas", [True, False])
+def test_pressure_over_duty_states_by_hand(gas: bool) -> None:
+    """Second route: each state alone, from a machine that always works so, and its mean by hand."""
+    machine = engine() if gas else replace(engine(), loads=())
+    shares = np.array([state.share for state in DUTY]) / 4.0
+    alone, means = [], []
+    for state in DUTY:
+        speed = machine.drive.speed if state.speed is None else state.speed
+        slower = replace(machine, loads=state.scaled(machine.loads)).with_drive(speed=speed)
+        analysis = eq.analyze(slower)
+        alone.append(analysis.plain_bearings["B"])
+        turning = analysis.motion.links["rod"].angular_velocity
+        turning = turning - analysis.motion.links["crank"].angular_velocity
+        force = analysis.forces.joints["B"].size
+        means.append(float(np.mean(force * np.abs(turning))) / (2 * WIDTH))
+    found = eq.analyze(replace(machine, duty=DUTY))
+    (bearing,) = found.plain_bearings.values()
+    worst = max(alone, key=lambda item: item.pressure)
+    assert (bearing.pressure, bearing.pressure_at) == (worst.pressure, worst.pressure_at)
+    warmest = max(alone, key=lambda item: item.pressure_speed)
+    assert bearing.pressure_speed == warmest.pressure_speed
+    assert bearing.pressure_speed_at == warmest.pressure_speed_at
+    # the force of the gas jumps between two of the 360 crank angles of a mean by hand
+    near = pytest.approx(shares @ means, rel=1 / 360 if gas else 1e-12)
+    assert bearing.mean_pressure_speed == near
+    assert "Plain bearings in joints, over 3 duty states" in " ".join(map(str, found.blocks()))
+    same = eq.analyze(replace(machine, duty=(DutyState(7.0),))).plain_bearings
+    assert same == eq.analyze(machine).plain_bearings
+    assert [*eq.analyze(machine, [0.0, 0.1]).plain_bearings] == ["B"]
+    assert dimension_of(machine, "analyze", "plain_bearings.B.pressure_at") == "angle"
+
+
 def test_they_change_neither_motion_nor_forces_and_survive() -> None:
     machine, bare = engine(), replace(engine(), joints=())
     text = survives(machine)
