@@ -327,7 +327,7 @@ def test_a_quick_return_whose_slot_reaches_the_crank_pin() -> None:
 
 def test_weakest_position_of_a_dyad() -> None:
     """Squared sine of the smallest transmission angle, and where it is."""
-    number, angle = eq.mechanism.assemble(crank_rocker()).cycle.weakest["C"]
+    number, angle = eq.mechanism.assemble(crank_rocker()).weakest["C"]
     names = eq.mechanism.four_bar(crank_rocker())
     assert names is not None
     assert names.transmission_min is not None
@@ -354,7 +354,7 @@ def geared_dyad(length: float) -> eq.Machine:
 
 def test_a_dyad_behind_gears_is_watched_too() -> None:
     given = geared_dyad(1.4)
-    number, angle = eq.mechanism.assemble(given).cycle.weakest["J"]
+    number, angle = eq.mechanism.assemble(given).weakest["J"]
     points = eq.move(given, 7200).points
     h, j, k = (points[name].place for name in "HJK")
     sine = np.sin(np.angle((h - j) / (k - j))) ** 2

@@ -1,13 +1,13 @@
 """One whole cycle of a linkage: after how many turns it closes, and whether the crank can turn.
 
 The steps are run once on a fine grid of crank angles, each group in turn.  That run tells the
-running angle of every link, from which any other crank angle is placed in its turn, and the
-smallest value of each dyad's margin, which must stay above zero.
+running angle of every link, from which any other crank angle is placed in its turn, and each
+dyad's margin, which must stay above zero.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from math import pi
 from typing import Any
@@ -38,14 +38,13 @@ class Cycle:
     turns : turns of the crank after which every link is back.
     windings : link -> whole turns that it makes in one cycle.
     tables : name -> values on the grid of crank angles, from which references are read.
-    weakest : inner joint of a dyad -> smallest squared sine of its transmission angle, and the
-        crank angle (rad) of it.
+    margins : inner joint of a dyad -> squared sine of its transmission angle on the grid.
     """
 
     turns: int
     windings: Mapping[str, int]
     tables: Mapping[str, Array]
-    weakest: Mapping[str, tuple[float, float]]
+    margins: Mapping[str, Array]
 
     @cached_property
     def rocking(self) -> frozenset[str]:
@@ -68,6 +67,26 @@ class Cycle:
         value = table[..., left] * (1 - share) + table[..., left + 1] * share
         rise = np.asarray(table[..., -1] - table[..., 0])
         return value + rise[..., None] * cycles  # type: ignore[no-any-return]
+
+
+def weakest(
+    machine: Machine, groups: Sequence[Group], cycle: Cycle
+) -> dict[str, tuple[float, float]]:
+    """Inner joint of a dyad -> smallest squared sine of its transmission angle, between the points
+    of the grid too, and the crank angle of it, rad.
+    """
+    smallest = {}
+    for number, group in enumerate(groups, 1):
+        if group.margin is not None:
+            margin = cycle.margins[group.joint]
+            theta = _grid_angles(cycle.turns, len(margin) - 1)
+            known = FullTurn(machine, cycle.turns, theta, cycle.reference, groups[:number])
+            smallest[group.joint] = known.smallest(group, margin)
+    return smallest
+
+
+def _grid_angles(turns: int, intervals: int) -> Array:
+    return np.linspace(0.0, 2 * pi * turns, intervals + 1)
 
 
 REPEAT = "the-motion-does-not-repeat"
@@ -112,7 +131,7 @@ def close(
             continue
         if check is not None:
             check(grid.state)
-        return Cycle(turns, grid.windings, grid.tables, grid.weakest)
+        return Cycle(turns, grid.windings, grid.tables, grid.margins)
     raise MotionError(
         Note(
             "the motion does not repeat within {tried} turns of the crank; give gears "
@@ -136,7 +155,7 @@ class _Grid:
     def __init__(self, machine: Machine, turns: int, guess: Cycle | None) -> None:
         self.machine, self.turns = machine, turns
         points = POINTS_PER_TURN if turns <= MANY_TURNS else FEWER_POINTS
-        self.theta = np.linspace(0.0, 2 * pi * turns, points * turns + 1)
+        self.theta = _grid_angles(turns, points * turns)
         self.state = initial_state(machine, self.theta)
         for name, table in guess.tables.items() if guess is not None else ():
             self.state[f"near({name})"] = table
@@ -147,7 +166,7 @@ class _Grid:
         self.windings: dict[str, int] = {FRAME: 0}
         for link, angle in self.tables.items():
             self.windings[link] = round(float(angle[-1] - angle[0]) / (2 * pi))
-        self.weakest: dict[str, tuple[float, float]] = {}
+        self.margins: dict[str, Array] = {}
 
     def add(self, group: Group) -> None:
         """Run one group, check that it moves through the cycle, and record its angles."""
@@ -155,9 +174,11 @@ class _Grid:
             run(group.motion, self.state)
         self.done.append(group)
         if group.margin is not None:
+            margin = np.broadcast_to(self.state[group.margin], self.theta.shape)
+            margin = np.where(np.isfinite(margin), margin, -np.inf)
             so_far = Cycle(self.turns, {}, self.tables, {}).reference
-            known = FullTurn(self.machine, self.turns, self.theta, so_far, self.done)
-            self.weakest[group.joint] = known.weakest(group, self.state[group.margin])
+            FullTurn(self.machine, self.turns, self.theta, so_far, self.done).check(group, margin)
+            self.margins[group.joint] = margin
         self.record_windings(group)
 
     def record_windings(self, group: Group) -> None:

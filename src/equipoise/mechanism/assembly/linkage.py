@@ -29,7 +29,7 @@ from equipoise.keys.kinds import choice
 from equipoise.mechanism.assembly import assembly_modes
 from equipoise.mechanism.assembly.assembly_modes import surplus_cranks
 from equipoise.mechanism.assembly.builder import Builder, Group
-from equipoise.mechanism.assembly.cycle import Cycle, close
+from equipoise.mechanism.assembly.cycle import Cycle, close, weakest
 from equipoise.mechanism.assembly.groups import hung
 from equipoise.mechanism.assembly.joints import (
     Structure,
@@ -167,6 +167,17 @@ class Linkage(Brief):
             self.memory["cycle"] = close(self.machine, self.groups, self.reference_cycle, check)
         cycle: Cycle = self.memory["cycle"]
         return cycle
+
+    @remembered
+    def weakest(self) -> Mapping[str, tuple[float, float]]:
+        """Inner joint of a dyad -> smallest squared sine of its transmission angle over a cycle,
+        and the crank angle of it, rad.
+
+        Raises
+        ------
+        RangeError, ChangePointError, MotionError : as of `cycle`.
+        """
+        return weakest(self.machine, self.groups, self.cycle)
 
     def of(self, machine: Machine) -> Linkage:
         """Linkage of a machine that differs in nothing but masses, speed or gravity."""

@@ -217,7 +217,7 @@ def questions(linkage: Linkage) -> Iterator[Note | str]:
     """
     machine = linkage.machine
     try:
-        weakest = linkage.cycle.weakest
+        weakest = linkage.weakest
     except (RangeError, ChangePointError, MotionError):
         return
     yield from crossings(linkage)

@@ -150,7 +150,7 @@ def _growing(linkage: Linkage) -> IndeterminateReactions:
     shared, through = linkage.shared, [group for group in linkage.groups if group.through]
     if shared is None or not through or not _turns(linkage):
         return IndeterminateReactions()
-    weakest = [linkage.cycle.weakest.get(group.joint, (0.0, 0.0))[1] for group in through]
+    weakest = [linkage.weakest.get(group.joint, (0.0, 0.0))[1] for group in through]
     weak = shared.strength(linkage.solve(np.array(weakest))) < WEAK
     for group, at in compress(zip(through, weakest, strict=True), weak):
         growing = shared.growing_joints(
