@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pytest
 from playwright.sync_api import expect
 
 import equipoise as eq
@@ -54,6 +55,7 @@ speed = "60 rpm"
 """A crank alone: neither a moment about its pivot nor a torque."""
 
 
+@pytest.mark.exhaustive
 def test_every_axis_has_three_numbers(live: Live) -> None:
     for name in SHOWN:
         live.page.get_by_role("combobox", name="Example").select_option(name)
@@ -72,6 +74,7 @@ def test_every_axis_has_three_numbers(live: Live) -> None:
             assert live.page.evaluate(CLIPPED) == [], width
 
 
+@pytest.mark.exhaustive
 def test_the_chart_against_speed_stays(live: Live) -> None:
     """Whatever else is shown of the same machine."""
     page = live.page
@@ -100,6 +103,7 @@ INSIDE = """one => {
 """Whether something is seen whole, in the window and in what scrolls there."""
 
 
+@pytest.mark.exhaustive
 def test_outputs_are_listed_within_the_window(live: Live) -> None:
     """Those that are meant first; and Tab goes on to what comes after the box."""
     page = live.page
@@ -128,6 +132,7 @@ def test_every_chart_asks_what_it_shows_by_its_own_name(live: Live) -> None:
     expect(live.page.locator(".explained:visible")).to_have_count(1)
 
 
+@pytest.mark.exhaustive
 def test_a_dwell_fills_its_chart(live: Live) -> None:
     """Its angle is far from zero, which is left out; bars and what comes near zero begin there."""
     live.page.get_by_role("combobox", name="Example").select_option("stephenson-six-bar")
@@ -145,6 +150,7 @@ def test_a_dwell_fills_its_chart(live: Live) -> None:
     assert min(ends["Shaking force, by order"]) == 0
 
 
+@pytest.mark.exhaustive
 def test_charts_of_nothing_but_zero_take_no_room(live: Live) -> None:
     """They are named in a line; numbers of the crank angle stand below what is left."""
     page = live.page
@@ -165,6 +171,7 @@ def test_charts_of_nothing_but_zero_take_no_room(live: Live) -> None:
     expect(page.get_by_text("Zero at every crank angle")).to_be_hidden()
 
 
+@pytest.mark.exhaustive
 def test_a_record_leaves_headings_whole(live: Live) -> None:
     whole, angle = eq.analyze(eq.load("yamashita-1")), np.arange(0.0, 360.0, 5.0)
     force = whole.forces.shaking_force.value[::5]
@@ -181,6 +188,7 @@ def test_a_record_leaves_headings_whole(live: Live) -> None:
         chart.screenshot(path=SCREENSHOTS / f"record-{width}.png")
 
 
+@pytest.mark.exhaustive
 def test_numbers_without_end_stay_in_their_places(live: Live) -> None:
     """And what is more than the page's numbers hold is not drawn."""
     live.type(live.field("crank mass"), "1e30 kg")
@@ -202,6 +210,7 @@ def test_numbers_without_end_stay_in_their_places(live: Live) -> None:
     assert not [one for one in paths if one and ("Infinity" in one or "NaN" in one)]
 
 
+@pytest.mark.exhaustive
 def test_numbers_of_the_scale_lie_over_the_soil(live: Live) -> None:
     later = "document.querySelector('.linkage').compareDocumentPosition"
     assert live.page.evaluate(f"{later}(document.querySelector('.numbered'))") == 4

@@ -57,6 +57,7 @@ def test_a_joint_follows_the_mouse_and_all_others_stay(live: Live) -> None:
 INVALIDATIONS = "disabled-by-default-devtools.timeline.invalidationTracking"
 
 
+@pytest.mark.exhaustive
 def test_what_is_beside_a_drawing_has_it_laid_out_once(live: Live) -> None:
     joint, browser = live.joint("B"), live.page.context.browser
     assert browser is not None
@@ -78,6 +79,7 @@ def test_what_is_beside_a_drawing_has_it_laid_out_once(live: Live) -> None:
     assert not seen["Size changed"]
 
 
+@pytest.mark.exhaustive
 def test_charts_tell_their_values_while_a_joint_is_held(live: Live) -> None:
     joint, readings = live.joint("B"), live.page.locator(".square .legend").first
     x, y = live.spot(joint)
@@ -112,6 +114,7 @@ MOVES = """([x, y]) => new Promise((done) => {
 """Two moves at once, and whether the first was drawn when either was asked of the server."""
 
 
+@pytest.mark.exhaustive
 @OVER_A_SOCKET
 def test_the_next_move_is_asked_for_before_the_last_is_drawn(live: Live) -> None:
     x, y = live.spot(live.joint("B"))
@@ -122,6 +125,7 @@ def test_the_next_move_is_asked_for_before_the_last_is_drawn(live: Live) -> None
     assert live.spot(live.joint("B")) == pytest.approx((x - 20, y), abs=1)
 
 
+@pytest.mark.exhaustive
 def test_a_drag_goes_on_where_a_plate_becomes_a_bar(live: Live) -> None:
     joint = live.joint("B")
     x, y = live.spot(joint)
@@ -174,6 +178,7 @@ def test_arrow_keys_move_by_steps_that_undo_takes_back_as_one(live: Live) -> Non
     live.comes_to(joint, moved, SHOWN)
 
 
+@pytest.mark.exhaustive
 def test_a_centre_of_mass_follows_the_mouse(live: Live) -> None:
     center = live.mass("coupler")
     still = others(live)
@@ -264,6 +269,7 @@ friction = 0.08
 """
 
 
+@pytest.mark.exhaustive
 def test_a_coefficient_of_friction_is_slid_and_its_losses_follow(live: Live) -> None:
     live.drop("engine.toml", example_text("slider-crank-engine") + RUBBING)
     of_joint = live.page.get_by_role("row", name=re.compile("^Piston on frame: mean loss"))
@@ -288,6 +294,7 @@ def test_a_coefficient_of_friction_is_slid_and_its_losses_follow(live: Live) -> 
     expect(live.page.get_by_text("give a plain number")).to_be_visible()
 
 
+@pytest.mark.exhaustive
 def test_a_phase_of_a_row_changes_the_forces_of_all_rows(live: Live) -> None:
     live.page.get_by_role("combobox", name="Example").select_option("four-row-transplanter")
     live.type(live.page.get_by_role("textbox", name=re.compile("row 2.*phase")), "90 deg")
@@ -329,6 +336,7 @@ def test_what_was_done_outlives_a_reload(live: Live) -> None:
     expect(live.button("Undo")).to_be_disabled()
 
 
+@pytest.mark.exhaustive
 def test_a_balance_outlives_a_reload(live: Live) -> None:
     live.page.get_by_role("combobox", name="Example").select_option("balance-crank")
     expect(live.page.get_by_role("heading", name=eq.load("balance-crank").title)).to_be_visible()

@@ -8,6 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
+import pytest
 from playwright.sync_api import expect
 
 import equipoise as eq
@@ -57,6 +58,7 @@ def test_a_file_is_dropped_and_one_with_its_table(live: Live) -> None:
     assert live.told("not known here").count() == 0
 
 
+@pytest.mark.exhaustive
 def test_what_is_no_machine_is_refused_with_a_sentence(live: Live) -> None:
     for name, text, told in BAD:
         live.drop(name, text, 100_000 if name == "huge.toml" else 1)
@@ -74,6 +76,7 @@ def test_signals_are_given_as_a_file(live: Live) -> None:
     np.testing.assert_allclose(read, force.x, rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.exhaustive
 @OVER_A_SOCKET
 def test_a_report_is_given_as_a_file(live: Live) -> None:
     name, text = live.download("Download report")
@@ -81,6 +84,7 @@ def test_a_report_is_given_as_a_file(live: Live) -> None:
     assert eq.load("yamashita-1").title in text
 
 
+@pytest.mark.exhaustive
 def test_drawing_and_charts_are_recorded_as_a_video(live: Live, tmp_path: Path) -> None:
     """One cycle; the machine stands where it stood before."""
     page = live.page

@@ -67,6 +67,7 @@ def test_the_first_load_is_small(context: BrowserContext, hosted: Site, host: st
     assert hosted.first <= MOST
 
 
+@pytest.mark.exhaustive
 def test_what_the_first_machine_needs_is_compiled_already(hosted: Site) -> None:
     """Its sources are left out, as both would be a longer load; other modules are as they were.
 
@@ -92,6 +93,7 @@ def test_what_the_first_machine_needs_is_compiled_already(hosted: Site) -> None:
     assert not [name for name in found if name.endswith(".py")]
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", few(titles(), {"slider-crank-engine"}))
 def test_every_machine_opens(context: BrowserContext, host: str, name: str) -> None:
     """One with loads that jump needs modules of NumPy that the first machine does not."""
@@ -102,6 +104,7 @@ def test_every_machine_opens(context: BrowserContext, host: str, name: str) -> N
     page.close()
 
 
+@pytest.mark.exhaustive
 def test_texts_are_loaded_of_the_language_that_is_spoken(
     context: BrowserContext, hosted: Site, host: str
 ) -> None:
@@ -163,6 +166,7 @@ class WithoutSciPy(Quiet):
         super().do_GET()
 
 
+@pytest.mark.exhaustive
 def test_a_balance_is_cancelled_and_begun_again(browser: Browser, hosted: Site) -> None:
     """What it waits for is said, and a joint follows its keys meanwhile."""
     context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
@@ -189,6 +193,7 @@ def test_a_balance_is_cancelled_and_begun_again(browser: Browser, hosted: Site) 
     context.close()
 
 
+@pytest.mark.exhaustive
 def test_what_was_loaded_is_used_offline(browser: Browser, host: str) -> None:
     """From the first visit on, of one who has never been there."""
     context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")

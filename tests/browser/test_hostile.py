@@ -155,6 +155,7 @@ TABLES: tuple[Any, ...] = ([], {"load.csv": 7}, {"__proto__": "x"})
 MORE_TABLES = (7, "text", {"load.csv": {"a": []}}, None)
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("tables", few((*TABLES, *MORE_TABLES), TABLES[1:2]))
 def test_tables_of_other_kinds_are_refused_in_a_sentence(
     tables: object, new_page: Callable[..., Page], address: str
@@ -168,6 +169,7 @@ def test_tables_of_other_kinds_are_refused_in_a_sentence(
     assert live.page.evaluate(RUN) == []
 
 
+@pytest.mark.exhaustive
 def test_an_example_of_a_link_is_a_name_and_nothing_else(
     new_page: Callable[..., Page], address: str
 ) -> None:
@@ -182,6 +184,7 @@ def test_an_example_of_a_link_is_a_name_and_nothing_else(
     live.settled()
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("seed", few(range(0, 60, 10), (0, 10)))
 def test_machines_from_nothing_open_by_a_link_or_are_refused(
     seed: int, new_page: Callable[..., Page], address: str

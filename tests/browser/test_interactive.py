@@ -173,6 +173,7 @@ def test_typed_numbers_and_keys(open_file: Open) -> None:
     assert figures(page) == before
 
 
+@pytest.mark.exhaustive
 def test_it_begins_at_a_crank_angle(open_file: Open) -> None:
     live = open_file("yamashita-1", "--at", "30 deg")
     expect(live.page.locator(".transport .angle")).to_have_text("30.0°")
@@ -183,6 +184,7 @@ def test_it_begins_at_a_crank_angle(open_file: Open) -> None:
     live.button("Pause").click()
 
 
+@pytest.mark.exhaustive
 def test_what_cannot_turn_is_refused_in_words(open_file: Open) -> None:
     live = open_file("yamashita-1")
     page, before = live.page, figures(live.page)
@@ -198,6 +200,7 @@ def test_what_cannot_turn_is_refused_in_words(open_file: Open) -> None:
     assert figures(page) == before
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(("name", "joint"), [
     ("yamashita-1", "B"),
     pytest.param("planetary-planting-arm", "Q", marks=EXHAUSTIVE),
@@ -220,6 +223,7 @@ def test_it_fits_every_width(open_file: Open, name: str, joint: str) -> None:
         expect(live.told("changed")).to_be_visible()
 
 
+@pytest.mark.exhaustive
 def test_a_cam_is_left_out_where_its_numbers_are_others(open_file: Open) -> None:
     """Nothing that is not computed is drawn, and what was there comes back."""
     live = open_file("cam-pusher")
@@ -233,6 +237,7 @@ def test_a_cam_is_left_out_where_its_numbers_are_others(open_file: Open) -> None
     assert page.locator(".piece *").evaluate_all(drawn) == before
 
 
+@pytest.mark.exhaustive
 def test_a_drawing_of_changed_numbers_is_that_of_the_changed_machine(open_file: Open) -> None:
     """Every joint, after another length, stands where the analysis has it."""
     live = open_file("slider-crank-engine")

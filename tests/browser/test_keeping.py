@@ -9,6 +9,7 @@ import socket
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Page, WebSocketRoute, expect
 
 import equipoise as eq
@@ -68,6 +69,7 @@ def test_a_file_is_saved_and_its_steps_outlive_the_server(free_page: Page, tmp_p
         expect(other.get_by_text("was changed here before")).to_be_hidden()
 
 
+@pytest.mark.exhaustive
 def test_the_file_of_a_tool_is_saved_and_its_steps_outlive_the_server(
     free_page: Page, tmp_path: Path
 ) -> None:
@@ -90,6 +92,7 @@ def test_the_file_of_a_tool_is_saved_and_its_steps_outlive_the_server(
         expect(live.button("Save")).to_be_enabled()
 
 
+@pytest.mark.exhaustive
 @OVER_A_SOCKET
 def test_nothing_is_undone_before_there_is_anything(
     new_page: Callable[..., Page], address: str
@@ -121,6 +124,7 @@ def test_nothing_is_undone_before_there_is_anything(
     assert [json.loads(one)["type"] for one in held] == ["ready"]
 
 
+@pytest.mark.exhaustive
 @OVER_A_SOCKET
 def test_an_undo_while_a_page_comes_back_is_of_the_last_step(
     new_page: Callable[..., Page], address: str
@@ -158,6 +162,7 @@ def test_an_undo_while_a_page_comes_back_is_of_the_last_step(
     expect(live.field("crank mass")).to_have_value("300 g")
 
 
+@pytest.mark.exhaustive
 def test_what_was_done_in_a_closed_tab_is_offered(live: Live, address: str) -> None:
     live.type(live.field("crank mass"), "333 g")
     expect(live.button("Undo")).to_be_enabled()
@@ -173,6 +178,7 @@ def test_what_was_done_in_a_closed_tab_is_offered(live: Live, address: str) -> N
     expect(again.field("crank mass")).to_have_value("199 g")
 
 
+@pytest.mark.exhaustive
 def test_edits_without_a_server_are_kept_for_the_next_one(free_page: Page, tmp_path: Path) -> None:
     """Which has another token: the open tab goes there as soon as another one is opened."""
     path, port, page = tmp_path / "mine.toml", free_port(), free_page

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from browser.live import FITS, Live
@@ -40,6 +41,7 @@ OPENED = (
 )
 
 
+@pytest.mark.exhaustive
 def test_korean_particles_go_by_the_name_before_them(
     new_page: Callable[..., Page], address: str
 ) -> None:
@@ -65,6 +67,7 @@ def test_korean_particles_go_by_the_name_before_them(
     assert "Delete" in keys and ko["Delete"] not in keys
 
 
+@pytest.mark.exhaustive
 def test_a_loader_has_cycles_and_no_crank_angles(live: Live) -> None:
     """What the page itself says goes by the machine that is open, and back again."""
     page = live.page

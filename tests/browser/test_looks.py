@@ -55,6 +55,7 @@ def test_the_page(live: Live) -> None:
         assert live.findings() == []
 
 
+@pytest.mark.exhaustive
 def test_a_sign_of_waiting_stands_still_where_less_motion_is_wanted(live: Live) -> None:
     """A bar at the upper edge, which runs to and fro for everybody else."""
     moving = """() => ["data-waiting", "data-busy"].map((sign) => {
@@ -72,6 +73,7 @@ def test_a_sign_of_waiting_stands_still_where_less_motion_is_wanted(live: Live) 
     assert live.page.evaluate(moving) == [[1, False], [1, False]]
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("width", "height"),
     few_together([(600, 900), (400, 900), (400, 420), (1280, 380)], {(400, 420)}),
@@ -89,6 +91,7 @@ def test_the_menu_of_downloads_is_seen_whole(live: Live, width: int, height: int
     live.page.screenshot(path=SCREENSHOTS / f"menu-{width}-{height}.png")
 
 
+@pytest.mark.exhaustive
 def test_a_side_view_is_as_dark_as_the_page(live: Live) -> None:
     live.page.get_by_role("combobox", name="Example").select_option("twin-engine")
     across = live.page.get_by_role("img", name="The planes of links")
@@ -135,6 +138,7 @@ PARTS = """() => [document.querySelector("#appendix").offsetTop,
 """Where the appendix begins, and where the page ends."""
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     "name",
     few(
@@ -162,6 +166,7 @@ def test_reports_are_short_and_fit(name: str, new_page: Callable[..., Page]) -> 
         assert machine is not None and machine["y"] < 900
 
 
+@pytest.mark.exhaustive
 def test_drawings_of_a_tool_are_seen_whole(new_page: Callable[..., Page], tmp_path: Path) -> None:
     """On a narrow screen too; none is to be moved from side to side."""
     path = tmp_path / "report.html"

@@ -114,6 +114,7 @@ def sheet(live: Live) -> Sheet:
     return sheet
 
 
+@pytest.mark.exhaustive
 def test_a_new_machine_is_not_begun_with_delete(live: Live) -> None:
     sheet = Sheet(live)
     sheet.take("Delete")
@@ -123,6 +124,7 @@ def test_a_new_machine_is_not_begun_with_delete(live: Live) -> None:
     expect(pressed).to_have_attribute("aria-label", "Select")
 
 
+@pytest.mark.exhaustive
 def test_tools_have_their_keys_while_a_button_has_the_focus(sheet: Sheet) -> None:
     page = sheet.live.page
     pressed = page.locator(".tools [aria-pressed=true]")
@@ -137,6 +139,7 @@ def test_tools_have_their_keys_while_a_button_has_the_focus(sheet: Sheet) -> Non
     expect(pressed).to_have_attribute("aria-label", "Point")
 
 
+@pytest.mark.exhaustive
 def test_a_place_is_told_as_it_is_rounded(sheet: Sheet) -> None:
     sheet.take("Point")
     x, y = sheet.pixel(31.234, 7.891)
@@ -148,6 +151,7 @@ def test_a_place_is_told_as_it_is_rounded(sheet: Sheet) -> None:
     sheet.live.comes_to(sheet.live.joint("A"), (told[0], told[1]), 0.006)
 
 
+@pytest.mark.exhaustive
 def test_what_is_traced_is_not_rounded_to_the_sheet(sheet: Sheet, tmp_path: Path) -> None:
     """Where an underlay is seen, its lines count, and none of the sheet draws places to itself."""
     picture = tmp_path / "photo.svg"
@@ -246,6 +250,7 @@ def test_a_slider_crank_is_made_by_finger(new_page: Callable[..., Page], address
     assert (rack.drives, rack.radius) == ("rack", 0.04)
 
 
+@pytest.mark.exhaustive
 def test_a_geared_five_bar_is_made_by_keys(sheet: Sheet) -> None:
     keys = sheet.live.page.keyboard
     sheet.take("Point")
@@ -283,6 +288,7 @@ def test_a_geared_five_bar_is_made_by_keys(sheet: Sheet) -> None:
     check_same(massed(made, like, {name: name for name in like.links}), like)
 
 
+@pytest.mark.exhaustive
 def test_a_cam_and_its_follower_are_made_by_mouse(sheet: Sheet) -> None:
     sheet.take("Point")
     sheet.click((0, 0), (60, 0))
@@ -317,6 +323,7 @@ def test_a_cam_and_its_follower_are_made_by_mouse(sheet: Sheet) -> None:
     sheet.says("mobility is 2; expected 1")
 
 
+@pytest.mark.exhaustive
 def test_a_cylinder_is_made_by_its_form(sheet: Sheet) -> None:
     sheet.take("Point")
     sheet.click((0, 0), (50, -100))
@@ -335,6 +342,7 @@ def test_a_cylinder_is_made_by_its_form(sheet: Sheet) -> None:
     assert sheet.live.machine().drive.between == ("B", "C")
 
 
+@pytest.mark.exhaustive
 def test_a_cam_and_a_sliding_face_are_made_by_keys(sheet: Sheet) -> None:
     live, keys = sheet.live, sheet.live.page.keyboard
     sheet.take("Point")
@@ -360,6 +368,7 @@ def test_a_cam_and_a_sliding_face_are_made_by_keys(sheet: Sheet) -> None:
     assert not live.findings()
 
 
+@pytest.mark.exhaustive
 def test_the_crank_turns_by_its_rim_and_grows_by_its_handle(live: Live) -> None:
     for _ in range(3):
         live.button("Zoom in").click()

@@ -66,6 +66,7 @@ def test_balancing_and_taking_it_back(live: Live) -> None:
     assert kept.balance == eq.load("balance-crank").balance
 
 
+@pytest.mark.exhaustive
 def test_name_title_and_drawing_are_of_one_machine(live: Live) -> None:
     """In every frame, while others are opened by name and from a file."""
     live.page.evaluate("""window.seen = new Set(); const look = () => {
@@ -93,6 +94,7 @@ FOR = {
 """Machines, the path that is drawn of each, and its first chart."""
 
 
+@pytest.mark.exhaustive
 def test_what_a_machine_is_for_comes_first(live: Live) -> None:
     """The chart that tells it stands at the top, and of the paths none is the crank's circle."""
     for name, (path, first) in FOR.items():
@@ -113,6 +115,7 @@ def test_what_a_machine_is_for_comes_first(live: Live) -> None:
         expect(shown).to_have_count(int(first == "Any output over crank angle"))
 
 
+@pytest.mark.exhaustive
 def test_pages_do_not_disturb_each_other(new_page: Callable[..., Page], address: str) -> None:
     one, other = (Live.open(new_page(), address) for _ in range(2))
     one.type(one.field("crank mass"), "0.3 kg")

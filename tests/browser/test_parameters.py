@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 
+import pytest
 from playwright.sync_api import expect
 
 import equipoise as eq
@@ -11,6 +12,7 @@ from browser.live import Live
 from unit.schema.test_parameters import FOUR_BAR
 
 
+@pytest.mark.exhaustive
 def test_numbers_follow_a_parameter_and_the_file_keeps_their_expressions(live: Live) -> None:
     live.drop("mine.toml", FOUR_BAR)
     mass, weight = live.field("rod mass"), live.field("parameters weight")

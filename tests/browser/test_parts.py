@@ -72,6 +72,7 @@ def boxes(path: str) -> list[tuple[float, ...]]:
     return found
 
 
+@pytest.mark.exhaustive
 def test_wheels_become_ellipses_and_circles_again(live: Live) -> None:
     page = live.page
     page.get_by_role("combobox", name="Example").select_option("elliptic-quick-return")
@@ -159,6 +160,7 @@ def test_a_spring_and_a_body_are_added_changed_and_deleted(live: Live) -> None:
     assert live.machine().springs[0].free_length == 0.05
 
 
+@pytest.mark.exhaustive
 def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None:
     page = live.page
     circles = "".join(f'<circle cx="{x}" cy="{y}" r="4"/>' for x, y in MARKS.values())
@@ -213,6 +215,7 @@ def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None
     expect(image).to_be_visible()
 
 
+@pytest.mark.exhaustive
 def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path) -> None:
     page = live.page
     file = tmp_path / "plan.dxf"
@@ -248,6 +251,7 @@ def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path)
     expect(page.locator(".underlay path")).to_be_hidden()
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("name", "part"),
     few_together(

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
+import pytest
 from PIL import Image
 from playwright.sync_api import Page, expect
 
@@ -25,6 +26,7 @@ def menu(live: Live, name: str) -> tuple[str, bytes]:
     return taken(live, live.button(name).click)
 
 
+@pytest.mark.exhaustive
 @OVER_A_SOCKET
 def test_pictures_and_a_film_are_kept(live: Live) -> None:
     name, data = menu(live, "Drawing as SVG")
@@ -87,6 +89,7 @@ def test_a_file_plays_without_a_server(
     assert [url for url in asked if not url.startswith(("data:", "blob:"))] == []
 
 
+@pytest.mark.exhaustive
 def test_a_file_that_computes_shows_the_same(
     live: Live, new_page: Callable[..., Page], tmp_path: Path
 ) -> None:

@@ -34,6 +34,7 @@ def told_and_drawn(page: Page, kind: str) -> tuple[complex, float]:
     return complex(x1 - x0, y0 - y1) * float(value) / length, float(value)
 
 
+@pytest.mark.exhaustive
 def test_arrows_are_as_long_as_their_scale_tells(live: Live) -> None:
     page = live.page
     page.get_by_role("combobox", name="Arrows at").select_option("C")
@@ -54,6 +55,7 @@ def test_arrows_are_as_long_as_their_scale_tells(live: Live) -> None:
     expect(page.locator(".scales li")).to_have_count(2)
 
 
+@pytest.mark.exhaustive
 def test_variants_are_drawn_pale_and_compared(live: Live) -> None:
     page = live.page
     live.button("Keep as variant").click()
@@ -117,6 +119,7 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
     assert middle == pytest.approx(at_rest, abs=2)
 
 
+@pytest.mark.exhaustive
 def test_the_path_of_a_link_s_own_point_is_seen_on_the_link(live: Live) -> None:
     """A path is drawn over the links, which are not transparent."""
     order = "document.querySelector('.linkage .signs').compareDocumentPosition"
@@ -125,6 +128,7 @@ def test_the_path_of_a_link_s_own_point_is_seen_on_the_link(live: Live) -> None:
     live.page.locator(".board:visible").screenshot(path=SCREENSHOTS / "coupler-curve.png")
 
 
+@pytest.mark.exhaustive
 def test_a_record_is_drawn_beside_the_model(live: Live) -> None:
     angle = np.arange(0.0, 360.0, 5.0)
     whole = eq.analyze(eq.load("yamashita-1"))

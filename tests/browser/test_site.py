@@ -90,6 +90,7 @@ ASKED = {
 """What an engineer asks in words of the trade, and the page that answers."""
 
 
+@pytest.mark.exhaustive
 def test_the_first_hit_answers_questions_of_engineers(page: Page, site: Path) -> None:
     """Each in words of the trade."""
     first = {}
@@ -100,6 +101,7 @@ def test_the_first_hit_answers_questions_of_engineers(page: Page, site: Path) ->
     assert first == ASKED
 
 
+@pytest.mark.exhaustive
 def test_what_is_nowhere_is_not_shown(page: Page, site: Path) -> None:
     """No hits, and a sentence."""
     page.goto(f"{site.as_uri()}/search.html?q=xyzzyq")
@@ -134,6 +136,7 @@ READABLE = (
 )
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("width", few(WIDTHS, {400}))
 def test_tables_of_many_columns_are_read_without_moving_them(
     page: Page, site: Path, width: int
@@ -147,6 +150,7 @@ def test_tables_of_many_columns_are_read_without_moving_them(
         assert page.eval_on_selector_all(".table-wrapper", hidden) == 0, name
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("width", few(WIDTHS, {400}))
 def test_long_lines_of_code_make_no_page_wider(page: Page, site: Path, width: int) -> None:
     page.set_viewport_size({"width": width, "height": 900})
@@ -155,6 +159,7 @@ def test_long_lines_of_code_make_no_page_wider(page: Page, site: Path, width: in
         assert page.evaluate(FITS), name
 
 
+@pytest.mark.exhaustive
 def test_a_command_stands_beside_python(page: Page, site: Path) -> None:
     """Where there is room; on a narrow page below it, and each has a button that copies it."""
     for width, beside in ((1280, True), (400, False)):
@@ -172,6 +177,7 @@ SMALL_TEXT = 6.5
 """Size of the smallest letters of plots, points."""
 
 
+@pytest.mark.exhaustive
 def test_texts_of_plots_can_be_read_on_a_telephone(page: Page, site: Path) -> None:
     """Another picture stands there; the smallest letters of both are 8 pixels at least."""
     sizes = """all => all.filter(one => one.offsetParent)
@@ -186,6 +192,7 @@ def test_texts_of_plots_can_be_read_on_a_telephone(page: Page, site: Path) -> No
                 assert SMALL_TEXT * 96 / 72 * scale >= 8, (name, width)
 
 
+@pytest.mark.exhaustive
 def test_names_of_functions_are_whole_on_a_telephone(page: Page, site: Path) -> None:
     page.set_viewport_size({"width": 400, "height": 900})
     page.goto(f"{site.as_uri()}/api/equipoise.balancing.html")
@@ -204,6 +211,7 @@ PRINTED = (
 )
 
 
+@pytest.mark.exhaustive
 def test_pages_are_printed_whole(page: Page, site: Path) -> None:
     """Nothing is cut at an edge, no table waits for a page of its own, no link lies on the text."""
     page.emulate_media(media="print")

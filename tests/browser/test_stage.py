@@ -31,6 +31,7 @@ def begun(live: Live) -> None:
     live.settled()
 
 
+@pytest.mark.exhaustive
 def test_the_drawing_has_most_of_the_window_while_one_draws(live: Live) -> None:
     begun(live)
     _, _, width, height = box(board(live))
@@ -39,6 +40,7 @@ def test_the_drawing_has_most_of_the_window_while_one_draws(live: Live) -> None:
     assert live.findings() == []
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize(
     ("width", "language"),
     few_together(product([400, 1280], ["en", "ja", "ko"]), {(400, "ja")}),
@@ -64,6 +66,7 @@ def test_sentences_that_come_and_go_leave_the_sheet_where_it_is(
     assert live.page.evaluate(FITS)
 
 
+@pytest.mark.exhaustive
 def test_tools_have_names_that_are_seen(live: Live) -> None:
     tools = live.page.get_by_role("toolbar", name="Tools")
     for name in ("Select", "Link", "Pin", "Separate", "Slider", "Cam", "Drive", "Delete"):
@@ -72,6 +75,7 @@ def test_tools_have_names_that_are_seen(live: Live) -> None:
         expect(word).to_be_visible()
 
 
+@pytest.mark.exhaustive
 def test_the_border_is_dragged_and_remembered(live: Live) -> None:
     page = live.page
     border = page.get_by_role("separator", name="Border between drawing and charts")
@@ -87,6 +91,7 @@ def test_the_border_is_dragged_and_remembered(live: Live) -> None:
     assert box(board(live))[2] == pytest.approx(narrower, abs=1)
 
 
+@pytest.mark.exhaustive
 def test_charts_go_below_the_drawing(live: Live) -> None:
     page = live.page
     border = page.get_by_role("separator", name="Border between drawing and charts")
@@ -131,6 +136,7 @@ def test_a_joint_has_a_menu_by_the_right_button(live: Live) -> None:
     expect(form.get_by_label("point", exact=True)).to_have_value("C")
 
 
+@pytest.mark.exhaustive
 def test_a_link_has_a_menu_that_leads_to_its_counterweight_and_mass(live: Live) -> None:
     def opened() -> Locator:
         (ax, ay), (bx, by) = live.spot(live.joint("A")), live.spot(live.joint("B"))
@@ -149,6 +155,7 @@ def test_a_link_has_a_menu_that_leads_to_its_counterweight_and_mass(live: Live) 
     expect(form.get_by_label("mass", exact=True)).to_have_value("199 g")
 
 
+@pytest.mark.exhaustive
 def test_every_joint_and_link_has_a_menu(live: Live) -> None:
     """With all that can be done there; a counterweight where a link turns about the frame."""
     page = live.page
@@ -193,6 +200,7 @@ def test_every_joint_and_link_has_a_menu(live: Live) -> None:
             assert offered and wanted <= {*offered[0]}, link
 
 
+@pytest.mark.exhaustive
 def test_a_constraint_of_a_links_menu_holds_while_one_drags(live: Live) -> None:
     """The coupler is as long as the rocker from then on."""
     (cx, cy), (dx, dy) = live.spot(live.joint("C")), live.spot(live.joint("D"))
@@ -214,6 +222,7 @@ def test_a_constraint_of_a_links_menu_holds_while_one_drags(live: Live) -> None:
     live.page.screenshot(path=SCREENSHOTS / "constraint-1280.png")
 
 
+@pytest.mark.exhaustive
 def test_a_place_has_a_menu_and_a_mount_asks_for_the_support_first(live: Live) -> None:
     x, y, width, height = box(board(live))
     live.page.mouse.click(x + 0.6 * width, y + 0.15 * height, button="right")
@@ -226,6 +235,7 @@ def test_a_place_has_a_menu_and_a_mount_asks_for_the_support_first(live: Live) -
     expect(live.page.locator("[data-kind=point]")).to_have_count(before + 1)
 
 
+@pytest.mark.exhaustive
 def test_the_menu_key_opens_the_menu_and_delete_deletes(live: Live) -> None:
     keyboard = live.page.keyboard
     for key in ("ContextMenu", "Shift+F10"):
@@ -242,6 +252,7 @@ def test_the_menu_key_opens_the_menu_and_delete_deletes(live: Live) -> None:
     expect(live.joint("P")).to_have_count(0)
 
 
+@pytest.mark.exhaustive
 def test_a_finger_that_rests_opens_the_menu(new_page: Callable[..., Page], address: str) -> None:
     options = {"viewport": {"width": 400, "height": 900}, "has_touch": True}
     live = Live.open(new_page(**options), address)
@@ -278,6 +289,7 @@ def test_figures_are_pinned_on_the_drawing(live: Live) -> None:
     expect(pins).to_be_hidden()
 
 
+@pytest.mark.exhaustive
 def test_every_row_of_figures_is_one_line(new_page: Callable[..., Page], address: str) -> None:
     """On a telephone, too, with its unit and the button that pins it."""
     live = Live.open(new_page(viewport={"width": 400, "height": 900}), address)
@@ -390,6 +402,7 @@ def test_the_gallery_is_by_kind_and_is_searched_by_words(live: Live) -> None:
     assert live.findings() == []
 
 
+@pytest.mark.exhaustive
 def test_help_tells_what_each_tool_does_and_leads_to_the_documentation(
     new_page: Callable[..., Page], address: str
 ) -> None:

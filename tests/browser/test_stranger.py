@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
+import pytest
 from playwright.sync_api import Page, expect
 
 import equipoise as eq
@@ -37,6 +38,7 @@ def test_an_empty_page_shows_what_there_is_to_open(free_page: Page) -> None:
         expect(gallery).to_be_hidden()
 
 
+@pytest.mark.exhaustive
 def test_the_tour_is_taken_by_keyboard_alone(new_page: Callable[..., Page], address: str) -> None:
     live = Live.open(new_page(viewport={"width": 400, "height": 800}), address)
     page, keyboard = live.page, live.page.keyboard
@@ -96,6 +98,7 @@ def test_the_tour_lets_one_drag_balance_and_share(
     expect(page.get_by_text("The link is copied").first).to_be_visible()
 
 
+@pytest.mark.exhaustive
 def test_two_fingers_zoom_and_pan(new_page: Callable[..., Page], address: str) -> None:
     live = Live.open(new_page(has_touch=True), address)
     line = live.page.context.new_cdp_session(live.page)
@@ -122,6 +125,7 @@ def test_two_fingers_zoom_and_pan(new_page: Callable[..., Page], address: str) -
     expect(live.button("Undo")).to_be_disabled()
 
 
+@pytest.mark.exhaustive
 def test_an_edit_while_examples_are_drawn_is_told_to_its_end(live: Live) -> None:
     live.page.get_by_role("button", name="Open", exact=True).click()
     expect(live.page.get_by_role("dialog", name="Open a machine")).to_be_visible()

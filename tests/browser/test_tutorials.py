@@ -27,6 +27,7 @@ def beside(site: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str
         yield address
 
 
+@pytest.mark.exhaustive
 def test_a_cell_is_changed_and_run_in_the_page(context: BrowserContext, beside: str) -> None:
     """With all above it, by Python in the page; what fails leads to the page of its error."""
     page = context.new_page()
@@ -48,6 +49,7 @@ def test_a_cell_is_changed_and_run_in_the_page(context: BrowserContext, beside: 
     page.close()
 
 
+@pytest.mark.exhaustive
 def test_cells_have_no_buttons_in_a_file(context: BrowserContext, site: Path) -> None:
     """Where no Python is beside them; the notebook can be loaded, and errors have their link."""
     page = context.new_page()
@@ -66,6 +68,7 @@ HELP = """() => document.head.insertAdjacentHTML(
 """What a site has whose documentation lies beside the live page."""
 
 
+@pytest.mark.exhaustive
 def test_an_error_on_the_live_page_leads_to_its_page(
     new_page: Callable[..., Page], address: str
 ) -> None:

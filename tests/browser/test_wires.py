@@ -113,6 +113,7 @@ def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -
     expect(cycle).to_be_visible()
 
 
+@pytest.mark.exhaustive
 @OVER_A_SOCKET
 def test_drives_that_go_their_own_ways_are_drawn_and_not_dragged(wired: Live) -> None:
     """Poses of such a run are none of the cycle, in which alone something can be moved."""
@@ -136,6 +137,7 @@ def test_drives_that_go_their_own_ways_are_drawn_and_not_dragged(wired: Live) ->
     assert wired.machine() == own
 
 
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("address", few(WIRES, {"socket"}), indirect=True)
 def test_what_cannot_be_is_told_and_the_last_good_state_stays(wired: Live) -> None:
     field = wired.field("crank mass")

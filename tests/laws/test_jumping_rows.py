@@ -204,8 +204,6 @@ def test_pieces_lie_between_their_extremes() -> None:
     assert least == pytest.approx(np.min(inside, axis=1), abs=2e-3 * float(np.ptp(inside)))
 
 
-# Bounds of boxes with jumps: the tests above.
-@pytest.mark.exhaustive
 def test_two_rows_that_jump_end_in_a_proof() -> None:
     """Against all phases of a fine grid; without the jumps the bound stayed 4 to 14 % below."""
     machine = eq.load("transplanter").with_rows([Row(), Row(lateral=0.3)])

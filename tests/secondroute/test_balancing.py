@@ -383,8 +383,6 @@ def test_each_weight_has_a_price() -> None:
     assert sorted(price.at_most for price in masses) == [0.2, 0.6]
 
 
-# A ratio that is free: tests/literature/test_lee_kim_balancing.py.
-@pytest.mark.exhaustive
 @pytest.mark.parametrize("which", few("abc", "c"))
 def test_a_free_ratio(which: str) -> None:
     machine = eq.load(f"lee-kim-{which}")

@@ -66,12 +66,18 @@ def test_it_is_in_the_help() -> None:
     assert all(one in told for one in ("FILE", "--times", "--units", "--json", "--csv", "--plot"))
 
 
-def test_it_is_in_the_pages_of_all_commands(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.exhaustive(but=["man.py-page"])
+@pytest.mark.parametrize(("page", "name"), [("man.py", "page"), ("site/commands.py", "commands")])
+def test_it_is_in_the_pages_of_all_commands(
+    page: str, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(sys, "argv", ["equipoise"])
-    for page, name in (("man.py", "page"), ("site/commands.py", "commands")):
-        made = runpy.run_path(str(DOCS / page))[name]()
-        text = made if isinstance(made, str) else made.decode()
-        assert "heft" in text and "Report how many links a machine has." in text
+    made = runpy.run_path(str(DOCS / page))[name]()
+    text = made if isinstance(made, str) else made.decode()
+    assert "heft" in text and "Report how many links a machine has." in text
+
+
+def test_shells_complete_it() -> None:
     assert "heft" in succeeded(equipoise("completion", "bash"))
 
 

@@ -241,8 +241,6 @@ for _ in range(10 ** 9):
 """
 
 
-# At two imports: the first test of this file.
-@pytest.mark.exhaustive
 def test_an_import_that_lasts_is_interrupted(folder: Path) -> None:
     (folder / "lasting.py").write_text(LASTING)
     begin = (

@@ -69,7 +69,8 @@ make = "smallest"
 """
 
 
-# Analyses that stay fail in `test_tolerances_give_back_the_memory_of_their_machines` too.
+# What grows with use is looked for before a release; of one design or analysis on every change, in
+# tests/unit/test_memory_at_once.py and tests/unit/studies/test_evaluate.py.
 @EXHAUSTIVE
 def test_a_search_gives_back_the_memory_of_its_designs() -> None:
     """Analyses of 300 designs hold 25 MB."""
@@ -106,7 +107,8 @@ value = "by_order.shaking_force.x.harmonics[2]"
 )
 
 
-# Memory that is kept fails `test_a_coarser_analysis_is_gone_before_the_next_finer_one` too.
+# What grows with use is looked for before a release; of one design or analysis on every change, in
+# tests/unit/test_memory_at_once.py and tests/unit/studies/test_evaluate.py.
 @pytest.mark.exhaustive
 def test_tolerances_give_back_the_memory_of_their_machines() -> None:
     """Each held 10 MB; fewer than 160 are not taken."""
@@ -118,7 +120,8 @@ def test_tolerances_give_back_the_memory_of_their_machines() -> None:
     assert peak < 230
 
 
-# Memory that is kept fails `test_a_coarser_analysis_is_gone_before_the_next_finer_one` too.
+# What grows with use is looked for before a release; of one design or analysis on every change, in
+# tests/unit/test_memory_at_once.py and tests/unit/studies/test_evaluate.py.
 @pytest.mark.exhaustive
 def test_a_long_sweep_gives_back_the_memory_of_its_speeds() -> None:
     """Each held 39 MB."""

@@ -475,8 +475,6 @@ def test_orders_beside_json_and_csv() -> None:
 WALKING = "walking-transplanter"
 
 
-# Both states, of a rig: tests/unit/vibration.
-@pytest.mark.exhaustive
 @pytest.mark.parametrize("drive", [[], pytest.param(["--drive"], marks=EXHAUSTIVE)])
 def test_the_louder_of_two_steady_states(drive: list[str]) -> None:
     """A float that lets go softens its machine, which then jumps below its resonance."""

@@ -63,8 +63,6 @@ def by_brute_force() -> dict[tuple[int, int, float], float]:
     return found
 
 
-# Proofs and limits of gears: the other tests of this file.
-@pytest.mark.exhaustive
 def test_two_shafts_with_choices_each(monkeypatch: pytest.MonkeyPatch) -> None:
     """All 45 together; and where not all are tried, one shaft after the other gets there too."""
     brute = by_brute_force()

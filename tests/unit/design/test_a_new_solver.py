@@ -105,8 +105,6 @@ def test_balance_chooses_gears_by_it(added: RandomSearch) -> None:
     SOLVERS.insert(0, added)
 
 
-# Balancing by it: the other tests of this file.
-@pytest.mark.exhaustive
 def test_the_page_balances_by_it(added: RandomSearch) -> None:
     session, _ = opened("balance-geared-a")
     _, shown, _ = ask(session, "balance")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -63,12 +64,15 @@ def literals(node: ast.expr) -> Iterator[str]:
                 yield from literals(inner)
 
 
-def assigned(within: ast.AST, name: str) -> Iterator[ast.expr]:
+@cache
+def assigned(within: ast.AST) -> Mapping[str, list[ast.expr]]:
+    """What names are given in a function, or in a module."""
+    values = defaultdict[str, list[ast.expr]](list)
     for node in ast.walk(within):
-        if isinstance(node, ast.Assign):
-            for target in node.targets:
-                if isinstance(target, ast.Name) and target.id == name:
-                    yield node.value
+        for target in node.targets if isinstance(node, ast.Assign) else ():
+            if isinstance(target, ast.Name):
+                values[target.id].append(node.value)
+    return values
 
 
 def plain(node: ast.expr, scope: ast.AST, words: re.Pattern[str]) -> bool:
@@ -77,7 +81,9 @@ def plain(node: ast.expr, scope: ast.AST, words: re.Pattern[str]) -> bool:
         return True
     if not isinstance(node, ast.Name):
         return False
-    return any(words.search(text) for value in assigned(scope, node.id) for text in literals(value))
+    return any(
+        words.search(text) for value in assigned(scope).get(node.id, ()) for text in literals(value)
+    )
 
 
 def calls(module: ast.Module) -> Iterator[tuple[ast.AST, ast.Call]]:

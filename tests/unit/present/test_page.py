@@ -132,8 +132,6 @@ def test_names_are_never_read_as_markup(document):
     assert pdf(evil).startswith(b"%PDF")
 
 
-# Charts as PDF are the same on every run: tests/unit/figures/test_other_charts.py.
-@pytest.mark.exhaustive
 def test_the_pdf_is_the_same_on_every_run(document):
     made = pdf(document)
     assert made == pdf(document)

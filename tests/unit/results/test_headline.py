@@ -18,7 +18,7 @@ from equipoise.present.pages import page
 from equipoise.quantities import parse
 from equipoise.results.blocks import Facts, Text
 from equipoise.results.yardsticks import assess, verdict
-from support.chosen import EXHAUSTIVE, model_of
+from support.chosen import DISTINCT, EXHAUSTIVE, model_of
 from support.findings import findings_of, report_of
 from support.languages import COMPLETE
 
@@ -67,14 +67,14 @@ LINKAGES = [
     for name in sorted(eq.examples("linkage"))
     if "\n[drive]" in (EXAMPLES / f"{name}.toml").read_text("utf-8")
 ]
-SLOW = {
-    ("balance", name)
-    for name in ("air-compressor", "balance-geared-a", "cam-pusher", "excavator", "grain-cleaner",
-                 "inline-3", "reciprocating-saw", "sieve-eccentric", "sieve-on-stand",
-                 "sieve-short", "transplanter-close", "walking-beam", "walking-transplanter",
-                 "watt-six-bar", "wiper")
+QUICK = {
+    *(("analyze", name) for name in (*DISTINCT, "excavator", "press", "two-motor-mixer")),
+    *(("respond", name) for name in ("riding-transplanter", "yamashita-rig")),
+    *(("balance", name) for name in ("balance-shafts", "beam-pump", "frame-saw", "hydraulic-loader",
+                                     "inline-3-rows", "press", "stamping-press")),
+    ("tool", "nagamine-irie"),
 }  # fmt: skip
-"""Two thirds of what all commands take; others show the same on every change."""
+"""Of every command and kind of machine some; the others show the same before a release."""
 COMMANDS = [
     *(("analyze", one) for one in (*LINKAGES, *ADVISED)),
     *(("respond", name) for name in LINKAGES if model_of(name).support is not None),
@@ -92,7 +92,7 @@ COMMANDS = [
         pytest.param(
             (command, name),
             id=f"{command} {Path(name).stem}",
-            marks=EXHAUSTIVE if (command, Path(name).stem) in SLOW else (),
+            marks=() if (command, Path(name).stem) in QUICK else EXHAUSTIVE,
         )
         for command, name in COMMANDS
     ],

@@ -81,7 +81,7 @@ def run_up() -> Transient:
     return eq.simulate(rig(mounts=DAMPED).with_drive(motor=LINE), 4.5, drive=True, samples=3001)
 
 
-# A motor that stalls, and one on solid ground: the tests of this file.
+# A motor that runs up in time fails in `test_on_solid_ground` too.
 @pytest.mark.exhaustive
 def test_a_motor_runs_up_to_the_steady_speed(run_up: Transient) -> None:
     """Held: the curve is shifted so that the mean speed is that of the drive."""
@@ -221,8 +221,7 @@ def test_a_motor_that_stalls(of: str, mean_speed: str, way: int) -> None:
     assert given == pytest.approx(4.0 * 22.0, rel=1e-3)  # its torque at standstill
 
 
-# A motor that runs up in time is compared with the steady state by
-# `test_a_motor_runs_up_to_the_steady_speed` too.
+# A motor that runs up in time fails in `test_on_solid_ground` too.
 @EXHAUSTIVE
 def test_a_motor_that_does_not_stall() -> None:
     """A weaker press is not refused, and its solution is what it settles into from rest."""
