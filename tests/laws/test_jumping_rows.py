@@ -41,6 +41,7 @@ def four_rows(machine: Machine) -> Machine:
     return machine.with_rows([Row(), *(Row(lateral=0.3 * k) for k in (1, 2, 3))])
 
 
+@pytest.mark.exhaustive(but=["peak_to_peak"])
 @pytest.mark.parametrize("measure", ["peak", "peak_to_peak"])
 def test_extremes_of_rows_at_any_phases(measure: Measure) -> None:
     """Against sums at each row's own crank angles, so dense that jumps are met to 0.01 deg."""

@@ -322,6 +322,7 @@ def test_masses_alone_answer_as_analyses_do(angles: int | None) -> None:
 # -- the exact model, and effects of masses --------------------------------------------------------
 
 
+@pytest.mark.exhaustive(but=["1.0-True", "-1.0-False"])
 @pytest.mark.parametrize("drive", [False, True])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_exact_orders_are_those_of_a_fine_grid(sense: float, drive: bool) -> None:

@@ -128,6 +128,7 @@ def test_without_a_modulus_there_is_none() -> None:
     assert one.natural_frequency is None and one.deflection is None and one.path_error is None
 
 
+@pytest.mark.exhaustive(but=["True"])
 @pytest.mark.parametrize("planned", [False, True])
 def test_balancing_says_where_rigid_links_mislead(tmp_path: Path, planned: bool) -> None:
     """Of the machine that is balanced, whether or not somebody said what may be changed."""

@@ -211,6 +211,7 @@ def same_work(pair: Pair) -> None:
     assert found.lost == pytest.approx(pair.wanted.loss, abs=pair.case.tolerance * swing)
 
 
+@pytest.mark.exhaustive(but=["reversed", "motor"])
 @pytest.mark.parametrize(
     "name", few(["193 rpm", "reversed", "lifting off", "motor"], {"193 rpm", "reversed", "motor"})
 )

@@ -168,6 +168,8 @@ def test_a_shell_completes_commands_options_and_values(shell: str) -> None:
     assert "crank-zero" in text and re.search(r"svg\W+png\W+pdf", text)
 
 
+# The man page is made by tests/surface/test_added_command.py.
+@pytest.mark.exhaustive
 def test_the_man_page_tells_every_option(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["equipoise"])  # by which the program is called
     page = runpy.run_path(str(ROOT / "docs" / "man.py"))["page"]().decode().replace("\\-", "-")

@@ -449,6 +449,7 @@ def test_every_command_on_every_kind_of_file(part: int) -> None:
         tried(seed)
 
 
+@pytest.mark.exhaustive(but=["1", "2", "7"])
 @pytest.mark.usefixtures("with_progress")
 @pytest.mark.parametrize("part", range(PARTS))
 def test_every_command_on_machines_from_nothing(part: int, pytestconfig: pytest.Config) -> None:

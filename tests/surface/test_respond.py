@@ -114,6 +114,7 @@ def test_json_has_the_documented_shape(name: str, model: str) -> None:
     assert ("energy" in content) == (model == "exact")
 
 
+@pytest.mark.exhaustive(but=["yamashita-rig"])
 @pytest.mark.parametrize("name", few(GAUGES, {"yamashita-rig", "riding-transplanter"}))
 def test_the_default_model_is_force_and_moment(name: str) -> None:
     """However the support is held; in each command that has one."""
@@ -388,6 +389,7 @@ def test_rows_in_opposite_phase_on_a_float() -> None:
 # -- modes -----------------------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(but=["yamashita-rig-counterweight", "walking-transplanter"])
 @pytest.mark.parametrize("name", GAUGES)
 def test_modes(name: str) -> None:
     machine = eq.load(name)

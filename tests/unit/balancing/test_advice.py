@@ -629,6 +629,8 @@ def figures_of_advice(found: Balanced) -> dict[str, object]:
     return {key: found.to_dict()[key] for key in ("offered", "large", "tried", "flywheels")}
 
 
+# `test_every_answer_is_in_the_machine_readable_output` of test_beyond_masses.py.
+@pytest.mark.exhaustive
 def test_advice_is_machine_readable() -> None:
     values = figures_of_advice(advice_for("class-three"))
     assert values["offered"] is False

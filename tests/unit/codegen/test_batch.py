@@ -330,6 +330,8 @@ def test_failed_designs_leave_others_alone() -> None:
     assert alone.tobytes() == figures[reasons == 0].tobytes()
 
 
+# By NumPy: `test_numpy_changes_no_bit_either`.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("angles", few([None, 60], {60}))
 def test_order_and_splitting_change_no_bit(angles: int | None) -> None:
     values, batch = mixed(150), compiled_batch(angles)

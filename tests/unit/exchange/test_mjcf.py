@@ -117,6 +117,7 @@ def losses_in(machine: eq.Machine, tables: Iterable[str], crank_angle: float) ->
     )
 
 
+@pytest.mark.exhaustive(but=["0.0", "1.5", "3.0", "6.0"])
 @pytest.mark.parametrize("at", np.linspace(0.0, 6.0, 13))
 def test_dampers_and_viscous_resistances(at: float, tmp_path: Path) -> None:
     machine = machine_with(LINEAR)

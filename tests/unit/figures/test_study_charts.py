@@ -94,6 +94,7 @@ def given(size: int) -> tuple[designs.CloudDesigns, Block]:
     return designs.CloudDesigns(*told, lambda: [(0, block)], size, OWN, front), block  # type: ignore[arg-type]
 
 
+@pytest.mark.exhaustive(but=["600"])
 @pytest.mark.parametrize("size", [600, 6000])
 def test_all_designs_stand_behind_the_chosen_ones(size: int) -> None:
     some, block = given(size)

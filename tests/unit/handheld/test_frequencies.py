@@ -333,6 +333,7 @@ def test_an_absorber_without_a_spring_floats() -> None:
 # -- what is asked for -----------------------------------------------------------------------------
 
 
+@pytest.mark.exhaustive(but=["euler-bernoulli"])
 @pytest.mark.parametrize("theory", THEORIES)
 def test_more_or_fewer_of_the_same(theory: str) -> None:
     """The first few are those of many, whatever the bracket from which they were closed in on."""

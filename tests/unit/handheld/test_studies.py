@@ -62,6 +62,7 @@ def test_what_cannot_be_changed() -> None:
         changed(tool, "plain", "mass", -1.0)
 
 
+@pytest.mark.exhaustive(but=["position"])
 @pytest.mark.parametrize("key", ["position", "absorber.stiffness"])
 def test_frequencies_against_a_number(key: str) -> None:
     """Each as the changed tool has them, which finite elements prove in tests/secondroute."""

@@ -272,6 +272,8 @@ def test_a_minimum(name: str) -> None:
                 assert measure(tool, plan, speed) >= best * (1 - 1e-4)
 
 
+# Speeds of a band: tests/unit/handheld/test_transmission.py.
+@pytest.mark.exhaustive
 def test_a_narrow_resonance_in_the_band_is_resolved() -> None:
     """With next to no damping the band takes more speeds, and many searches are still told of."""
     plan = DesignPlan((250.0, 600.0), (DesignVariable("head", "mass", 1.0, 1.4),), hands=("rear",))

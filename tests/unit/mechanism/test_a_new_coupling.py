@@ -170,6 +170,8 @@ def test_its_cycle_and_its_share_of_mobility_follow() -> None:
     assert linkage.cycle.turns == assemble(with_gear(0.0)).cycle.turns
 
 
+# Compiled loops read all couplings alike: tests/secondroute/test_codegen.py.
+@pytest.mark.exhaustive
 def test_compiled_loops_have_designs_by_its_numbers() -> None:
     names = ("drive_torque", f"rollers.{NAME}", f"rollers.{NAME}.friction")
 

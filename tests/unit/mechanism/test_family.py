@@ -228,6 +228,7 @@ def test_all_numbers_of_every_dyad(polar: bool) -> None:
     same_steps(every_dyad(), numbers, drawn(numbers, 3, 1))
 
 
+@pytest.mark.exhaustive(but=["polar"])
 @pytest.mark.parametrize("polar", [False, True], ids=["xy", "polar"])
 def test_each_number_alone(polar: bool) -> None:
     for base in (GEARED, make("scotch_yoke", 1).machine):

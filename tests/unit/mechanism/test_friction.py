@@ -407,6 +407,7 @@ def test_studies_compute_what_friction_changes_machine_by_machine() -> None:
         assert can_compute(machine, paths, Figure("shaking_force", "rms"))
 
 
+@pytest.mark.exhaustive(but=["py", "xml", "mo", "html"])
 @pytest.mark.parametrize("ending", ["fmu", "html", "mo", "xml", "py"])
 def test_formats_say_that_they_leave_friction_out(ending: str, tmp_path: Any) -> None:
     left_out = eq.export(WORN, tmp_path / f"worn.{ending}")

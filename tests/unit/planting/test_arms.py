@@ -112,6 +112,8 @@ def with_start(machine: eq.Machine, start: float, **shape: float) -> eq.Machine:
     return replace(machine, gears=(*others, last))
 
 
+# Arms are told their starts by the other tests of this file.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("begun", few([-45.0, 10.0], {-45.0}))
 def test_an_arm_that_only_starts_elsewhere_is_told_its_start(begun: float) -> None:
     rotary = eq.load("rotary-transplanter")

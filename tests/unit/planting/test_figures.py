@@ -623,6 +623,7 @@ def test_radius_of_a_circle_and_of_a_trochoid() -> None:
         assert figures["ground.smallest_radius.value"] == pytest.approx(0.04**2 / 0.1, rel=1e-12)
 
 
+@pytest.mark.exhaustive(but=["0.99999", "1.01"])
 @pytest.mark.parametrize("forward", [1.01, 1.0001, 1.00001, 0.99999, 0.9999])
 def test_radius_of_a_path_that_nearly_has_a_cusp(forward: float) -> None:
     """Between two samples, the tip all but stops over ground."""

@@ -147,6 +147,8 @@ def test_a_slow_tip_neither_loops_nor_stops(forward: float) -> None:
     assert path.cusps() == ()
 
 
+# Crossings of fewer turns: `test_every_crossing_by_lines_between_samples`.
+@pytest.mark.exhaustive
 def test_a_path_that_crosses_itself_often_is_followed_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -226,6 +226,7 @@ def sampled_instants(machine: eq.Machine) -> list[float]:
     return [float(x) for x in theta[k][(middles >= 0) & (middles <= 1)]]
 
 
+@pytest.mark.exhaustive(but=["twice", "kim-chung-a"])
 @pytest.mark.parametrize("name", few(TRAYS, {"kim-chung-a", "three turns clockwise", "twice"}))
 def test_every_crossing_of_the_tray(name: str) -> None:
     machine = machine_of(name)
@@ -278,6 +279,8 @@ def test_an_edge_that_ends_beside_the_path(crank_angle: float, slant: float, bey
         assert apart(figures["pick_up.crank_angle"], last_before_entry(figures)) < 1e-9
 
 
+# Edges that end beside the path: the tests above.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("back", few([6.0, 40.0], {40.0}))
 def test_a_short_edge_passed_once_in_many_turns(back: float) -> None:
     """The line through it is crossed at every turn, the edge only long before the tip enters."""

@@ -233,6 +233,9 @@ def test_stability() -> None:
     assert str(note) == "a disturbance neither grows nor dies out: something is undamped"
 
 
+@pytest.mark.exhaustive(
+    but=["0.0-freedoms1-coupled", "-9.81-freedoms0-exact", "-9.80665-freedoms0-coupled"]
+)
 @pytest.mark.parametrize("model", ["coupled", "exact"])
 @pytest.mark.parametrize("freedoms", [("surge", "heave"), ("surge", "heave", "pitch")])
 @pytest.mark.parametrize("gravity", [-9.81, -9.80665, 0.0])
