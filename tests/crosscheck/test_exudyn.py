@@ -46,6 +46,8 @@ def test_from_rest() -> float:
     return difference(at_speed=False)
 
 
+# From rest, by the same model: the other test.
+@pytest.mark.exhaustive
 @compared(EXUDYN, "displacement of the frame in a second", 1e-7, "at the drive's speed")
 def test_at_the_speed_of_the_drive() -> float:
     return difference(at_speed=True)

@@ -85,6 +85,8 @@ NODES = np.polynomial.chebyshev.chebpts1(tabulated.NODES)
 LAST = tabulated.NODES - 1
 
 
+# Flywheels that are sized are run in `test_a_heavy_flywheel_is_sized_in_few_pieces`.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", few(["walking-transplanter", *RIGS], {"balance-rig"}))
 def test_with_a_motor_the_run_itself_is_as_even(name: str) -> None:
     machine = subject_of(name).machine
@@ -174,6 +176,8 @@ def test_how_far_a_run_is_can_be_seen() -> None:
     assert {done for done, _ in seen} == {0, 1, 2}
 
 
+# Currents in a run: tests/laws/test_motors.py.
+@pytest.mark.exhaustive
 def test_a_current_that_is_far_quicker_than_the_crank_takes_few_steps(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

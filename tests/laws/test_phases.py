@@ -102,6 +102,8 @@ def chosen(case: str) -> tuple[eq.Machine, Phasing]:
     return machine, choose_phases(machine, wishes, combine=combine)
 
 
+# Nothing better is found on grids: `test_no_phases_on_a_grid_of_5_degrees_are_better`.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("case", few(CASES, ["force"]))
 def test_nothing_better_is_found_by_evolution(case: str) -> None:
     """1e-6 of the value: sampled peaks are too low by up to 1e-7 times the square of the order."""

@@ -86,6 +86,8 @@ def test_a_stiff_start_is_followed_by_angle(monkeypatch: pytest.MonkeyPatch) -> 
     assert found.crank_speed[-1] == pytest.approx(speed_by_scipy(machine, found), rel=1e-8)
 
 
+# How many rounds it takes changes no figure; motion near a steady state: test_flywheels.py.
+@pytest.mark.exhaustive
 def test_near_a_steady_state_a_piece_takes_few_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each is begun with what the cycle before has gained there, so that 30 turns take 0.3 s; the
     motion is that of a run without that knowledge.

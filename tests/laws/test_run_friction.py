@@ -144,6 +144,8 @@ def test_the_acceleration_is_that_of_which_inverse_dynamics_needs_no_torque(
         assert abs(sum(float(forces.drive_torque[0]) for forces in each)) < 1e-9 * size
 
 
+# What friction takes: `test_a_coast_down_loses_its_energy_in_joints`.
+@pytest.mark.exhaustive
 def test_a_motor_works_against_friction() -> None:
     motor = Motor(300.0, 30.0)
     drive = replace(WORN.drive, speed=200.0, motor=motor)

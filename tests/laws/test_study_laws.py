@@ -98,6 +98,8 @@ def test_shares_against_scipy() -> None:
         assert effect.total.value == pytest.approx(float(np.ravel(theirs.total_order)[k]), abs=1e-9)
 
 
+# Shares and scatter of known functions: the other tests of this file.
+@pytest.mark.exhaustive
 def test_intervals_cover_what_they_say() -> None:
     """Of 95 % intervals at 60 seeds nearly all hold the true share."""
     slopes, inside = np.array([1.0, 2.0]), []

@@ -248,6 +248,8 @@ def same_response(found: Response, wanted: Response, tolerance: float = 1e-9) ->
     close(found.drive.torque.values(theta), wanted.drive.torque.values(theta), tolerance)
 
 
+# Phases that all rows share: the test beside it.
+@pytest.mark.exhaustive
 @every_model
 def test_a_phase_of_a_full_turn_changes_nothing(model: Model) -> None:
     machine = springs().with_rows([Row(), Row(phase=1.0)])
@@ -460,6 +462,8 @@ def test_a_support_in_space_that_moves_in_the_plane_only(model: Model) -> None:
     same_response(respond(deep, model=model), respond(flat, model=model))
 
 
+# Scales of everything: tests/laws/test_scaling.py.
+@pytest.mark.exhaustive
 @every_model
 @pytest.mark.parametrize("machine", [rig(), springs()], ids=["pivot", "free"])
 def test_everything_faster(machine: eq.Machine, model: Model) -> None:

@@ -205,6 +205,8 @@ def test_pairs_half_a_turn_apart_and_sets_a_quarter() -> None:
     assert sorted(halved(4).phases) == sorted(PATTERNS["4 quarter turns"].phases)
 
 
+# Pairs find the paper's phases in the other tests of this file.
+@pytest.mark.exhaustive
 def test_all_phases_at_once_find_the_same_as_pairs() -> None:
     """Section 5-6 (1), which was too long to compute: four rows of type II end up in the pattern
     that the rule has, with the least twist that its phases can have.

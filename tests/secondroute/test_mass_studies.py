@@ -92,6 +92,8 @@ def test_figures_are_those_of_each_design(name: str) -> None:
             assert value == pytest.approx(exact, abs=1e-9 * size), figure
 
 
+# Contacts of each design: tests/unit/studies/test_objective_map.py.
+@pytest.mark.exhaustive
 def test_contacts_that_change_sides_are_left_to_the_loops() -> None:
     """Forces inside such a linkage, and those alone: what reaches the frame stays linear."""
     taut, chain = eq.load("knife-drive"), chained()

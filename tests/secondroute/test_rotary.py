@@ -105,6 +105,9 @@ def test_ratio_of_an_antiparallelogram() -> None:
     np.testing.assert_allclose(slope, -(1 - k**2) / (1 + k**2 + 2 * k * np.cos(x)), atol=1e-8)
 
 
+# The paths themselves are compared in the tests of this file, figures of others in
+# test_planting.py.
+@pytest.mark.exhaustive
 def test_figures_of_planting_stand_on_these_paths() -> None:
     """Lowest point, height and hills of the bundled machine."""
     case, figures = CASES["bundled"], eq.plant(MACHINES["bundled"])

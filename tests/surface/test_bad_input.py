@@ -375,6 +375,8 @@ def test_only_pictures_show_a_crank_that_cannot_turn_and_say_so() -> None:
     assert ", swinging as its crank" in Path("pictures/linkage.svg").read_text()
 
 
+# Bases that do not turn: `test_base_need_not_turn` of tests/unit/codegen.
+@pytest.mark.exhaustive
 def test_a_study_of_designs_that_turn_may_begin_with_one_that_does_not() -> None:
     Path("bad.toml").write_text(STUCK["crank too long"])
     vary = '{ path = "links.crank.points.B[1]", range = ["30 mm", "120 mm"], steps = 4 }'
@@ -519,6 +521,7 @@ main()
 """
 
 
+@pytest.mark.exhaustive(but=["os-fsync"])
 @pytest.mark.parametrize(
     ("module", "function"), [("equipoise.results.analysis", "analyze"), ("os", "fsync")]
 )

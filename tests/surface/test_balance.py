@@ -120,6 +120,7 @@ def test_prices_of_masses() -> None:
 PLATE = ("--thickness", "10 mm", "--material", "steel", "--radius", "50 mm")
 
 
+@pytest.mark.exhaustive(but=["sector", "point"])
 @pytest.mark.parametrize("shape", ["any", "point", "disc", "sector"])
 def test_shapes(shape: str) -> None:
     plate = PLATE if shape in {"disc", "sector"} else PLATE[-2:]
@@ -352,6 +353,8 @@ def test_the_new_model_does_what_was_printed(name: str) -> None:
     assert "ready to be analysed" in succeeded(equipoise("check", "new.toml"))
 
 
+# Planting stays as it is: tests/unit/balancing/test_balanced.py.
+@pytest.mark.exhaustive
 def test_planting_figures_are_kept() -> None:
     text = run("kim-chung-a", "--crank-counterweight", *FORCE)
     assert "The planting figures stay as they are." in text
@@ -548,6 +551,8 @@ def test_an_output_of_a_link_of_two_words_is_an_objective() -> None:
     assert (aim.output, aim.measure, aim.orders) == ("drives.left crank.torque", "peak", (1.0,))
 
 
+# First lines: tests/unit/results/test_headline.py.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", few(["quick-return", "plunger-pump"], {"quick-return"}))
 def test_where_masses_stay_the_flywheel_that_helps_stands_on_the_first_page(name: str) -> None:
     """A torque that swings is what is large there, and only `--full` said what steadies it."""

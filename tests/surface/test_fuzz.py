@@ -378,6 +378,8 @@ EXTREME = {
 }
 
 
+# Arguments at random, and values one by one, are tried on every change.
+@pytest.mark.exhaustive
 @given(
     st.sampled_from(EXAMPLES),
     some_of(EXTREME),

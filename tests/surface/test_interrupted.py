@@ -272,6 +272,8 @@ main()
 """
 
 
+# Interrupts while modules are imported: the tests above.
+@pytest.mark.exhaustive
 def test_an_interrupt_that_a_library_drops(folder: Path) -> None:
     words = [sys.executable, "-c", SWALLOWING, "analyze", "yamashita-1", "--csv", "out.csv"]
     done = heeding(words)

@@ -532,6 +532,8 @@ def test_what_is_written_goes_through_no_link_that_comes_meanwhile(
     assert planted_there
 
 
+# By Python: the test below; each writer refuses links on every change.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", few(DRAWING, OFTEN))
 @pytest.mark.usefixtures("store")
 def test_pictures_go_into_the_folder_that_was_named_whatever_comes_there(

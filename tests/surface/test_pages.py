@@ -128,6 +128,8 @@ def test_a_wrong_command_would_be_seen() -> None:
     assert "--no-such" not in options() and {"--full", "--json", "--plot"} <= options()
 
 
+# Its commands are run by `make documentation`.
+@pytest.mark.exhaustive
 def test_the_first_hour_tells_what_is_offered_without_a_plan() -> None:
     text = example_text("sieve").partition("\n[balance]")[0]
     found = read("balance", written(text))

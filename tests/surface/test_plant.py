@@ -197,6 +197,8 @@ def test_a_machine_at_rest() -> None:
     assert "ground_distance" not in content["soil"]
 
 
+# Stays: tests/secondroute/test_planting.py.
+@pytest.mark.exhaustive
 def test_every_stay_is_listed() -> None:
     eq.save(twice(), "twice.toml")
     text = succeeded(equipoise("plant", "twice.toml", "--crank-zero", "10 deg"))

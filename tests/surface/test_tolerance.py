@@ -91,6 +91,8 @@ def test_fewer_machines() -> None:
     assert "\n512 machines drawn, seed 1\n" in shown
 
 
+# Bundled studies are checked, and other tolerances computed, on every change.
+@pytest.mark.exhaustive
 def test_a_bundled_study() -> None:
     shown = succeeded(equipoise("tolerance", "study-of-tolerances", "--designs", "1024"))
     assert "Tighten first: " in shown

@@ -138,6 +138,8 @@ def test_every_table_follows_the_units_that_are_asked_for(words: tuple[str, ...]
     assert printed(words, "asking/pump.toml", "--units", "mm, N, kg, deg, N m, kg m^2") != text
 
 
+# Units of every quantity: tests/unit/quantities.
+@pytest.mark.exhaustive
 def test_the_same_value_whatever_its_unit() -> None:
     rows = {
         unit: cells(

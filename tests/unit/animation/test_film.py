@@ -89,6 +89,8 @@ def check_tip(frames: list[np.ndarray], scene: Scene, shade: str, near: float) -
         assert abs(frame[0, 0] - color(LIGHT["paper"])).max() <= near
 
 
+# Links in a film: the test below; bytes of films: tests/surface/test_animate.py.
+@pytest.mark.exhaustive
 def test_a_gif_shows_the_motion_in_steady_colors() -> None:
     _, scene, _ = analyzed("yamashita-1", 720)
     data = gif(scene, traced=["P"], **SMALL)

@@ -411,6 +411,8 @@ def test_what_leaves_a_single_joint_or_direction_worse_is_not_offered(name: str,
     assert f"{what}, peak" in grown
 
 
+# Limits of growth: `test_what_is_large_may_grow_by_a_tenth_of_what_is_saved`.
+@pytest.mark.exhaustive
 def test_a_trifle_may_grow() -> None:
     """What stays below a tenth of its yardstick is no headline figure."""
     found = advice_for("balance-shafts")
@@ -447,6 +449,8 @@ def test_what_is_large_may_grow_by_a_tenth_of_what_is_saved() -> None:
         assert worse_headlines((one,), (replace(one, value=most + 1e-3),), saving)
 
 
+# Limits of growth: `test_what_is_large_may_grow_by_a_tenth_of_what_is_saved`.
+@pytest.mark.exhaustive
 def test_what_was_nothing_may_not_become_large() -> None:
     """Other phases of rows may bring a couple where there was none."""
     found = advice_for("balance-shafts")
@@ -499,6 +503,8 @@ def test_a_weight_that_takes_off_less_than_a_quarter_is_not_offered() -> None:
         assert why_not(one) == "that is too little"
 
 
+# `test_beside_a_torque_nothing_that_shakes_may_grow`.
+@pytest.mark.exhaustive
 def test_what_evens_a_torque_may_not_shake_the_machine_more() -> None:
     """A weight of 29 % of the links of a flap folder would even its torque, and raise its shaking
     force from 5.0 to 6.3 N: small beside its weight, but a spring or a flywheel costs none of it.
@@ -741,6 +747,8 @@ def test_arms_that_would_strike_each_other_are_not_named() -> None:
     assert spaced_arms_for(analysis, assess(analysis), 0.0) is None
 
 
+# Little against what is not large: `test_little_is_added_against_what_is_not_large`.
+@pytest.mark.exhaustive
 def test_no_weight_against_what_is_not_large_where_more_arms_do_more() -> None:
     found = advice_for("baler-pickup")
     assert not found.helps and found.advice is not None
@@ -748,6 +756,8 @@ def test_no_weight_against_what_is_not_large_where_more_arms_do_more() -> None:
     assert not force.is_large
 
 
+# Couples: `test_a_couple_is_aimed_at_where_that_is_what_is_large`.
+@pytest.mark.exhaustive
 def test_two_weights_at_the_ends_take_the_couple_that_turns_with_the_crank() -> None:
     """The best two by least squares on the samples of the couple of three rows."""
     machine = eq.load(ADVISED / "inline-3-rows.toml")

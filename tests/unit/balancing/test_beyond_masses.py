@@ -434,6 +434,8 @@ def test_half_of_what_reciprocates_is_a_choice_with_both_forces() -> None:
     assert "choose by what the mounts bear" in said("four-stroke-engine")
 
 
+# Pistons of engines: `test_half_of_what_reciprocates_is_a_choice_with_both_forces`.
+@pytest.mark.exhaustive
 def test_a_piston_is_that_of_a_crank() -> None:
     """Not a knife that a crank drives by levers, and a belt the crank."""
     assert beyond("knife-drive").piston is None
@@ -495,6 +497,8 @@ def test_no_shafts_are_named_where_the_counterweight_leaves_too_little_for_them(
 # -- a weight on a slow crank ----------------------------------------------------------------------
 
 
+# A weight against order 1: test_what_is_said_first.py.
+@pytest.mark.exhaustive
 def test_a_weight_on_a_slow_crank_takes_the_torque_of_order_1() -> None:
     """With it on the crank the swing is what is told, by a whole analysis."""
     machine, weight = advice_for("pump-jack").original, beyond("pump-jack").counterbalance

@@ -361,6 +361,8 @@ def test_a_disc_stays_a_disc(shares: tuple[float, ...], monkeypatch: pytest.Monk
         assert len(pieces) <= 1
 
 
+# Gauges and shafts apart: the other tests of this file and test_gear_search.py.
+@pytest.mark.exhaustive
 def test_shafts_for_a_gauge() -> None:
     """A first-order pair on the rig: their masses make it heavier, and it is still read right."""
     shafts = BalanceShafts(1, ((0.0, -0.1), (0.1, -0.1)), Weight(radius=0.05, at_most=0.5))

@@ -117,6 +117,8 @@ def test_order_of_shafts_does_not_count() -> None:
     assert cost(TOOTHED, CRANK) == pytest.approx(cost(CRANK, TOOTHED), rel=1e-6)
 
 
+# Limits that nothing keeps: tests/unit/balancing/test_optimisation.py.
+@pytest.mark.exhaustive
 def test_limits_that_no_gears_keep() -> None:
     limits = (Limit(Objective("shaking_moment"), ratio=1e-6),)
     with pytest.raises(UsageError, match="at most"):

@@ -331,6 +331,8 @@ def test_progress_is_told(measure: Measure) -> None:
     assert refining[-1][0] == refining[-1][1]
 
 
+# Progress: the test above.
+@pytest.mark.exhaustive
 def test_each_arrangement_tells_of_its_steps() -> None:
     """Which takes a minute where a cycle has many turns and peaks count."""
     _, refining, _ = parts_told(replace(FORCE, measure="peak"))
@@ -340,6 +342,8 @@ def test_each_arrangement_tells_of_its_steps() -> None:
     assert len(refining) >= 3 * cells
 
 
+# Interrupts of searches: tests/unit/studies/test_run.py.
+@pytest.mark.exhaustive
 def test_refining_is_interrupted_between_two_steps() -> None:
     heard = []
 

@@ -219,6 +219,8 @@ def test_gauges_at_several_speeds() -> None:
     assert found.bound <= found.cost
 
 
+# The scope of rows: the other tests of this file.
+@pytest.mark.exhaustive
 def test_gears_are_told_in_the_scope() -> None:
     weight = Weight("any", 0.04, at_most=0.3)
     plan = Balance(

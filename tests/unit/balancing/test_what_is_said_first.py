@@ -93,6 +93,8 @@ def test_the_radius_of_a_crank_is_from_its_pivot() -> None:
     assert weights[1].radius == pytest.approx(weights[0].radius) == pytest.approx(0.7)
 
 
+# Half a piston stands before it too: the first test of this file.
+@pytest.mark.exhaustive
 def test_more_arms_stand_before_the_plate_that_brings_less() -> None:
     first, second, *_ = first_lines("planetary-planting-arm")
     assert first.startswith("A second arm like this one, opposite on carrier, would take 100 %")
@@ -244,6 +246,8 @@ def test_a_mass_of_another_density_names_that() -> None:
     assert "10.00 mm of 4500 kg/m³, " in " ".join(in_short(change))
 
 
+# Holes: `test_holes_take_off_what_is_too_heavy` of test_advice.py.
+@pytest.mark.exhaustive
 def test_mass_that_is_taken_off_is_told_as_a_hole() -> None:
     """67 g of steel are 8.5 cm3."""
     found = advice_for("yamashita-rig-counterweight")

@@ -146,6 +146,8 @@ def opening(rng: np.random.Generator) -> list[float]:
     return laid(rng, frame, crank, reach * 0.55, reach * 0.45)
 
 
+# Four-bars of any lengths, some of which open: the first test of this file.
+@pytest.mark.exhaustive
 def test_four_bars_that_open_somewhere(numpy_engine: None) -> None:
     """A dyad that closes at some crank angles cannot turn fully; that is not to close at none."""
     rng = np.random.default_rng(5)

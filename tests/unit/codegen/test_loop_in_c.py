@@ -34,6 +34,8 @@ print("alike")
 """
 
 
+# The loop in C is a benchmark's, no part of the product.
+@pytest.mark.exhaustive
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
 def test_the_loop_in_c_gives_the_figures_of_many_designs(tmp_path: Path) -> None:
     """In a process of its own: a library compiled with -ffast-math takes its process the small

@@ -126,6 +126,8 @@ def test_phases_are_chosen_by_it_without_a_proof(added: RandomSearch) -> None:
     SOLVERS.insert(0, added)
 
 
+# Searches of studies take it: the first test of this file.
+@pytest.mark.exhaustive
 def test_the_search_of_geometry_takes_it(added: RandomSearch) -> None:
     goal = Requirement("curve.height", make="smallest")
     found = fit_planting(eq.load("kim-chung-a"), [goal], {"crank": (0.03, 0.05)})
@@ -133,6 +135,8 @@ def test_the_search_of_geometry_takes_it(added: RandomSearch) -> None:
     assert found.after["curve.height"] < eq.plant(eq.load("kim-chung-a"))["curve.height"]
 
 
+# Searches of studies take it: the first test of this file.
+@pytest.mark.exhaustive
 def test_a_tool_is_designed_by_it(added: RandomSearch) -> None:
     found = design_tool(eq.load("brush-cutter"))
     assert found.to_dict()["solver"] == "random search" and not found.to_dict()["proved"]

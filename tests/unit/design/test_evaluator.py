@@ -144,6 +144,8 @@ def test_what_is_over_at_once_is_computed_here(monkeypatch: pytest.MonkeyPatch) 
         evaluate.runner.pool = None
 
 
+# Nor does any in a loop: tests/unit/codegen/test_batch.py, by NumPy.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", few(["kim-chung-a", "transplanter"], {"kim-chung-a"}))
 def test_no_figure_of_a_finger_depends_on_those_computed_beside_it(name: str) -> None:
     """Bit for bit, so that it does not matter into which parts designs are shared out."""

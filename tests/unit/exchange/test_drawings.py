@@ -266,6 +266,8 @@ def centroid(edges: list[tuple[complex, float]]) -> complex:
     return complex(np.sum(areas * (a + b) / 3) / np.sum(areas))
 
 
+# Files of other kinds are the same too: tests/unit/figures/test_other_charts.py.
+@pytest.mark.exhaustive
 def test_workshop_drawings_are_the_same_bytes_on_every_run(tmp_path: Path) -> None:
     found = eq.balancing.advise(eq.load("balance-shafts"))
     for name in ("a.pdf", "b.pdf"):

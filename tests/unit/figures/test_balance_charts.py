@@ -126,6 +126,8 @@ def rig() -> Balanced:
     return eq.balance(eq.load("balance-rig"))
 
 
+# Gauges over speed: tests/unit/figures/test_vibration_charts.py.
+@pytest.mark.exhaustive
 def test_a_gauge_is_drawn_at_each_speed_at_which_it_is_read() -> None:
     """Against the steady state of both machines, and with the joint whose force is limited."""
     result = rig()

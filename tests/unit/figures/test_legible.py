@@ -67,6 +67,7 @@ def scale_of(view: View) -> float:
     return view.y.length / (view.y.high - view.y.low) / larger
 
 
+@pytest.mark.exhaustive(but=["quick-return", "class-three"])
 @pytest.mark.parametrize("name", few(LINKAGES, DISTINCT))
 def test_one_scale_for_one_quantity(name: str) -> None:
     for chart, found in drawn(name):
@@ -75,6 +76,7 @@ def test_one_scale_for_one_quantity(name: str) -> None:
             assert same, (chart.name, one.panel.title, other.panel.title)
 
 
+@pytest.mark.exhaustive(but=["slider-crank-engine", "quick-return", "hydraulic-loader"])
 @pytest.mark.parametrize("name", LINKAGES)
 def test_forces_have_one_unit(name: str) -> None:
     for chart, found in drawn(name):

@@ -129,6 +129,8 @@ def test_drive_torque_and_crank_speed() -> None:
     assert len(pictures("rig")["drive"].panels) == 1
 
 
+# Curves against the crank angle: the other tests of this file.
+@pytest.mark.exhaustive
 def test_from_rest_against_time() -> None:
     machine = eq.load("walking-transplanter")
     transient = simulate(machine, 0.5, drive=True, samples=300)

@@ -91,6 +91,8 @@ def test_files_keep_the_point(language: str) -> None:
         assert dumps(again.machine) == model
 
 
+# Reports have it in tables, tiles and pictures: the test above.
+@pytest.mark.exhaustive
 def test_a_workshop_drawing_has_it(language: str, tmp_path: Path) -> None:
     import ezdxf
 

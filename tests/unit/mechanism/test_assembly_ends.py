@@ -83,6 +83,8 @@ def test_each_group_reads_what_was_solved_before_it(first: int, tmp_path: Path) 
     assert count > 20
 
 
+# Two dyads that share a point: tests/surface/test_serve.py.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("first", few(range(0, 160, 20), (0,)))
 def test_sides_are_tried_without_asking_for_sides_again(
     first: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -188,6 +188,8 @@ def by_cells(inside: Callable[[Any], Any], half: float, count: int) -> tuple[flo
     )
 
 
+# Plates and holes in closed form: the other tests of this file.
+@pytest.mark.exhaustive
 def test_a_plate_with_holes_by_small_cells() -> None:
     corners = [-0.9 - 0.6j, 0.8 - 0.5j, 0.7 + 0.7j, -0.2 + 0.2j, -0.8 + 0.8j]
     holes = [(0.4 + 0.1j, 0.2), (-0.6 - 0.1j, 0.15)]

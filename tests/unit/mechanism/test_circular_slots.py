@@ -160,6 +160,8 @@ def test_a_pin_that_never_moves_is_held_in_its_slot_too() -> None:
         eq.move(standing(side, (2.0, 3.0)))
 
 
+# Designs of curved slots vary alike: test_curved_slots.py.
+@pytest.mark.exhaustive
 def test_designs_vary_its_radius_and_its_ends() -> None:
     angle = eq.move(MACHINE).element_values("circular_slots", 0)["angle"]
     arc = float(np.min(angle)) - 0.05, float(np.max(angle)) + 0.05

@@ -93,6 +93,8 @@ def test_soil_crossings_are_entry_and_exit_of_the_deepest_stay(name: str) -> Non
         assert abs(leave[k] - entry[k]) == pytest.approx(single["soil.crank_travel"], abs=1e-12)
 
 
+# A tray that is missed: `test_trays_are_met_and_missed`.
+@pytest.mark.exhaustive
 def test_designs_that_do_not_enter_or_leave_have_no_crossings() -> None:
     """By a surface that the first tip never reaches, and the second, 0.3 m lower, never leaves."""
     machine = eq.load("kim-chung-a").with_planting(depth=None, surface=-0.2)

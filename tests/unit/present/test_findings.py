@@ -92,6 +92,8 @@ def test_what_comes_later_is_not_computed() -> None:
     assert not {"response", "sweep", "balanced"} & vars(found).keys()
 
 
+# Another speed of other results: tests/surface/test_tool.py.
+@pytest.mark.exhaustive
 def test_a_tool_is_found_at_another_speed() -> None:
     found = find("pole-saw", speed=700.0)
     assert isinstance(found, ToolFindings)

@@ -95,6 +95,8 @@ def test_it_is_the_same_on_every_run_in_another_language():
     assert '<html lang="ja">' in text and "要約" in text and "Summary" not in text
 
 
+# Reports of tools are drawn in tests/unit/present/test_findings.py.
+@pytest.mark.exhaustive
 def test_a_tool_has_its_report():
     found = findings_of("brush-cutter")
     assert isinstance(found, ToolFindings)

@@ -88,6 +88,8 @@ def test_a_notebook_shows_a_tool() -> None:
 # -- pictures --------------------------------------------------------------------------------------
 
 
+# Into axes: the test beside it.
+@pytest.mark.exhaustive
 def test_plot_gives_a_figure_that_a_notebook_shows() -> None:
     analysis = eq.analyze(FOUR_BAR, 90)
     figure = analysis.plot()

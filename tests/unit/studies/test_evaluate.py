@@ -228,6 +228,8 @@ def test_a_tool_of_named_speeds_needs_no_range() -> None:
     )
 
 
+# Figures of each command: `test_figures_are_those_that_the_command_prints`.
+@pytest.mark.exhaustive
 def test_several_commands_share_a_design() -> None:
     given = study(
         "transplanter",

@@ -181,6 +181,8 @@ def test_contacts_that_change_sides_are_those_of_each_machine(output: str, tmp_p
             assert found.values[row, column] == pytest.approx(value, rel=1e-9)
 
 
+# Designs that fail among others: tests/unit/codegen/test_batch.py.
+@pytest.mark.exhaustive
 def test_what_cannot_turn_has_no_value() -> None:
     """Against Grashof: the crank turns where shortest and longest are less than the others."""
     over = {

@@ -54,6 +54,8 @@ def test_it_begins_at_rest_with_the_crank_turning() -> None:
     np.testing.assert_allclose(found.crank_angle, SPEED * found.time, rtol=1e-12, atol=1e-12)
 
 
+# Free decay: tests/literature/test_yamashita_decay.py and the tests beside it.
+@pytest.mark.exhaustive
 def test_free_decay_of_a_body_alone() -> None:
     """A pendulum beside its equilibrium, with links that weigh nothing, by its own equation."""
     inertia, arm, damping = 0.4, 0.5, 0.3

@@ -351,6 +351,8 @@ def test_signs_follow_the_numbers(name: str, tmp_path: Path) -> None:
     compare_drawings(got["signs"], stage_of(scene, [])["signs"], abs(high - low))
 
 
+# What is left out of such a page: `test_what_is_left_out_is_reported`.
+@pytest.mark.exhaustive
 @node
 def test_lengths_that_have_to_agree_are_no_fields(tmp_path: Path) -> None:
     """Joints of the straw walker hold more than its motion needs: masses and speed can change."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -68,6 +69,8 @@ def test_random_messages(message: Any) -> None:
     answered(session, json.dumps(message))
 
 
+# Random making, and each value of tables as nonsense: the tests beside it.
+@pytest.mark.exhaustive
 @given(st.sampled_from(MACHINES), st.data())
 @fuzz
 def test_random_edits(name: str, data: st.DataObject) -> None:

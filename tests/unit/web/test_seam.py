@@ -121,6 +121,8 @@ LATER = {"handheld", "studies", "codegen", "planting", "exposure", "vibration", 
 """Rooms that a machine without a support moves without."""
 
 
+# A start is quick: tests/surface/test_tool.py; rooms: the contracts of pyproject.toml.
+@pytest.mark.exhaustive
 def test_a_first_machine_moves_before_other_rooms_are_imported() -> None:
     """Importing them takes a second in a browser, where everything is compiled at each start."""
     done = subprocess.run([sys.executable, "-c", FIRST], capture_output=True, text=True, check=True)

@@ -215,6 +215,8 @@ def test_the_plan_of_a_file_outlives_balancing(tmp_path: Path) -> None:
     assert [one["label"] for one in told.content["aims"]] == ["shaking force x, RMS"]
 
 
+# Counterweights are: `test_balancing_again_replaces_the_counterweight`.
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", few(["balance-geared-b", "balance-shafts"], {"balance-shafts"}))
 def test_shafts_of_a_plan_are_replaced_by_balancing_again(name: str) -> None:
     """Whose names are taken by the first ones, so that the plan has others."""

@@ -178,6 +178,8 @@ def test_the_file_of_a_tool_is_saved_in_place(path: Path) -> None:
     assert "pole-saw was not opened from a file" in refused.content["message"]
 
 
+# A model comes with its tables: tests/unit/web/test_downloads.py.
+@pytest.mark.exhaustive
 def test_a_tool_that_is_dropped_takes_its_tables_along() -> None:
     desk = begun(None)()
     asked = {"name": "mine.toml", "text": HELD}
