@@ -52,7 +52,7 @@ def test_motors_of_straight_lines_start_exponentially() -> None:
     for slope, (course, final) in rates.items():
         wanted = final * (1 - np.exp(-slope / INERTIA * found.time))
         np.testing.assert_allclose(course.speed, wanted, atol=1e-9 * abs(final))
-        np.testing.assert_allclose(course.torque, slope * (final - course.speed), atol=1e-8)
+        np.testing.assert_allclose(course.effort, slope * (final - course.speed), atol=1e-8)
     assert found.end.kind == "time"
 
 
@@ -83,7 +83,7 @@ def test_a_crank_that_follows_the_first_takes_nothing_from_it() -> None:
     )
     right = beside.drives["right"]
     wanted = INERTIA * 2 * (6.0 - 6.0 / 30.0 * beside.drives["left"].speed) / INERTIA
-    np.testing.assert_allclose(right.torque, wanted, rtol=1e-8, atol=1e-8)
+    np.testing.assert_allclose(right.effort, wanted, rtol=1e-8, atol=1e-8)
 
 
 @pytest.mark.parametrize("speed", [20.0, -20.0])
@@ -137,7 +137,7 @@ def test_motors_are_switched_off_and_a_brake_stops_the_first() -> None:
     left, right = found.drives.values()
     assert abs(left.speed[-1]) < 1e-2 and right.speed[-1] > 1.0
     after = found.time > 0.5
-    assert not np.any(right.torque[after]) and not np.any(right.electric.current[after])
+    assert not np.any(right.effort[after]) and not np.any(right.electric.current[after])
     assert found.work["brake"][-1] < 0
     assert found.energy_error < 1e-9
 

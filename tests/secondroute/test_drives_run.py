@@ -4,14 +4,14 @@ the centres of mass of a motion.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import pi
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicHermiteSpline
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
 import equipoise as eq
 from equipoise.mechanism.assembly.linkage import assemble
@@ -19,13 +19,14 @@ from equipoise.mechanism.assembly.steps import run as run_steps
 from equipoise.mechanism.assembly.steps import u
 from equipoise.mechanism.dynamics.applied_loads import given_loads, spring_demands
 from equipoise.mechanism.dynamics.reactions import demands_of
-from equipoise.mechanism.dynamics.reduced import generalized_force, weight_torque
+from equipoise.mechanism.dynamics.reduced import generalized_force
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
-from equipoise.mechanism.parts.laws import AngleLaw
+from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw
 from equipoise.mechanism.parts.machine import FurtherDrive
+from equipoise.running.drives_blocks import verdict
 from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_friction import NEAR_REST
 from support.machines import make
@@ -94,7 +95,11 @@ def with_rotors(machine: eq.Machine) -> eq.Machine:
 
 
 def against_free_bodies(
-    machine: eq.Machine, duration: float, given: Mapping[str, Any], **start: Any
+    machine: eq.Machine,
+    duration: float,
+    given: Mapping[str, Any],
+    strokes: Sequence[Any] = (),
+    **start: Any,
 ) -> Any:
     """Compare all cranks' angles over time; return the run."""
     found = eq.run(machine, duration, **start)
@@ -112,6 +117,7 @@ def against_free_bodies(
         entry.joint.partition(".")[2]: (entry.friction or 0.0) * (entry.radius or 0.0)
         for entry in machine.joints
     }
+    bodies.strokes = strokes
     bodies.slow = NEAR_REST * abs(machine.drive.speed)
     state = np.concatenate([bodies.start(angles, speeds), np.zeros(more)])
     times = np.linspace(0.0, found.time[-1], 40)
@@ -194,7 +200,7 @@ def test_a_five_bar_moves_freely() -> None:
     found = against_free_bodies(five_bar(drive, other), 0.5, {}, speed=12.0)
     total = found.kinetic_energy - found.work["weight"]
     np.testing.assert_allclose(total, total[0], rtol=BALANCE)
-    assert not np.any(found.drives["left crank"].torque)
+    assert not np.any(found.drives["left crank"].effort)
 
 
 def test_a_motor_beside_a_crank_of_constant_speed() -> None:
@@ -229,6 +235,91 @@ def test_a_drive_that_follows_the_crank_feels_its_own_torque_alone() -> None:
     left, right = found.drives.values()
     np.testing.assert_allclose(right.angle, pi / 3 - left.angle, atol=1e-12)
     assert found.energy_error < BALANCE
+
+
+# -- strokes ---------------------------------------------------------------------------------------
+
+LENGTHS = (0.1, 0.12)
+
+
+def pushed_five_bar(
+    drive: eq.Drive, lengths: tuple[float, float] = LENGTHS, start: float = 2.0
+) -> eq.Machine:
+    """The five-bar with a cylinder between both of its cranks."""
+    machine = five_bar(drive, FurtherDrive("right crank", start=2.0))
+    crank = machine.links["left crank"]
+    crank = replace(crank, points={**crank.points, "P": (0.01, 0.002)})
+    stroke = LengthLaw(between=lengths)
+    other = FurtherDrive("right crank", start=start, between=("P", "D"), stroke=stroke)
+    return replace(machine, links={**machine.links, "left crank": crank}, drives=(other,))
+
+
+def stroke_by_time(time: float) -> tuple[float, float, float]:
+    """To and fro in a turn of a crank at 15 rad/s."""
+    middle, half, turned = np.mean(LENGTHS), (LENGTHS[1] - LENGTHS[0]) / 2, 15.0 * time
+    cos, sin = half * np.cos(turned), half * np.sin(turned)
+    return middle - cos, 15.0 * sin, 15.0**2 * cos
+
+
+def test_a_cylinder_between_the_cranks_of_a_five_bar() -> None:
+    """The first drive is free beside a cycle that goes on evenly."""
+    drive = eq.Drive("left crank", 15.0, free=True, motion=AngleLaw(between=(0.0, 0.5)))
+    machine, pushing = pushed_five_bar(drive), (("left crank", "P"), ("right crank", "D"))
+    found = against_free_bodies(machine, 0.2, {}, [(*pushing, stroke_by_time)])
+    course = found.drives["right crank"]
+    wanted = [stroke_by_time(time)[0] for time in found.time]
+    np.testing.assert_allclose(course.length, wanted, atol=1e-12)
+    bodies = PinnedBodies(machine, {}, motor_torques(machine, {})[0])
+    bodies.strokes = [(*pushing, stroke_by_time)]
+    motion = found.motion_at(np.array([0]))
+    angles = {link: float(np.angle(motion.state[u(link)[0]][0])) for link in machine.links}
+    speeds = {link: item.speed[0] for link, item in found.drives.items()}
+    multiplier = bodies.multipliers(0.0, bodies.start(angles, speeds))[-1]
+    # of half a squared length, and on the side of the accelerations
+    np.testing.assert_allclose(course.effort[0], -multiplier * course.length[0], rtol=1e-8)
+
+
+def test_a_cylinder_turns_a_crank_as_a_given_motion_does() -> None:
+    """Its force has the moment that the motion takes, and does its work."""
+    drive = eq.Drive("left crank", 15.0, motor=LAGGING)
+    machine = five_bar(drive, FurtherDrive("right crank", start=1.0))
+    stroke = LengthLaw(between=(0.065, 0.095))
+    pushed = FurtherDrive("right crank", start=1.0, between=("G", "D"), stroke=stroke)
+    machine = replace(
+        machine, frame={**machine.frame, "G": (0.2, 0.02)}, drives=(pushed,), joints=JOINTS
+    )
+    found = eq.run(machine, 0.05)
+    assert found.energy_error < BALANCE
+    course, crank = found.drives["right crank"], found.crank_angle
+    np.testing.assert_allclose(course.length, stroke.value(crank)[0], atol=1e-12)
+    turn = machine.moved(crank)["right crank"]
+    np.testing.assert_allclose(course.angle, turn[0], atol=1e-11)
+    work = found.work["drives.right crank"]
+    time, places = np.unique(found.time, return_index=True)
+    power = course.effort * stroke.value(crank)[1] * found.drives["left crank"].speed
+    done = CubicSpline(time, power[places]).antiderivative()(time)
+    np.testing.assert_allclose(done - done[0], work[places], atol=1e-4 * np.max(np.abs(work)))
+    # without friction, which the force adds to, a torque on the crank does the same
+    free = replace(machine, joints=())
+    at = np.arange(360) * pi / 180
+    angles = AngleLaw(crank_angles=tuple(at), values=tuple(free.moved(at)["right crank"][0]))
+    turned = replace(free, drives=(FurtherDrive("right crank", motion=angles),))
+    pairs = [eq.run(each, 0.05).drives["left crank"] for each in (free, turned)]
+    np.testing.assert_allclose(pairs[0].turns, pairs[1].turns, rtol=1e-5)
+    assert np.max(np.abs(course.effort)) > 1.0
+
+
+def test_a_run_ends_where_a_stroke_has_no_lever() -> None:
+    """The cylinder and the crank that it turns are then in one line."""
+    drive = eq.Drive("left crank", 15.0, free=True, motion=AngleLaw(between=(0.0, 0.2)))
+    found = eq.run(pushed_five_bar(drive, (0.064, 0.068), 2.9), 1.0)
+    assert (found.end.kind, found.end.of) == ("lever", "right crank")
+    motion = found.motion_at(np.array([len(found.time) - 1]))
+    end, pushed, pivot = (motion.point(name).place[0] for name in "PDE")
+    across = np.imag((pushed - end) * np.conj(pushed - pivot))
+    assert abs(across) < 2e-3 * abs(pushed - end) * abs(pushed - pivot)
+    assert found.energy_error < 1e-7
+    assert "right crank" in verdict(found)
 
 
 # -- the equations of motion -----------------------------------------------------------------------
@@ -274,15 +365,22 @@ def test_equations_of_motion_are_those_of_centres_of_mass(kind: str, seed: int) 
     np.testing.assert_allclose(state.inertia[:, :, 0], inertia, atol=1e-12 * scale)
     fastest = np.max(np.abs(speeds)) ** 2
     np.testing.assert_allclose(state.pose.bias[:, 0], bias, atol=1e-10 * scale * fastest)
-    acting = dict(zip(equation.sources, state.forces[..., 0], strict=True))
+    acting = dict(zip((item.key for item in equation.sources), state.forces[..., 0], strict=True))
     wanted = {
-        "weight": weight_torque(motion)[:count],
+        "weight": weight_by_centres(motion)[:count],
         "springs": generalized_force(motion, spring_demands(motion, rated=False))[:count],
         "loads": generalized_force(motion, demands_of(motion, given_loads(motion)))[:count],
     }
     for key, force in wanted.items():
         size = max(float(np.max(np.abs(force))), 1e-9)
         np.testing.assert_allclose(acting.get(key, np.zeros(count)), force, atol=1e-11 * size)
+
+
+def weight_by_centres(motion: Motion) -> Array:
+    """Generalized force of the links' weight at their centres of mass."""
+    gravity, links = np.array(motion.machine.gravity), motion.machine.links.items()
+    ways = [(link.mass, motion.mass_centers[name].place_1) for name, link in links]
+    return np.asarray(sum(m * (gravity[0] * way.real + gravity[1] * way.imag) for m, way in ways))
 
 
 def by_centres(motion: Motion, count: int) -> tuple[Array, Array]:

@@ -1,14 +1,14 @@
 """Pinned bodies in the plane as free bodies with constraints, integrated in time.
 
-Each link has the place of its centre of mass and its angle, each pin two equations; a motion that
-is given is one more.  Multipliers follow from the second derivatives of all of them.  It knows
-nothing of drives, dyads or reduced inertias.  Dry friction in pins follows from the multipliers,
-put into itself until it stays.
+Each link has the place of its centre of mass and its angle, each pin two equations; a motion or a
+length between two points that is given is one more.  Multipliers follow from the second derivatives
+of all of them.  It knows nothing of drives, dyads or reduced inertias.  Dry friction in pins
+follows from the multipliers, put into itself until it stays.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -19,7 +19,7 @@ from equipoise.mechanism.parts.machine import FRAME
 from support.poses import Array, pins, quarter, turned
 
 Given = Callable[[float], tuple[float, float, float]]
-"""Angle of a link and its first two derivatives, by the time."""
+"""Angle of a link, or a length, and its first two derivatives, by the time."""
 Torques = Callable[
     [float, Mapping[str, tuple[float, float]], Array], tuple[dict[str, float], Array]
 ]
@@ -34,10 +34,12 @@ class PinnedBodies:
     """A machine of pins alone.
 
     rubbing : pin -> coefficient of friction times radius, m.
+    strokes : two bodies, each with a point, and the length between these by the time.
     slow : rad/s, below which friction changes its sense: as s (3 - s^2) / 2 with the share s of it.
     """
 
     rubbing: Mapping[str, float] = {}
+    strokes: Sequence[tuple[tuple[str, str], tuple[str, str], Given]] = ()
     slow = 0.0
 
     def __init__(self, machine: eq.Machine, given: Mapping[str, Given], torques: Torques) -> None:
@@ -70,12 +72,45 @@ class PinnedBodies:
                 known += sign * v[k + 2] ** 2 * arm
             rows += [*row]
             right += [*known]
+        for first, second, law in self.strokes:
+            row, known = self.stroke(q, v, first, second)
+            length, rate, bend = law(time)
+            rows.append(row)
+            right.append(rate**2 + length * bend - known)
         for body, law in self.given.items():
             row = np.zeros(len(q))
             row[3 * self.names.index(body) + 2] = 1.0
             rows.append(row)
             right.append(law(time)[2])
         return np.array(rows), np.array(right)
+
+    def stroke(
+        self, q: Array, v: Array, first: tuple[str, str], second: tuple[str, str]
+    ) -> tuple[Array, float]:
+        """Of half a squared length: its derivatives, and its acceleration while none is."""
+        apart, ways, bent = np.zeros(2), np.zeros((2, len(q))), np.zeros(2)
+        for sign, (body, label) in ((-1.0, first), (1.0, second)):
+            if body == FRAME:
+                apart += sign * np.array(self.machine.frame[label])
+                continue
+            k = 3 * self.names.index(body)
+            arm = self.arm(body, label, q[k + 2])
+            apart += sign * (q[k : k + 2] + arm)
+            ways[:, k : k + 2] += sign * np.eye(2)
+            ways[:, k + 2] += sign * quarter(arm)
+            bent -= sign * v[k + 2] ** 2 * arm
+        rate = ways @ v
+        return apart @ ways, float(apart @ bent + rate @ rate)
+
+    def multipliers(self, time: float, state: Array) -> Array:
+        """Of all constraints, in a state without friction."""
+        count = len(self.mass)
+        q, v = state[:count], state[count : 2 * count]
+        jacobian, right = self.rows(q, v, time)
+        force = np.tile([*self.machine.gravity, 0.0], len(self.names)) * self.mass
+        size = len(right)
+        whole = np.block([[np.diag(self.mass), jacobian.T], [jacobian, np.zeros((size, size))]])
+        return np.asarray(np.linalg.solve(whole, np.concatenate([force, right]))[count:])
 
     def rates(self, time: float, state: Array) -> Array:
         """Of places, speeds, and further states."""
@@ -129,8 +164,7 @@ class PinnedBodies:
                 points.setdefault(label, centre + self.arm(body, label, angles[body]))
             left.remove(body)
         jacobian, _ = self.rows(q, np.zeros_like(q), 0.0)
-        if self.given:
-            jacobian = jacobian[: -len(self.given)]
+        jacobian = jacobian[: len(jacobian) - len(self.given) - len(self.strokes)]
         rows, right = [*jacobian], [0.0] * len(jacobian)
         for body, speed in speeds.items():
             row = np.zeros(len(q))

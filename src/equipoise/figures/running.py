@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
 from equipoise.figures.chart_parts import varies
-from equipoise.i18n import say
+from equipoise.i18n import say, to_say
 from equipoise.results.charts import Axis, Chart, Curve, Panel
 from equipoise.running.blocks import verdict
 from equipoise.running.drives_blocks import verdict as drives_verdict
@@ -29,20 +30,28 @@ def run_charts(run: Run) -> dict[str, Chart]:
     return {"speed": Chart("speed", run.machine.title, verdict(run), tuple(panels))}
 
 
+EFFORTS: Final[Mapping[Literal["torque", "force"], str]] = {
+    "torque": to_say("torque of the drives"),
+    "force": to_say("force of the drives"),
+}
+
+
 def drives_charts(run: DrivesRun) -> dict[str, Chart]:
-    """``speed`` of all drives, with the torques of those that have any below it."""
+    """``speed`` of drives that turn, with torques and forces below it where there are any."""
     if not run.time[-1] > 0:
         return {}
     time, each = run.time, [*enumerate(run.drives.items(), 1)]  # a drive looks alike in both panels
-    speeds = [Curve(time, item.speed, link, f"several {number}") for number, (link, item) in each]
-    torques = [
-        Curve(time, item.torque, link, f"several {number}")
-        for number, (link, item) in each
-        if varies(item.torque)
-    ]
+    turning = [(number, link, item) for number, (link, item) in each if item.length is None]
+    speeds = [Curve(time, item.speed, link, f"several {n}") for n, link, item in turning]
     panels = [_curves(time, say("speed of the drives"), "angular speed", speeds, "rpm")]
-    if torques:
-        panels.append(_curves(time, say("torque of the drives"), "torque", torques))
+    for effort, label in EFFORTS.items():
+        curves = [
+            Curve(time, item.effort, link, f"several {number}")
+            for number, (link, item) in each
+            if item.effort_in == effort and varies(item.effort)
+        ]
+        if curves:
+            panels.append(_curves(time, say(label), effort, curves))
     return {"speed": Chart("speed", run.machine.title, drives_verdict(run), tuple(panels))}
 
 

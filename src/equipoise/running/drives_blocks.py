@@ -15,11 +15,11 @@ from equipoise.running.blocks import EVENTS as OF_A_RUN
 from equipoise.running.blocks import MOST_EVENTS, losses_table, lossiest
 from equipoise.running.drives_run import FREE, GIVEN, MOTOR
 from equipoise.running.friction import FRICTION
-from equipoise.running.sources import sources_of
 
 if TYPE_CHECKING:
     from equipoise.running.drives_integration import DriveEvent
     from equipoise.running.drives_run import DrivesRun
+    from equipoise.signals import Array
 
 EVENTS = {
     **OF_A_RUN,
@@ -27,6 +27,7 @@ EVENTS = {
     "stall": to_say("motors stall"),
     "reversal": to_say("{of} turns back"),
     "dead": to_say("dead position of dyad {of}"),
+    "lever": to_say("no lever to move {of}"),
 }
 MOVED_BY = {MOTOR: to_say("motor"), FREE: to_say("no motor"), GIVEN: to_say("given motion")}
 ENDS = {
@@ -35,6 +36,10 @@ ENDS = {
     "steady": to_say("The machine runs steadily after {time} s and {turns} turns of the crank."),
     "dead": to_say(
         "After {time} s dyad {of} comes to its dead position, beyond which its motion is "
+        "undetermined; the run ends there."
+    ),
+    "lever": to_say(
+        "After {time} s the stroke that moves {of} has no lever, beyond which the motion is "
         "undetermined; the run ends there."
     ),
 }
@@ -46,7 +51,7 @@ def run_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
 
     alone : whether nothing follows, as on a terminal.
     """
-    yield Text(verdict(run), broken_if(run.end.kind in ("stall", "dead")))
+    yield Text(verdict(run), broken_if(run.end.kind in ("stall", "dead", "lever")))
     if alone and (lines := (*_speeds(run), *lossiest(run))):
         yield Facts(say("Last cycle"), lines)
 
@@ -64,6 +69,8 @@ def _speeds(run: DrivesRun) -> Iterator[str]:
         return
     time = run.time[inside]
     for link, course in run.drives.items():
+        if course.length is not None:
+            continue
         speed = course.speed[inside]
         mean = (course.angle[inside][-1] - course.angle[inside][0]) / (time[-1] - time[0])
         values = {"low": np.min(speed), "high": np.max(speed), "mean": mean}
@@ -100,36 +107,44 @@ def _event(event: DriveEvent) -> str:
 
 
 def _drives(run: DrivesRun) -> Table:
-    """How each drive moves: turns, speed at the end, and its largest torque and current."""
-    electric = any(course.electric is not None for course in run.drives.values())
-    rows = []
-    for link, course in run.drives.items():
-        torque = None if course.moved_by == FREE else Value(float(np.max(np.abs(course.torque))))
-        row = [
-            link,
-            say(MOVED_BY[course.moved_by]),
-            Value(course.turns),
-            Value(course.speed[-1]),
-            torque,
-        ]
-        if electric:
-            circuit = course.electric
-            row.append(None if circuit is None else Value(float(np.max(np.abs(circuit.current)))))
-        rows.append(tuple(row))
+    """How each drive moves: turns, speed at the end, and its largest efforts and current."""
+    courses = run.drives.values()
+    electric = any(course.electric is not None for course in courses)
+    pushes = any(course.length is not None for course in courses)
     heads = [
         say("drive"),
         say("moved by"),
         say("turns"),
         Column(say("speed at the end"), "angular speed", "rpm"),
         Column(say("largest torque"), "torque"),
+        *([Column(say("largest force"), "force")] if pushes else []),
         *([Column(say("largest current"), "current")] if electric else []),
     ]
+    rows = []
+    for link, course in run.drives.items():
+        largest = None if course.moved_by == FREE else _largest(course.effort)
+        turns = course.length is None
+        circuit = course.electric
+        row = [
+            link,
+            say(MOVED_BY[course.moved_by]),
+            Value(course.turns) if turns else None,
+            Value(course.speed[-1]) if turns else None,
+            largest if turns else None,
+            *([None if turns else largest] if pushes else []),
+            *([None if circuit is None else _largest(circuit.current)] if electric else []),
+        ]
+        rows.append(tuple(row))
     return Table.of(say("Drives"), tuple(heads), rows)
+
+
+def _largest(values: Array) -> Value:
+    return Value(float(np.max(np.abs(values))))
 
 
 def _energies(run: DrivesRun) -> Table:
     """Work of everything that has acted, and what became of it."""
-    labels = {source.key: say(source.label) for source in sources_of(run.machine)}
+    labels = {source.key: say(source.label) for source in run.equation.sources}
     labels |= {"brake": say("brake"), FRICTION: say("friction")}
     labels |= {f"drives.{link}": say("drive of {link}", link=link) for link in run.drives}
     rows = [(labels[name], Value(float(work[-1]))) for name, work in run.work.items()]

@@ -25,34 +25,44 @@ from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drivers import Driver
 from equipoise.running.drives_friction import DrivesFriction, FrictionOf
-from equipoise.running.drives_linkage import AppliedForces, DrivesPose, References, pose_of
-from equipoise.running.sources import plus, sources_of
+from equipoise.running.drives_linkage import DrivesPose, References, pose_of, references_at
+from equipoise.running.sources import AppliedSource, plus, sources_of
+from equipoise.running.strokes import Strokes, solved
 from equipoise.signals import Array
 
 
 class DriveAngles(NamedTuple):
     """Angles of all drives (N, K), rad, and their rates.
 
-    crank_angle : (K,) rad.  speeds : rad/s.  slopes : by the crank angle, of given motions, 0 of
-    others.  bends : what given motions accelerate while the crank turns evenly, rad/s2, 0 of
-    others.
+    crank_angle : (K,) rad.  speeds : rad/s.
+    following : (N, U, K), with a unit of speed of each unknown alone.  bends : what they accelerate
+    while no unknown does, rad/s2.
+    ways : (N, U, K), with a unit of speed of each unknown while no given motion goes on, along
+    which its drive does no work.
+    paces : of what drives do work on, rad/s; of strokes m/s.
+    lengths : of strokes (P, K), m.  slopes : of these by the angles of all drives (P, N, K), m/rad.
     """
 
     crank_angle: Array
     angles: Array
     speeds: Array
-    slopes: Array
+    following: Array
     bends: Array
+    ways: Array
+    paces: Array
+    lengths: Array
+    slopes: Array
 
 
 class DriveState(NamedTuple):
     """What acts in K states.
 
-    inertia : (N, N, K) of links and motors, kg m2.  forces : of each source (S, N, K), N m.
-    rubbing : friction in joints; None without.
+    where : all drives.  inertia : (N, N, K) of links and motors, kg m2.
+    forces : of each source (S, N, K), N m.  rubbing : friction in joints; None without.
     """
 
     pose: DrivesPose
+    where: DriveAngles
     inertia: Array
     forces: Array
     rubbing: FrictionOf | None
@@ -110,6 +120,12 @@ class DrivesEquation:
         return tuple(k for k in range(len(self.drives)) if k not in self.unknowns)
 
     @cached_property
+    def strokes(self) -> Strokes | None:
+        """Drives that push as a given stroke has it; None without."""
+        pushed = [k for k in self.given if self.drives[k].pushes]
+        return Strokes(self.linkage, pushed) if pushed else None
+
+    @cached_property
     def by_crank(self) -> bool:
         """Whether the crank angle is an unknown, and not a matter of time."""
         return 0 in self.unknowns and self.machine.crank_turns
@@ -120,9 +136,9 @@ class DrivesEquation:
         return assemble(self.machine)
 
     @cached_property
-    def sources(self) -> tuple[str, ...]:
-        """Keys of what acts beside the drives and friction in joints."""
-        return tuple(source.key for source in sources_of(self.machine))
+    def sources(self) -> tuple[AppliedSource, ...]:
+        """What acts beside the drives and friction in joints."""
+        return tuple(sources_of(self.machine))
 
     @cached_property
     def dyads(self) -> Mapping[str, str]:
@@ -158,17 +174,122 @@ class DrivesEquation:
         each = zip(self.drives, self.nominal_speeds, brakes, strict=True)
         return [Driver(drive.motor, speed, brake) for drive, speed, brake in each]
 
+    def references_at_start(self) -> References:
+        """References (..., 1) at the crank angle of the start, with all drives as the file has them
+        there.
+
+        Raises
+        ------
+        ResponseError : the links do not get there.
+        """
+        strokes = {} if self.strokes is None else self.strokes.references_at(self.start)
+        return {**references_at(self.linkage, self.start), **strokes}
+
+    def references(self, state: DriveState) -> References:
+        """What references have come to in K states (..., K)."""
+        if self.strokes is None:
+            return state.pose.references
+        pushed = state.where.angles[[*self.strokes.places]]
+        return {**state.pose.references, **dict(zip(self.strokes.references, pushed, strict=True))}
+
     def placed(self, time: Array, angles: Array, speeds: Array) -> DriveAngles:
-        """All drives at times (K,), s, by the angles and speeds of the unknowns, each (U, K)."""
-        pace = speeds[0] if self.by_crank else np.full(len(time), self.machine.drive.speed)
+        """All drives at times (K,), s, by the angles and speeds of the unknowns, each (U, K); those
+        that push are NaN until `with_strokes` places them.
+        """
+        pace = self._pace(time, speeds)
         crank = angles[0] if self.by_crank else self.start + pace * time
-        whole = DriveAngles(crank, *np.zeros((4, len(self.drives), len(time))))
-        whole.angles[self.free], whole.speeds[self.free] = angles, speeds
+        count, free = len(self.drives), self.free
+        whole = np.zeros((3, count, len(time)))
+        following, ways = np.zeros((2, count, len(free), len(time)))
+        following[free, range(len(free))] = ways[free, range(len(free))] = 1.0
+        whole[0, free], whole[1, free] = angles, speeds
         for k in self.given:
+            if self.drives[k].pushes:
+                whole[:, k] = np.nan
+                continue
             angle, first, second = self.drives[k].turned(crank)
-            whole.angles[k], whole.speeds[k] = angle, first * pace
-            whole.slopes[k], whole.bends[k] = first, second * pace**2
-        return whole
+            whole[:, k] = angle, first * pace, second * pace**2
+            if self.by_crank:
+                following[k, 0] = first
+        none = np.zeros((0, len(time)))
+        return DriveAngles(
+            crank, whole[0], whole[1], following, whole[2], ways, whole[1], none, none[:, None]
+        )
+
+    def with_strokes(self, time: Array, where: DriveAngles, near: References) -> DriveAngles:
+        """The drives with those that push, which are about where references have them.
+
+        Raises
+        ------
+        MotionError : a stroke cannot be had.
+        """
+        strokes = self.strokes
+        if strokes is None:
+            return where
+        pushed, pace = [*strokes.places], self._pace(time, where.speeds[self.free])
+        others = [k for k in range(len(self.drives)) if k not in pushed]
+        _, first, second = strokes.commanded(where.crank_angle)
+        angles = strokes.angles(where.crank_angle, where.angles, near)
+        speeds, following, bends, ways = map(np.array, where[2:6])
+        speeds[pushed] = 0.0
+        pose = pose_of(self.linkage, where.crank_angle, angles, speeds, near)
+        lengths, slopes, _ = strokes.lengths(pose)
+
+        def by(wanted: Array, values: Array) -> Array:
+            """What pushed drives add (P, R, K) where others have values (N - P, R, K)."""
+            left = wanted - np.einsum("pok,ork->prk", slopes[:, others], values)
+            return solved(slopes[:, pushed], left)
+
+        still = np.zeros((len(pushed), len(self.free), len(time)))
+        going = still.copy()
+        if self.by_crank:
+            going[:, 0] = first
+        following[pushed] = by(going, following[others])
+        ways[pushed] = by(still, ways[others])
+        speeds[pushed] = by((first * pace)[:, None], speeds[others][:, None])[:, 0]
+        pose = pose_of(self.linkage, where.crank_angle, angles, speeds, near)
+        bent = second * pace**2 - strokes.lengths(pose)[2]
+        bends[pushed] = by(bent[:, None], bends[others][:, None])[:, 0]
+        paces = speeds.copy()
+        paces[pushed] = first * pace
+        return DriveAngles(
+            where.crank_angle, angles, speeds, following, bends, ways, paces, lengths, slopes
+        )
+
+    def _pace(self, time: Array, speeds: Array) -> Array:
+        """Speed of the crank (K,), rad/s, by those of the unknowns (U, K)."""
+        return speeds[0] if self.by_crank else np.full(len(time), self.machine.drive.speed)
+
+    def margins(self, state: DriveState) -> Array:
+        """What falls to 0 (D, K) where a dyad, or a stroke, comes to its dead position, in the
+        order of `dead_positions`.
+        """
+        dyads = state.pose.margins([*self.dyads.values()])
+        if self.strokes is None:
+            return dyads
+        return np.vstack([dyads, self.strokes.margin(state.where.slopes, self._usual_lever)])
+
+    @property
+    def dead_positions(self) -> list[tuple[str, str]]:
+        """What `margins` belong to: ``dead`` with the inner joint of a dyad, ``lever`` with the
+        links that strokes move.
+        """
+        dyads = [("dead", joint) for joint in self.dyads]
+        if self.strokes is None:
+            return dyads
+        links = ", ".join(self.drives[k].link for k in self.strokes.places)
+        return [*dyads, ("lever", links)]
+
+    @cached_property
+    def _usual_lever(self) -> float:
+        """Lever of all strokes at the start, with all drives as the file has them."""
+        assert self.strokes is not None
+        at = np.array([self.start])
+        moved = self.machine.moved(at)
+        angles = np.array([np.ravel(moved[drive.link][0]) for drive in self.drives])
+        near = self.references_at_start()
+        pose = pose_of(self.linkage, at, angles, np.zeros_like(angles), near)
+        return float(self.strokes.lever(self.strokes.lengths(pose)[1])[0])
 
     def factors_at(self, time: Array, since: float) -> list[Array]:
         """Factors (K,) of loads over time at times (K,), s, each on the line that it follows after
@@ -186,24 +307,25 @@ class DrivesEquation:
         ------
         MotionError, ModelError : the machine cannot be there.
         """
+        where = self.with_strokes(time, where, near)
         pose = pose_of(self.linkage, where.crank_angle, where.angles, where.speeds, near)
-        pace = where.speeds[0] if self.by_crank else np.full(len(time), self.machine.drive.speed)
-        applied = AppliedForces(pose, pace, self.factors_at(time, since))
-        acting = {key: applied.demands(key) for key in self.sources}
-        forces = np.zeros((len(self.sources), len(self.drives), pose.count))
-        for k, demands in enumerate(acting.values()):
+        pace = self._pace(time, where.speeds[self.free])
+        factors = self.factors_at(time, since)
+        acting = [source.demands(pose.moving, pace, factors) for source in self.sources]
+        forces = np.zeros((len(acting), len(self.drives), pose.count))
+        for k, demands in enumerate(acting):
             forces[k] = pose.generalized(demands)
         rubbing = None
         if self.friction is not None:
-            rubbing = self.friction.of(pose, plus(pose.turning, *acting.values()))
-        return DriveState(pose, self.with_rotors(pose.inertia), forces, rubbing)
+            rubbing = self.friction.of(pose, plus(pose.turning, *acting))
+        return DriveState(pose, where, self.with_rotors(pose.inertia), forces, rubbing)
 
     def with_rotors(self, inertia: Array) -> Array:
         """Inertia (N, N, K), kg m2, of links with that of motors."""
         return inertia + np.diag(self.rotors)[:, :, None]
 
     def accelerations(
-        self, state: DriveState, where: DriveAngles, torques: Array, settled: Array
+        self, state: DriveState, torques: Array, settled: Array
     ) -> tuple[Array, Array]:
         """Of all drives (N, K), rad/s2, with torques (N, K) on those that are unknown, N m; and
         friction (J, K) in joints, N m or N.
@@ -214,32 +336,37 @@ class DrivesEquation:
         ------
         LockError : friction locks the machine.
         """
-        free, inertia, count = self.free, state.inertia, torques.shape[1]
-        following = np.zeros((len(self.drives), len(free), count))
-        following[free, range(len(free))] = 1.0
-        if self.by_crank:
-            following[:, 0] += where.slopes
-        left = np.sum(inertia[free][:, :, None] * following[None], axis=1)
+        where, inertia, count = state.where, state.inertia, torques.shape[1]
+        demand = np.sum(inertia[:, :, None] * where.following[None], axis=1)
+        left = np.sum(where.ways[:, :, None] * demand[:, None], axis=0)
         acting = state.forces.sum(axis=0) + torques - state.pose.bias
-        acting = (acting - np.sum(inertia * where.bends, axis=1))[free]
+        acting = acting - np.sum(inertia * where.bends, axis=1)
+        known = np.sum(where.ways * acting[:, None], axis=0)
         if state.rubbing is None:
-            changes = _eliminated(left, acting[:, None])[:, 0]
-            return where.bends + np.sum(following * changes, axis=1), np.zeros((0, count))
-        ways = state.rubbing.ways[:, free].transpose(1, 0, 2)
-        both = _eliminated(left, np.concatenate([acting[:, None], ways], axis=1))
-        moved = np.sum(following[:, :, None] * both, axis=1)
+            changes = _eliminated(left, known[:, None])[:, 0]
+            return where.bends + np.sum(where.following * changes, axis=1), np.zeros((0, count))
+        rubbing = np.einsum("nuk,jnk->ujk", where.ways, state.rubbing.ways)
+        both = _eliminated(left, np.concatenate([known[:, None], rubbing], axis=1))
+        moved = np.sum(where.following[:, :, None] * both, axis=1)
         whole, response = where.bends + moved[:, 0], moved[:, 1:]
         efforts = state.rubbing.efforts(settled, whole, response)
         return whole + np.sum(response * efforts, axis=1), efforts
 
-    def given_torques(self, state: DriveState, accelerations: Array, efforts: Array) -> Array:
-        """Of the drives with a given motion (G, N m) in K states (G, K)."""
-        given = [*self.given]
-        demand = np.einsum("ijk,jk->ik", state.inertia[given], accelerations)
-        demand = demand + state.pose.bias[given] - state.forces[:, given].sum(axis=0)
+    def given_efforts(self, state: DriveState, accelerations: Array, efforts: Array) -> Array:
+        """Torques, N m, and of strokes forces, N, of the drives with a given motion (G, K) in K
+        states.
+        """
+        demand = np.einsum("ijk,jk->ik", state.inertia, accelerations)
+        demand = demand + state.pose.bias - state.forces.sum(axis=0)
         if state.rubbing is not None:
-            demand = demand - np.einsum("jgk,jk->gk", state.rubbing.ways[:, given], efforts)
-        return np.asarray(demand)
+            demand = demand - np.einsum("jgk,jk->gk", state.rubbing.ways, efforts)
+        if self.strokes is not None:
+            pushed, slopes = [*self.strokes.places], state.where.slopes
+            levers = slopes[:, pushed].transpose(1, 0, 2)
+            forces = solved(levers, demand[pushed][:, None])[:, 0]
+            demand = demand - np.einsum("pnk,pk->nk", slopes, forces)
+            demand[pushed] = forces
+        return np.asarray(demand[[*self.given]])
 
     def energy(self, angles: Array, speeds: Array, crank: Array, near: References) -> Array:
         """Kinetic energy (K,), J, of all drives at angles and speeds (N, K).
@@ -272,8 +399,3 @@ def _lacking(machine: Machine) -> Any:
     """What a run of several drives does not compute, with its place in the file."""
     if machine.rows:
         yield "rows", Note("a run of several drives computes one row; leave the others out")
-    if machine.pushers:
-        yield (
-            "drive.stroke" if machine.drive.pushes else "drives",
-            Note("a run of several drives computes no strokes; leave them out"),
-        )

@@ -19,7 +19,7 @@ from equipoise.errors import LockError, ModelError, ResponseError
 from equipoise.i18n import Note
 from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_friction import NEAR_REST, leaving, settled_at
-from equipoise.running.drives_linkage import References, cannot_be_assembled, references_at
+from equipoise.running.drives_linkage import References, cannot_be_assembled
 from equipoise.running.drives_rates import DrivesRates, DrivesReadings
 from equipoise.running.equation import just_after
 from equipoise.running.integration import Limits
@@ -66,10 +66,11 @@ INSIDE = 1e-6
 class DriveEvent:
     """What happens in a run of several drives.
 
-    kind : ``off``, ``reversal``, ``steady``, ``standstill``, ``stall``, ``dead``, ``turns`` or
-        ``time``; the last one of a run ended it.
+    kind : ``off``, ``reversal``, ``steady``, ``standstill``, ``stall``, ``dead``, ``lever``,
+        ``turns`` or ``time``; the last one of a run ended it.
     time : s.  crank_angle : rad.
-    of : driven link that turns back, or joint of a dyad in its dead position; else empty.
+    of : driven link that turns back, joint of a dyad in its dead position, or links on which
+        strokes have no lever; else empty.
     """
 
     kind: str
@@ -140,7 +141,7 @@ class DrivesIntegration:
         timed = {time for load in equation.machine.timed_loads for time in load.times}
         self.corners = sorted({*ramps, *timed} - {0.0})
         self._observe(0.0, state)
-        near = references_at(equation.linkage, equation.start)
+        near = equation.references_at_start()
         values = self._first_values(state, near)
         self.sizes, works = rates.sizes(self._usual_energy(state, near))
         self.works = works
@@ -340,6 +341,7 @@ class DrivesIntegration:
     def _usual_energy(self, state: Array, near: References) -> float:
         """Kinetic energy at the start with all drives at the usual speed, J."""
         where = self.rates.where(np.zeros(1), state[:, None])
+        where = self.equation.with_strokes(np.zeros(1), where, near)
         speeds = np.full_like(where.angles, self.usual)
         return float(self.equation.energy(where.angles, speeds, where.crank_angle, near)[0]) or 1.0
 
@@ -392,8 +394,8 @@ class DrivesIntegration:
     def _watched(self) -> Iterator[DriveWatch]:
         """What may happen on the way."""
         equation = self.equation
-        for k, joint in enumerate(equation.dyads):
-            yield DriveWatch("dead", joint, lambda now, k=k: now.others.margins[k] - DEAD)  # type: ignore[misc]
+        for k, (kind, what) in enumerate(equation.dead_positions):
+            yield DriveWatch(kind, what, lambda now, k=k: now.others.margins[k] - DEAD)  # type: ignore[misc]
         for k, driver in enumerate(self.drivers):
             if driver.controlled:
                 yield DriveWatch("limit", equation.drives[k].link, self._below_limit(k))

@@ -1,4 +1,4 @@
-"""A linkage whose drives each go their own ways, with its inertia and what acts on it.
+"""A linkage whose drives each go their own ways, and its inertia.
 
 With q the angles of the driven links, i and j two of them, and p and alpha the place of a link's
 anchor and its angle,
@@ -13,7 +13,7 @@ is 1, so that all derivatives by the crank angle are those by time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -23,19 +23,10 @@ from equipoise.errors import EquipoiseError, ResponseError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import frame_state, p, run, u
-from equipoise.mechanism.dynamics.applied_loads import (
-    against_soil,
-    given_loads,
-    spring_demands,
-)
 from equipoise.mechanism.dynamics.forces import inertia_moved
 from equipoise.mechanism.dynamics.friction import Demands
-from equipoise.mechanism.dynamics.reactions import demands_of
-from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.tip import surface_of, tip_link
-from equipoise.running.sources import LOADS, plus, timed_units
 from equipoise.signals import Array
 
 References = Mapping[str, Array]
@@ -182,15 +173,6 @@ class DrivesPose:
             total -= kernels.dot(anchor, force) + turn * moment
         return total
 
-    @cached_property
-    def weights(self) -> Demands:
-        """What holds the weight of the links."""
-        gravity, state = complex(*self.linkage.machine.gravity), self.moving.state
-        return {
-            link: kernels.weight_demand(state[f"u({link})"], *own[:2], gravity)
-            for link, own in self._inertial.items()
-        }
-
     def margins(self, names: Sequence[str]) -> Array:
         """Values (D, K) of the state."""
         return self._stacked(names)[:, -1] if names else np.zeros((0, self.count))
@@ -253,64 +235,3 @@ def cannot_be_assembled() -> ResponseError:
             "links-cannot-be-joined-at-any-crank-angle"
         )
     )
-
-
-# -- what acts -------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class AppliedForces:
-    """What acts on a machine beside its drives and friction in joints, by the keys of sources.
-
-    pace : speed (K,) of the crank, rad/s.  factors : (K,) of each load over time.
-    """
-
-    pose: DrivesPose
-    pace: Array
-    factors: Sequence[Array]
-
-    def demands(self, key: str) -> Demands:
-        """What holds a source."""
-        return SOURCES.get(key, AppliedForces._elements)(self, key)
-
-    def _elements(self, key: str) -> Demands:
-        cause = next(cause for cause in ELEMENTS if f"{cause}s" == key)
-        return spring_demands(self.pose.moving, rated=True, cause=cause)
-
-    def _weight(self, key: str) -> Demands:
-        return self.pose.weights
-
-    def _springs(self, key: str) -> Demands:
-        return spring_demands(self.pose.moving, rated=False)
-
-    def _loads(self, key: str) -> Demands:
-        return demands_of(self.pose.moving, given_loads(self.pose.moving))
-
-    def _timed(self, key: str) -> Demands:
-        units = timed_units(self.pose.moving)
-        parts = (
-            {link: (factor * force, factor * moment) for link, (force, moment) in unit.items()}
-            for factor, unit in zip(self.factors, units, strict=True)
-        )
-        return plus(*parts)
-
-    def _soil(self, key: str) -> Demands:
-        motion = self.pose.moving
-        planting = motion.machine.planting
-        assert planting is not None and planting.soil is not None
-        surface, forward = surface_of(motion.machine), planting.forward(self.pace)
-        acting = []
-        for arm in planting.every_arm:
-            tip = motion.point(arm.tip)
-            force = against_soil(planting.soil, surface - tip.y, tip.velocity + forward)
-            acting.append((tip_link(motion.machine, arm.tip), arm.tip, force, 0.0))
-        return demands_of(motion, acting)
-
-
-SOURCES: Mapping[str, Callable[[AppliedForces, str], Demands]] = {
-    "weight": AppliedForces._weight,
-    "springs": AppliedForces._springs,
-    LOADS: AppliedForces._loads,
-    "timed_loads": AppliedForces._timed,
-    "soil": AppliedForces._soil,
-}

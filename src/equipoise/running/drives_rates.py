@@ -56,7 +56,7 @@ class DrivesRates:
         ]  # fmt: skip
         self.braked = bool(self.drivers[0].brake) and 0 in equation.unknowns
         self.works = (
-            *equation.sources,
+            *(source.key for source in equation.sources),
             *(f"{FRICTION}.{name}" for name in self.rubbing),
             *([BRAKE] if self.braked else []),
             *(f"drives.{equation.drives[k].link}" for k in self.turned),
@@ -95,7 +95,7 @@ class DrivesRates:
 
     def others(self, rows: Array) -> DrivesReadings:
         """By the rows of `NodeValues.others` (O, K)."""
-        drives, dyads = len(self.drivers), len(self.equation.dyads)
+        drives, dyads = len(self.drivers), len(self.equation.dead_positions)
         return DrivesReadings(rows[:drives], rows[drives : drives + dyads], rows[drives + dyads :])
 
     def at(self, time: Array, states: Array, near: References) -> NodeValues | None:
@@ -112,9 +112,10 @@ class DrivesRates:
         return values if values is not None and np.all(np.isfinite(values.rates)) else None
 
     def _at(self, time: Array, states: Array, near: References) -> NodeValues | None:
-        equation, where = self.equation, self.where(time, states)
-        state = equation.at(time, just_after(self.since), where, near)
-        margins = state.pose.margins([*equation.dyads.values()])
+        equation = self.equation
+        state = equation.at(time, just_after(self.since), self.where(time, states), near)
+        where = state.where
+        margins = equation.margins(state)
         if not np.all(margins >= 0):  # before friction, which would seem to lock such a machine
             return None
         torques = self._driving(time, where, states)
@@ -122,9 +123,9 @@ class DrivesRates:
         if self.braked:
             braking = self._braking(where)
             total[0] += braking
-        changes, efforts = equation.accelerations(state, where, total, self.settled)
+        changes, efforts = equation.accelerations(state, total, self.settled)
         if equation.given:
-            torques[[*equation.given]] = equation.given_torques(state, changes, efforts)
+            torques[[*equation.given]] = equation.given_efforts(state, changes, efforts)
         rates = [*where.speeds[equation.free], *changes[equation.free]]
         electric, works = [], [*np.einsum("snk,nk->sk", state.forces, where.speeds)]
         for k in self.circuits:
@@ -137,12 +138,12 @@ class DrivesRates:
             joint_rates = state.rubbing.rates
             works += [*efforts * joint_rates]
         works += [braking * where.speeds[0]] if self.braked else []
-        works += [torques[k] * where.speeds[k] for k in self.turned]
+        works += [torques[k] * where.paces[k] for k in self.turned]
         return NodeValues(
             np.array(np.broadcast_arrays(*rates)),
             np.array([*electric, *works]).reshape(-1, len(time)),
             np.concatenate([torques, margins, joint_rates]),
-            state.pose.references,
+            equation.references(state),
         )
 
     def _driving(self, time: Array, where: DriveAngles, states: Array) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from math import inf, pi
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final, Literal
 
 import numpy as np
 
@@ -35,6 +35,7 @@ class Start:
 
 
 MOTOR, FREE, GIVEN = "motor", "free", "given motion"
+UNITS: Final = {"torque": "N m", "force": "N"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,16 +43,24 @@ class DriveCourse:
     """How a drive moves in a run, at M instants.
 
     link : the driven link.  moved_by : ``motor``, ``free`` or ``given motion``.
-    angle, speed : (M,) rad and rad/s.  torque : (M,) of motor or given motion, N m.
+    angle, speed : of the link (M,) rad and rad/s.
+    effort : torque (M,) of motor or given motion, N m; force of a stroke, N.
     electric : circuit of a direct-current motor; None of any other.
+    length : (M,) m, of a stroke; None of what turns.
     """
 
     link: str
     moved_by: str
     angle: Array
     speed: Array
-    torque: Array
+    effort: Array
     electric: Electric | None
+    length: Array | None = None
+
+    @property
+    def effort_in(self) -> Literal["force", "torque"]:
+        """What it exerts."""
+        return "torque" if self.length is None else "force"
 
     @property
     def turns(self) -> float:
@@ -61,12 +70,14 @@ class DriveCourse:
     def to_dict(self) -> dict[str, Any]:
         """All of it, in SI units."""
         electric = {} if self.electric is None else {"electric": dict(vars(self.electric))}
+        length = {} if self.length is None else {"length": self.length}
         return {
             "moved_by": self.moved_by,
             "turns": self.turns,
             "angle": self.angle,
             "speed": self.speed,
-            "torque": self.torque,
+            self.effort_in: self.effort,
+            **length,
             **electric,
         }
 
@@ -166,8 +177,10 @@ class DrivesRun(Result):
             columns += [
                 (f"drives.{link}.angle", "rad", course.angle),
                 (f"drives.{link}.speed", "rad/s", course.speed),
-                (f"drives.{link}.torque", "N m", course.torque),
+                (f"drives.{link}.{course.effort_in}", UNITS[course.effort_in], course.effort),
             ]
+            if course.length is not None:
+                columns.append((f"drives.{link}.length", "m", course.length))
             if course.electric is not None:
                 columns += [
                     (f"drives.{link}.{name}", unit, values)
@@ -202,6 +215,9 @@ def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> Drives
     integration.follow([start.angles[k] for k in unknowns], [start.speeds[k] for k in unknowns])
     track, rates = joined(integration.tracks), integration.rates
     where = rates.where(track.time, track.states)
+    where = equation.with_strokes(track.time, where, track.references)
+    pushed = () if equation.strokes is None else equation.strokes.places
+    lengths = dict(zip(pushed, where.lengths, strict=True))
     courses = {
         drive.link: DriveCourse(
             drive.link,
@@ -210,6 +226,7 @@ def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> Drives
             where.speeds[k],
             track.torques[k],
             _electric(integration, k, track, where),
+            lengths.get(k),
         )
         for k, drive in enumerate(equation.drives)
     }

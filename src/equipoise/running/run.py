@@ -424,7 +424,8 @@ def _start_of_drives(
     one, those with a motor are at rest.
     """
     pace, theta = start
-    turned = [drive.turned(np.array([theta])) for drive in machine.driven]
+    moved = machine.moved(np.array([theta]))
+    turned = [moved[drive.link] for drive in machine.driven]
     angles, rates = ([float(np.ravel(each[part])[0]) for each in turned] for part in (0, 1))
     speeds = [
         0.0 if usual and drive.motor is not None else rate * pace

@@ -1,7 +1,8 @@
-"""What acts on a crank beside its drive: sources of generalized force.
+"""What acts on a machine beside its drives: sources of generalized force.
 
-Each says which functions of the crank angle it needs, which are tabulated, and what it makes of
-their values and of the crank's speed.
+For one crank, each says which functions of the crank angle it needs, which are tabulated, and what
+it makes of their values and of the crank's speed.  For several drives, each says what would hold
+it on every link.
 """
 
 from __future__ import annotations
@@ -17,13 +18,15 @@ from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.steps import u
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.applied_loads import against_soil, given_loads, spring_demands
+from equipoise.mechanism.dynamics.forces import weight_demands
+from equipoise.mechanism.dynamics.friction import Demands
 from equipoise.mechanism.dynamics.rated_elements import rated_torque, rated_ways
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
-from equipoise.mechanism.dynamics.reduced import generalized_force, weight_torque
+from equipoise.mechanism.dynamics.reduced import generalized_force
 from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.tip import surface_of
+from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
@@ -83,17 +86,35 @@ LOADS = "loads"
 """In the works of a run: loads over the crank angle."""
 
 
+class AppliedSource(Source):
+    """A source that acts on links whatever presses in joints."""
+
+    @abstractmethod
+    def demands(self, motion: Motion, pace: Array, factors: Factors) -> Demands:
+        """What would hold it, by link, in a motion whose crank speed is 1, so that its derivatives
+        by the crank angle are those by time.
+
+        pace : speed (K,) of the crank, rad/s, by which soil passes.
+        """
+
+
 @dataclass(frozen=True)
-class ByAngle(Source):
-    """A source that depends on the crank angle alone."""
+class ByAngle(AppliedSource):
+    """A source that depends on places alone.
+
+    of : what would hold it.
+    """
 
     key: str
     label: str
-    of: Callable[[Motion], Array]
+    of: Callable[[Motion], Demands]
     conserves: bool = False
 
     def columns(self, motions: Motions) -> list[Array]:
-        return [np.asarray(sum(self.of(motion) for motion in motions))]
+        return [np.asarray(sum(generalized_force(motion, self.of(motion)) for motion in motions))]
+
+    def demands(self, motion: Motion, pace: Array, factors: Factors) -> Demands:
+        return self.of(motion)
 
     def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
         torque: Array = columns[0]
@@ -101,7 +122,7 @@ class ByAngle(Source):
 
 
 @dataclass(frozen=True)
-class OfSoil(Source):
+class OfSoil(AppliedSource):
     """The soil, whose force follows the velocity of each tip over ground."""
 
     planting: Planting
@@ -120,6 +141,16 @@ class OfSoil(Source):
             return np.zeros_like(speed)
         return np.asarray(np.sum(dot(self.forces(columns, speed), x + 1j * y), axis=0))
 
+    def demands(self, motion: Motion, pace: Array, factors: Factors) -> Demands:
+        assert self.planting.soil is not None
+        forward, acting = self.planting.forward(pace), []
+        for arm in self.planting.every_arm:
+            tip = motion.point(arm.tip)
+            over_ground = tip.velocity + forward
+            force = against_soil(self.planting.soil, self.surface - tip.y, over_ground)
+            acting.append((tip_link(motion.machine, arm.tip), arm.tip, force, 0.0))
+        return demands_of(motion, acting)
+
     def forces(self, columns: Array, speed: Array) -> Array:
         """Force (A, ...) on each tip of each row, N, complex."""
         assert self.planting.soil is not None
@@ -128,16 +159,16 @@ class OfSoil(Source):
         return np.asarray(against_soil(self.planting.soil, depth, over_ground))
 
 
-def _of_loads(motion: Motion) -> Array:
-    return generalized_force(motion, demands_of(motion, given_loads(motion)))
+def _of_loads(motion: Motion) -> Demands:
+    return demands_of(motion, given_loads(motion))
 
 
-def _of_springs(motion: Motion) -> Array:
-    return generalized_force(motion, spring_demands(motion, rated=False))
+def _of_springs(motion: Motion) -> Demands:
+    return spring_demands(motion, rated=False)
 
 
 @dataclass(frozen=True)
-class OfRatedElements(Source):
+class OfRatedElements(AppliedSource):
     """Force elements of one cause whose forces depend on velocities."""
 
     elements: tuple[tuple[str, int, RatedElement], ...]
@@ -162,13 +193,16 @@ class OfRatedElements(Source):
     def sliding_torque(self, columns: Array, speed: Array, sense: float, factors: Factors) -> Array:
         return rated_torque(self._each, columns, speed, sense)
 
+    def demands(self, motion: Motion, pace: Array, factors: Factors) -> Demands:
+        return spring_demands(motion, rated=True, cause=self._each[0].cause)
+
     @property
     def _each(self) -> list[RatedElement]:
         return [element for *_, element in self.elements]
 
 
 @dataclass(frozen=True)
-class OfTimedLoads(Source):
+class OfTimedLoads(AppliedSource):
     """Loads that change with the time since the start of the run."""
 
     loads: tuple[TimedLoad, ...]
@@ -187,6 +221,13 @@ class OfTimedLoads(Source):
         each = [*factors] * (len(columns) // len(self.loads))
         shares = (factor * column for factor, column in zip(each, columns, strict=False))
         return np.asarray(sum(shares, np.zeros(np.shape(speed))))
+
+    def demands(self, motion: Motion, pace: Array, factors: Factors) -> Demands:
+        parts = (
+            {link: (factor * force, factor * moment) for link, (force, moment) in unit.items()}
+            for factor, unit in zip(factors, timed_units(motion), strict=True)
+        )
+        return plus(*parts)
 
 
 def timed_units(motion: Motion) -> list[dict[str, Demand]]:
@@ -217,10 +258,10 @@ def plus(*demands: Mapping[str, Demand]) -> dict[str, Any]:
     return total
 
 
-def sources_of(machine: Machine) -> Iterator[Source]:
-    """Everything but the drive that turns the crank or brakes it."""
+def sources_of(machine: Machine) -> Iterator[AppliedSource]:
+    """Everything but drives, brakes and friction in joints."""
     if any(machine.gravity):
-        yield ByAngle("weight", to_say("weight"), weight_torque, conserves=True)
+        yield ByAngle("weight", to_say("weight"), weight_demands, conserves=True)
     stiff = [element for *_, element in machine.force_elements if not element.rated]
     if stiff or any(coupling.preload for coupling in machine.couplings):
         yield ByAngle("springs", to_say("springs"), _of_springs, conserves=True)

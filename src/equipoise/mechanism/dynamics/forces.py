@@ -304,23 +304,34 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
     if missing := massless(machine):
         raise MassError(missing)
     pole = in_frame(machine.frame, motion.linkage.pivot if about is None else about)
-    gravity = complex(*machine.gravity)
     rates = [
         (rate, _units(motion, k))
         for k, rate in enumerate((motion.speed**2, motion.acceleration))
         if rate
     ]
-    inertia, weights = {}, {}
+    inertia = {}
     for link in machine.links:
         own = inertia_moved(machine, link, motion.linkage.anchors[link])
         inertia[link] = _needed([(rate, units[link]) for rate, units in rates], *own)
-        weights[link] = kernels.weight_demand(motion.state[f"u({link})"], *own[:2], gravity)
     applied = (
         applied_loads.load_demands(motion),
         applied_loads.spring_demands(motion),
         applied_loads.inner_demands(motion),
     )
-    return Forces(motion, pole, inertia, weights, *applied)
+    return Forces(motion, pole, inertia, weight_demands(motion), *applied)
+
+
+def weight_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds the weight of each link."""
+    machine, gravity = motion.machine, complex(*motion.machine.gravity)
+    return {
+        link: kernels.weight_demand(
+            motion.state[f"u({link})"],
+            *inertia_about(machine.links[link], motion.linkage.anchors[link])[:2],
+            gravity,
+        )
+        for link in machine.links
+    }
 
 
 Units = tuple[Array, Array, Array, Array, Array]

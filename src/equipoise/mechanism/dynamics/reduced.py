@@ -32,15 +32,6 @@ def reduced_inertia(motion: Motion) -> tuple[Array, Array]:
     return inertia, slope
 
 
-def weight_torque(motion: Motion) -> Array:
-    """Generalized force (N,) of the links' weight, N m."""
-    gravity = complex(*motion.machine.gravity)
-    links = motion.machine.links.items()
-    return np.asarray(
-        sum(link.mass * dot(gravity, motion.mass_centers[name].place_1) for name, link in links)
-    )
-
-
 def generalized_force(motion: Motion, demands: Mapping[str, Demand]) -> Array:
     """Generalized force (N,), N m, of what acts on links.
 
