@@ -99,7 +99,9 @@ class NotebookFile(pytest.File):
     """A notebook."""
 
     def collect(self) -> Iterator[NotebookCells]:
-        yield NotebookCells.from_parent(self, name="cells")
+        cells = NotebookCells.from_parent(self, name="cells")
+        cells.add_marker("exhaustive")  # a change runs them once, for the site
+        yield cells
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.File | None:

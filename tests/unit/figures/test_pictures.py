@@ -67,6 +67,10 @@ def of_odd(name: str) -> dict[str, Chart]:
     return rooms[room](kind)
 
 
+# One with a cam, a mechanism of six bars, one on mounts with rows, one with a plan, and a tool.
+@pytest.mark.exhaustive(
+    but=["cam-pusher", "stephenson-six-bar", "walking-transplanter", "balance-spring", "pole-saw"]
+)
 @pytest.mark.documentation
 @pytest.mark.parametrize("name", few(EXAMPLES, {*DISTINCT, *TRANSLATED, *eq.examples("tool")}))
 def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
