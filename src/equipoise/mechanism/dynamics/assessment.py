@@ -241,7 +241,7 @@ def questions(linkage: Linkage) -> Iterator[Note | str]:
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
     ends = (end for *_, element in machine.elements for end in element.points)
     used |= {point for body, point in ends if body == FRAME} | linkage.joints.pins.keys()
-    used |= {*(machine.drive.between or ())}
+    used |= {point for drive in machine.driven for point in drive.between or ()}
     used |= {spring.to for spring in machine.balance.springs} if machine.balance else set()
     for point in machine.frame:
         if point not in used:
