@@ -16,8 +16,11 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
+from equipoise.exchange.fastening import ScrewThreads, needs_threads, threads_of
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, coordinates, decimals, say, to_say
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.balance import MATERIALS
 from equipoise.mechanism.parts.bodies import Body, Points, outlines, place_of
 from equipoise.quantities import display, fixed, format_quantity
 from equipoise.results.machine_blocks import SHAPES, stuff_named
@@ -46,6 +49,8 @@ class RoundEdge:
         return f"Ø {in_mm(2e3 * self.radius)}" if self.whole else f"R {in_mm(1e3 * self.radius)}"
 
 
+LIGHT_SCREWS = 5e-4
+"""Of a part's mass, below which what its screws add is not said."""
 COUNTERWEIGHT = "counterweight"
 KINDS = {**SHAPES, COUNTERWEIGHT: to_say("counterweight")}
 """What a part is, in words."""
@@ -59,6 +64,7 @@ class Part:
     thickness : m, None where not known.
     edges : of its outline and of each opening, closed.
     density : kg/m3, None where not known.
+    threads : by which it is fastened; None of what is not.
     """
 
     link: str
@@ -67,6 +73,7 @@ class Part:
     thickness: float | None
     edges: tuple[tuple[Edge, ...], ...]
     density: float | None = None
+    threads: ScrewThreads | None = None
 
     @property
     def name(self) -> str:
@@ -124,7 +131,38 @@ class Part:
         holes = [curve.text for edges in self.edges[1:] for curve in _curves(edges) if curve.whole]
         if holes:
             said.append(say("holes: {list}", list=", ".join(dict.fromkeys(holes))))
+        if self.threads is not None:
+            said.extend(self._thread_lines(self.threads))
         return tuple(said)
+
+    def _thread_lines(self, threads: ScrewThreads) -> Iterator[str]:
+        """Which threads, where, and what their screws weigh beyond what was drilled out."""
+        words = {"count": len(threads.places), "size": threads.size}
+        if threads.about_axis:
+            polar = ((in_mm(1e3 * r), in_mm(degrees(way))) for r, way in threads.about_axis)
+            yield say(
+                "{count} threads M{size} about the axis, at {places} from the x axis of the link",
+                places="; ".join(f"R {radius}, {way}°" for radius, way in polar),
+                **words,
+            )
+        else:
+            axes = ([in_mm(1e3 * place.real), in_mm(1e3 * place.imag)] for place in threads.places)
+            yield say(
+                "{count} threads M{size} at {places} mm in the axes of the link",
+                places=", ".join(f"({coordinates(place)})" for place in axes),
+                **words,
+            )
+        if self.thickness is None or self.density is None:
+            return
+        beyond = (MATERIALS["steel"] - self.density) * self.thickness * len(threads.places)
+        beyond *= pi / 4 * (1e-3 * threads.size) ** 2
+        if abs(beyond) < LIGHT_SCREWS * (self.mass or 0.0):
+            yield say("the threads are filled by steel screws")
+        else:
+            yield say(
+                "the threads are filled by steel screws, which add {mass}",
+                mass=workshop_mass(beyond),
+            )
 
     def _round_lines(self) -> Iterator[str]:
         """Where a sector points, or a disc lies, in the axes of its link."""
@@ -329,18 +367,23 @@ def circle(center: complex, radius: float) -> tuple[Edge, ...]:
 def _of_changes(job: Job) -> Iterator[Part]:
     """Counterweights that balancing adds; those of a link may come from several changes."""
     counts: Counter[str] = Counter()
+    motion = move(job.machine, 360) if job.changes else None
     for change in job.changes or ():
         pieces: Iterable[dict[str, Any]] = change.values.get("pieces", ())
         for piece in pieces:
             counts[change.link] += 1
             center = complex(*change.values["center"])
             edges = tuple(_edges_of_piece(piece, center))
+            screwed = motion is not None and needs_threads(piece, center)
+            threads = threads_of(piece, center, motion, change.link) if screwed else None
             part = Part(change.link, COUNTERWEIGHT, counts[change.link], piece.get("thickness"),
-                        edges, piece.get("density"))  # fmt: skip
-            if edges:
-                yield part
-            else:
+                        edges, piece.get("density"), threads)  # fmt: skip
+            if not edges:
                 job.leave_out(Note("{part}, a point mass without an outline", part=part.name))
+                continue
+            if screwed and threads is None:
+                job.leave_out(Note("threads of {part}, which has no room for them", part=part.name))
+            yield part
 
 
 def _edges_of_piece(piece: dict[str, Any], center: complex) -> Iterator[tuple[Edge, ...]]:

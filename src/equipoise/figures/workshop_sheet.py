@@ -9,7 +9,7 @@ import io
 from cmath import rect
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from math import cos, degrees, pi
+from math import cos, degrees, pi, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -46,6 +46,12 @@ DRAWN = (SHEET[0] - 2 * MARGIN, SHEET[1] - EDGE - WRITTEN - MARGIN)
 """Width and height of what is drawn with all its measures, mm on paper."""
 AXIS_BEFORE, AXIS_BEYOND = 0.15, 0.6
 """Over the radius of a sector: how far the x axis is drawn on both sides of its axis."""
+
+
+NEAR_END, ON_LINE = 0.4, 1e-3
+"""Where on an arc its radius is given beside the sector, over the angle from the middle; sine of
+what is one direction.
+"""
 
 
 def export_bytes(job: Job) -> bytes:
@@ -151,6 +157,7 @@ def _sheet(part: Part, lines: Sequence[str]) -> Figure:
     elif not part.is_round:
         _widths(axes, low, high, OFF * scale)
     _radii(axes, part, scale)
+    _threads(axes, part, scale)
     room = (SHEET[0] - 2 * EDGE) / INCH * POINTS
     short = [piece for line in lines for piece in lines_of(line, room, LETTERS)]
     figure.text(EDGE / SHEET[0], 1 - EDGE / SHEET[1], "\n".join(short), va="top",
@@ -197,15 +204,52 @@ def _angle(axes: Axes, part: Part, scale: float) -> None:
 
 def _radii(axes: Axes, part: Part, scale: float) -> None:
     """Diameters of circles, and radii of arcs, each in a direction of its own."""
+    aside = _side_of_radii(part)
     for number, curve in enumerate(part.curves):
         center, radius = MM * curve.center, MM * curve.radius
-        end = center + rect(radius, curve.direction if not curve.whole else pi / 4 + number * 0.5)
-        widest = not curve.whole and curve.radius == max(curve.radius for curve in part.curves)
-        outward = -1.5 if widest else 1.0  # away from the measures of the height
-        text_at = end + rect(6.0 * scale, float(np.angle(outward * (end - center))))
+        if aside and not curve.whole:
+            toward = curve.direction + aside * NEAR_END * curve.angle
+            end = center + rect(radius, toward)
+            beyond = radius * (0.5 - NEAR_END) * curve.angle + 6.0 * scale
+            text_at = end + rect(beyond, toward + aside * pi / 2)
+        else:
+            end = center + rect(
+                radius, curve.direction if not curve.whole else pi / 4 + number * 0.5
+            )
+            widest = not curve.whole and curve.radius == max(item.radius for item in part.curves)
+            outward = -1.5 if widest else 1.0  # away from the measures of the height
+            text_at = end + rect(6.0 * scale, float(np.angle(outward * (end - center))))
         axes.annotate(
             curve.text, (end.real, end.imag), (text_at.real, text_at.imag), color=MAIN,
             ha="left" if text_at.real >= end.real else "right", va="center",
             arrowprops={"arrowstyle": "->", "color": MAIN},
         )  # fmt: skip
         axes.plot(center.real, center.imag, marker="+", markersize=9, color=MAIN)
+
+
+def _side_of_radii(part: Part) -> int:
+    """On which side of a sector its radii are written, away from the x axis, where threads lie in
+    its middle; 0 where they can be written in it.
+    """
+    threads, arcs = part.threads, part.arcs
+    if threads is None or not arcs:
+        return 0
+    middle = arcs[0].direction
+    if any(abs(sin(way - middle)) > ON_LINE for _, way in threads.about_axis):
+        return 0
+    ends = {side: abs(sin(middle + side * arcs[0].angle / 2)) for side in (-1, 1)}
+    return max(ends, key=lambda side: ends[side])
+
+
+def _threads(axes: Axes, part: Part, scale: float) -> None:
+    """Circles of threads, each with its size on the side away from the others."""
+    if part.threads is None:
+        return
+    radius, places = part.threads.size / 2, MM * np.array(part.threads.places)
+    course = radius * np.exp(1j * np.linspace(0, 2 * pi, 61))
+    for place in places:
+        axes.plot((place + course).real, (place + course).imag, color=INK, linewidth=0.6)
+        axes.plot(place.real, place.imag, marker="+", markersize=6, color=MAIN)
+    text_at = places[0] + radius + 2.0 * scale
+    axes.text(text_at.real, text_at.imag, f"M{part.threads.size}", ha="left", va="center",
+              color=MAIN)  # fmt: skip

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 import equipoise as eq
 from equipoise.balancing.whole_sizes import in_whole_sizes
 from equipoise.errors import UsageError
+from equipoise.exchange.fastening import ScrewThreads, needs_threads, threads_of
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import Part, along, in_mm, parts
 from equipoise.exchange.reading.formats import import_machine
@@ -183,6 +184,65 @@ def test_measures_that_are_advised_are_whole(name: str) -> None:
         numbers = re.findall(r"[\d.]+", " ".join((*texts, *part.lines[4:], part.lines[1])))
         assert len(numbers) >= 5 and not [one for one in numbers if "." in one], part.lines
         assert part.mass == pytest.approx(found.balanced.added_mass, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "yamashita-rig", "sieve"])
+def test_sectors_are_screwed_on(name: str, tmp_path: Path) -> None:
+    """By two threads, clear of the outline and of each other, whose steel weighs as much as the
+    screws; on a crank of constant speed their friction holds its force twice.
+    """
+    found = findings_of(name)
+    assert isinstance(found, Findings) and found.balanced is not None
+    whole, _ = in_whole_sizes(found.balanced)
+    drawing = drawn(whole, tmp_path / "x.dxf")
+    speed = whole.machine.drive.speed
+    names = [part.name for part in parts(Job(whole.machine, 0.0, whole.changes)) if part.threads]
+    assert names == ["crank, counterweight 1"]
+    (piece,) = (p for change in whole.changes for p in change.values.get("pieces", ()))
+    (line,) = on_layer(drawing, "part crank_ counterweight 1")
+    first, second = on_layer(drawing, "threads crank_ counterweight 1")
+    edges = corners(line)
+    outline = np.concatenate(
+        [1e3 * along(a / 1e3, b / 1e3, bulge, 200)
+         for (a, bulge), (b, _) in zip(edges, (*edges[1:], edges[0]), strict=True)]
+    )  # fmt: skip
+    for hole, other in ((first, second), (second, first)):
+        at, size = complex(*hole.dxf.center.vec2), 2 * hole.dxf.radius
+        assert np.min(np.abs(outline - at)) >= 1.49 * size  # chords lie a little inside of arcs
+        assert abs(at - complex(*other.dxf.center.vec2)) >= 3 * size
+        # the outline turns once round a place inside of it
+        turns = np.angle(np.roll(outline - at, -1) / (outline - at))
+        assert abs(np.sum(turns)) == pytest.approx(2 * np.pi, rel=1e-6)
+        assert 4 * size >= 1e3 * piece["thickness"]
+    center = complex(*next(c.values["center"] for c in whole.changes if c.values.get("pieces")))
+    force = piece["mass"] * speed**2 * abs(complex(*piece["place"]) - center)
+    areas = {5: 14.2, 6: 20.1, 8: 36.6, 10: 58.0, 12: 84.3}  # ISO 898-1, mm2
+    tightened = 0.7 * 580 * areas[round(2 * first.dxf.radius)]
+    assert 2 * 0.12 * tightened >= 2 * force
+    texts = [e.dxf.text for e in on_layer(drawing, "dimensions crank_ counterweight 1")
+             if e.dxftype() == "TEXT"]  # fmt: skip
+    assert any(t.startswith(f"2 threads M{2 * first.dxf.radius:.0f} ") for t in texts)
+    assert "the threads are filled by steel screws" in texts
+    circles = svg(whole, tmp_path / "x.svg").findall("{*}g/{*}circle")
+    assert [float(one.get("r", "0")) for one in circles] == [first.dxf.radius] * 2
+
+
+def test_larger_forces_get_larger_threads() -> None:
+    """Until no screws hold them."""
+    piece = {"shape": "sector", "mass": 1.0, "place": (0.06, 0.0), "outer_radius": 0.1,
+             "inner_radius": 0.02, "angle": np.pi, "direction": 0.0, "thickness": 0.01}  # fmt: skip
+    machine, sizes = eq.load("yamashita-1"), []
+    for rpm in (100, 1000, 1500, 2000, 3000, 20000):
+        motion = eq.move(machine.with_drive(speed=rpm * np.pi / 30), 36)
+        threads = threads_of(piece, 0j, motion, "crank")
+        sizes.append(threads.size if threads else None)
+    assert sizes[0] == 5 and sizes[-1] is None
+    known = [size for size in sizes if size is not None]
+    assert known == sorted(known) and len({*known}) > 2
+    disc = {"shape": "disc", "mass": 0.5, "place": (0.05, 0.0), "radius": 0.03, "thickness": 0.01}
+    motion = eq.move(machine, 36)
+    assert threads_of(disc, 0j, motion, "crank") == ScrewThreads(5, (0.035 + 0j, 0.065 + 0j))
+    assert needs_threads(disc, 0j) and not needs_threads(disc, 0.04 + 0j)
 
 
 def test_texts_of_drawings_are_in_the_language_asked_for(

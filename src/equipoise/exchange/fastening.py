@@ -1,0 +1,112 @@
+"""Threads by which counterweights are fastened, filled by screws of about the same weight.
+
+Only what does not lie around its axis needs them: sectors, and discs beside it.
+"""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from collections.abc import Iterator, Mapping, Sequence
+from math import degrees, pi, radians, sin
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.workshop import covers
+from equipoise.dataclass import dataclass
+from equipoise.mechanism.kinematics.motion import Motion
+
+STRESS_AREAS = {5: 14.2e-6, 6: 20.1e-6, 8: 36.6e-6, 10: 58e-6, 12: 84.3e-6, 16: 157e-6, 20: 245e-6}
+"""Nominal diameter, mm -> stress area of a metric coarse thread, m2 (ISO 898-1)."""
+PRELOAD = 0.7 * 580e6
+"""Stress of a tightened screw, Pa: 0.7 of the proof stress of property class 8.8 (ISO 898-1)."""
+FRICTION, SAFETY = 0.12, 2.0
+"""Between the counterweight and its link, of steel on steel; of what screws hold over the force."""
+SCREWS = 2
+EDGE = 1.5
+"""Least distance of a thread's centre from an edge, over its diameter; from another twice that."""
+DEEPEST = 4.0
+"""Depth over the diameter beyond which a thread is hard to tap."""
+MM = 1e-3
+
+
+@dataclass(frozen=True)
+class ScrewThreads:
+    """Threads through a counterweight.
+
+    size : nominal diameter, mm.  places : in the axes of the link, m.
+    about_axis : radius, m, and direction, rad, of each about the axis; () of a disc beside it.
+    """
+
+    size: int
+    places: tuple[complex, ...]
+    about_axis: tuple[tuple[float, float], ...] = ()
+
+
+def needs_threads(piece: Mapping[str, Any], center: complex) -> bool:
+    """Whether a piece has to be screwed on: it does not surround the axis at a centre."""
+    return bool(piece["shape"] == "sector" and piece["angle"] < 2 * pi - 1e-9) or (
+        piece["shape"] == "disc" and not covers(dict(piece), center, center)
+    )
+
+
+def threads_of(
+    piece: Mapping[str, Any], center: complex, motion: Motion, link: str
+) -> ScrewThreads | None:
+    """The smallest threads whose screws hold a piece by friction; None without room for any."""
+    force = SAFETY * float(piece["mass"]) * _largest_acceleration(piece, motion, link)
+    for size, area in STRESS_AREAS.items():
+        holds = SCREWS * FRICTION * PRELOAD * area
+        if holds >= force and DEEPEST * MM * size >= (piece["thickness"] or 0.0):
+            return next(_with_room(piece, center, size), None)
+    return None
+
+
+def _largest_acceleration(piece: Mapping[str, Any], motion: Motion, link: str) -> float:
+    """Of the centre of mass of a piece over the cycle, m/s2."""
+    points = motion.machine.links[link].points
+    anchor, at = next(iter(points.items()))
+    turning = motion.links[link]
+    arm = np.exp(1j * turning.angle) * (complex(*piece["place"]) - complex(*at))
+    about = 1j * turning.angular_acceleration - turning.angular_velocity**2
+    return float(np.max(np.abs(motion.points[anchor].acceleration_vector + about * arm)))
+
+
+def _with_room(piece: Mapping[str, Any], center: complex, size: int) -> Iterator[ScrewThreads]:
+    """Threads at whole millimetres and degrees, where they keep away from edges."""
+    edge = EDGE * size * MM
+    if piece["shape"] == "disc":
+        away = MM * round(piece["radius"] / 2 / MM)
+        if edge <= away and away + edge <= piece["radius"]:
+            place = complex(*piece["place"])
+            yield ScrewThreads(size, (place - away, place + away))
+        return
+    inner, outer, half = piece["inner_radius"], piece["outer_radius"], piece["angle"] / 2
+    middle = round(degrees(piece["direction"]))
+
+    def keeps_away(pair: Sequence[tuple[float, int]]) -> bool:
+        """Whether threads at radii, degrees beside the middle, keep away from all edges."""
+        apart = abs(rect(pair[0][0], radians(pair[0][1])) - rect(pair[1][0], radians(pair[1][1])))
+        return apart >= 2 * edge and all(
+            inner + edge <= radius <= outer - edge
+            and radius * sin(min(max(half - radians(abs(aside)), 0.0), pi / 2)) >= edge
+            for radius, aside in pair
+        )
+
+    for pair in _pairs(piece):
+        if keeps_away(pair):
+            polar = tuple((r, phase(rect(1, radians(middle + aside)))) for r, aside in pair)
+            yield ScrewThreads(size, tuple(center + rect(*item) for item in polar), polar)
+
+
+def _pairs(piece: Mapping[str, Any]) -> Iterator[tuple[tuple[float, int], tuple[float, int]]]:
+    """Where threads of a sector may be: radius, m, and degrees beside its middle.
+
+    On both sides of the middle, best half way to its ends; or below each other.
+    """
+    inner, outer = round(piece["inner_radius"] / MM), round(piece["outer_radius"] / MM)
+    most, radius = round(degrees(piece["angle"] / 2)), MM * round((inner + outer) / 2)
+    for aside in sorted(range(1, most), key=lambda item: abs(item - most / 2)):
+        yield (radius, -aside), (radius, aside)
+    for far in range((outer - inner) // 4, (outer - inner) // 2):
+        yield (radius - MM * far, 0), (radius + MM * far, 0)
