@@ -18,7 +18,7 @@ import { Inspector } from "./inspector";
 import { Keeping } from "./keeping";
 import { Locks } from "./locks";
 import { Player } from "./player";
-import type { Asked, FileKind, Hello, Numbers, Planted, RunMessage, State, Wire } from "./protocol";
+import type { Asked, FileKind, Hello, Numbers, Planted, RunMessage, State, Strokes, Wire } from "./protocol";
 import { BalancePanel, FigureTable, headline, Readings } from "./readings";
 import { Board } from "./board";
 import { Border } from "./border";
@@ -118,6 +118,10 @@ export class App {
         this.charts.answered(message, numbers);
         this.seeing.answered(message, numbers);
         this.add("response", message.notes);
+      },
+      strokes: (message, numbers) => {
+        this.plant(message);
+        this.charts.loaded(message, numbers);
       },
       planting: (message) => this.plant(message),
       side: ({ svg }) =>
@@ -417,7 +421,7 @@ export class App {
     if (opened) this.toolbar.show(opened);
   }
 
-  private plant(planted: Planted): void {
+  private plant(planted: Planted | Strokes): void {
     const tables = { strokes: this.strokes, gauges: this.gauges, planting: this.planted };
     tables[planted.type].show(planted);
     this.add(planted.type, planted.notes);

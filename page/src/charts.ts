@@ -6,7 +6,7 @@ import { h, show, write } from "./dom";
 import { type Ask, explain } from "./explain";
 import { lengths } from "./format";
 import { Plane, type Trace } from "./plane";
-import type { ChartData, Numbers, ResponseMessage, State } from "./protocol";
+import type { ChartData, Numbers, ResponseMessage, State, Strokes } from "./protocol";
 import { capital } from "./readings";
 import { Outputs } from "./outputs";
 import type { Strip } from "./strip";
@@ -31,6 +31,7 @@ export class Charts {
   private readonly path = new Plane(say("Path"), false, this.pathOf.label);
   private readonly forces = h("div", { class: "group" });
   private readonly answers = h("div", { class: "group" });
+  private readonly links = h("div", { class: "group" });
   private readonly zeros = h("p", { class: "quiet zeros", hidden: true });
   private readonly outputs: Outputs;
   /** Those that the server declares, by name. */
@@ -46,6 +47,8 @@ export class Charts {
   /** Of a design that is drawn pale. */
   private ghost: Numbers | null = null;
   private heard: [ResponseMessage, Numbers] | null = null;
+  /** Loads along links. */
+  private loads: [Strokes, Numbers] | null = null;
   private at = 0;
   /** Something is dragged: what is written follows more seldom. */
   private held = false;
@@ -129,6 +132,7 @@ export class Charts {
       this.heard = null;
       this.draw([], { state, numbers: state.numbers, before: false }, this.answers, other);
     }
+    if (other || !forces) this.loaded(null);
     show(this.polar.root, forces);
     this.squares.classList.toggle("alone", !forces);
     // Rows that stand still have no forces together.
@@ -143,6 +147,19 @@ export class Charts {
     const first = !this.heard;
     this.heard = [message, numbers];
     this.answer(first);
+  }
+
+  /** What links bear along their length came with the figures of a state; null where it is another machine. */
+  loaded(message: Strokes | null, numbers?: Numbers): void {
+    const { state } = this;
+    const other = !this.loads;
+    this.loads = message && numbers ? [message, numbers] : null;
+    if (state) this.drawLoads(state, other);
+  }
+
+  private drawLoads(state: State, other: boolean): void {
+    const [message, numbers] = this.loads ?? [{ charts: [] }, state.numbers];
+    this.draw(message.charts, { state, numbers, before: false }, this.links, other);
   }
 
   /** Draw the path of a pale design behind that of the machine. */
@@ -177,7 +194,7 @@ export class Charts {
   private arrange(first: State["first"]): void {
     this.leads = first;
     const { squares, forces, answers } = this;
-    const groups = { squares, forces, output: this.outputs.root, answers };
+    const groups = { squares, forces, output: this.outputs.root, answers, links: this.links };
     this.root.append(this.whoseRow, ...Object.values(groups));
     this.whoseRow.after(groups[first]);
   }
@@ -213,6 +230,7 @@ export class Charts {
     this.again(false);
     this.repoint();
     this.answer(false);
+    if (this.state) this.drawLoads(this.state, false);
     this.settle();
   }
 

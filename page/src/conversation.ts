@@ -2,7 +2,7 @@
 
 import type { Asked, Edit, HandedOut, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
-import { Numbers, type Pictured, type Planted, type ResponseMessage, type Side, type State } from "./protocol";
+import { Numbers, type Pictured, type Planted, type ResponseMessage, type Side, type State, type Strokes } from "./protocol";
 import type { GhostMessage, RunMessage, Stores, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
 import { OPENS, type Shelf, type Shown, Story, type Told as Kept } from "./story";
 import { language, say } from "./words";
@@ -11,6 +11,7 @@ export interface Events {
   hello(message: Extract<Told, { type: "hello" }>): void;
   state(state: State): void;
   response(message: ResponseMessage, numbers: Numbers): void;
+  strokes(message: Strokes, numbers: Numbers): void;
   planting(message: Planted): void;
   side(message: Side): void;
   ghost(message: GhostMessage, numbers: Numbers): void;
@@ -192,8 +193,9 @@ export class Conversation {
         return this.end(told.seq, null);
       case "variants":
         return this.events.variants(told);
-      case "planting":
       case "strokes":
+        return this.events.strokes(told, new Numbers(told.arrays, buffers[0]));
+      case "planting":
       case "gauges":
         return this.events.planting(told);
       case "side":

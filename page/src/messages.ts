@@ -551,9 +551,22 @@ export interface Reading {
   was?: string;
 }
 
-/** Figures of a planting finger, of gauges, or of sliders and rockers. */
+/** Figures of sliders, rockers and parts, and charts of loads along links with a section. */
+export interface Strokes {
+  type: "strokes";
+  /** Number of the question that it answers; null for what comes later. */
+  seq: number | null;
+  figures: Reading[];
+  /** Whether figures of another design are shown beside them. */
+  compared: boolean;
+  notes: string[];
+  charts: ChartData[];
+  arrays: Arrays;
+}
+
+/** Figures of a planting finger or of gauges. */
 export interface Planted {
-  type: "planting" | "gauges" | "strokes";
+  type: "planting" | "gauges";
   /** Number of the question that it answers; null for what comes later. */
   seq: number | null;
   figures: Reading[];
@@ -1018,6 +1031,6 @@ export type Edit = TypedEdit | NumberEdit | DragEdit | MassDragEdit;
 
 export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played" | "interactive";
 
-export type Sent = Hello | Spoken | Pictured | Gallery | StateMessage | ResponseMessage | GhostMessage | ToolMessage | StudyMessage | Stores | VariantsMessage | Planted | Side | Balanced | RunMessage | Refused | Tables | Saved | Busy | HandedOut | Answered;
+export type Sent = Hello | Spoken | Pictured | Gallery | StateMessage | ResponseMessage | GhostMessage | ToolMessage | StudyMessage | Stores | VariantsMessage | Strokes | Planted | Side | Balanced | RunMessage | Refused | Tables | Saved | Busy | HandedOut | Answered;
 
 export type Asked = ReadyRequest | LanguageRequest | ExampleRequest | NewRequest | FileRequest | EditRequest | MakeRequest | PlainRequest | BalanceRequest | RunRequest | CompareRequest | EntryRequest | OutputsRequest | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest | VariantRequest | AgainstRequest | RecordRequest | StudyRequest | DesignRequest;

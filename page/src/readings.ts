@@ -4,7 +4,7 @@ import { decimals } from "./decimals";
 import { h, icon, set, show, write } from "./dom";
 import { unbroken } from "./format";
 import { Pins } from "./pins";
-import type { Balanced, Change, Figure, Planted, State } from "./protocol";
+import type { Balanced, Change, Figure, Planted, State, Strokes } from "./protocol";
 import { say } from "./words";
 
 const PIN = "M5.500 2.500h5M6.500 2.500v4l-2 2.500h7l-2-2.500v-4M8 9v4.500";
@@ -110,7 +110,7 @@ export class FigureTable {
 
   constructor(private readonly caption: string) {}
 
-  show(planted: Planted): void {
+  show(planted: Planted | Strokes): void {
     this.root.classList.toggle("compared", planted.compared);
     const rows = planted.figures.map(({ label, unit, text, was }) =>
       h(

@@ -57,7 +57,8 @@ export function languages(): Record<string, string> {
 
 /** What a chart shows, and what to look for in it. */
 export function explained(chart: string): string {
-  return own.explained[chart] ?? told.explained[chart] ?? "";
+  const kind = chart.split("-")[0] ?? "";
+  return own.explained[chart] ?? told.explained[chart] ?? told.explained[kind] ?? "";
 }
 
 /** Speak of a machine in words that fit it from now on. */

@@ -10,6 +10,7 @@ from playwright.sync_api import expect
 
 import equipoise as eq
 from browser.live import SCREENSHOTS, Live
+from unit.figures.link_samples import engine
 
 SHOWN = "yamashita-rig", "class-three", "transplanter", "stephenson-six-bar", "watt-six-bar"
 AXES = """() => {
@@ -169,6 +170,24 @@ def test_charts_of_nothing_but_zero_take_no_room(live: Live) -> None:
     page.get_by_role("combobox", name="Example").select_option("yamashita-1")
     expect(moment).to_be_visible()
     expect(page.get_by_text("Zero at every crank angle")).to_be_hidden()
+
+
+def test_loads_along_links_are_drawn_while_they_have_a_section(live: Live) -> None:
+    """What is chosen is drawn over the length of the link; another machine has no such chart."""
+    page = live.page
+    live.drop("engine.toml", eq.dumps(engine()))
+    live.settled()
+    along = page.get_by_role("combobox", name="Along rod")
+    expect(along).to_be_visible()
+    chart = page.locator("figure", has=along)
+    expect(chart.locator(".numbers .x")).not_to_have_count(0)
+    along.select_option(label="rod: stress")
+    expect(chart.locator("figcaption")).to_contain_text("MPa, over mm")
+    assert not page.evaluate(CLIPPED)
+    chart.get_by_role("button", name=re.compile("what does it show")).click()
+    expect(chart).to_contain_text("What a link bears along its length")
+    page.get_by_role("combobox", name="Example").select_option("yamashita-1")
+    expect(along).to_be_hidden()
 
 
 @pytest.mark.exhaustive

@@ -38,6 +38,13 @@ if TYPE_CHECKING:
     from equipoise.quantities import Dimension
     from equipoise.results.analysis import Analysis
 
+ALONG = (
+    to_say("axial force"),
+    to_say("shear force"),
+    to_say("bending moment"),
+    to_say("stress"),
+)
+"""What is drawn along a link, a panel each."""
 HEIGHT = 74.0
 """Points of each of the panels below each other."""
 LEAST = 1e-6
@@ -54,7 +61,7 @@ def link_charts(analysis: Analysis) -> Iterator[tuple[Chart, str]]:
     )
     of_cycles = to_say("Haigh diagram: mean and amplitude of cycles of stress, and their limits.")
     for name in analysis.sections:
-        yield _along(analysis, name), of_loads
+        yield along_link(analysis, name), of_loads
         if _section(analysis, name).fatigue_limit is not None:
             yield _haigh(analysis, name), of_cycles
 
@@ -73,7 +80,7 @@ def _chart(analysis: Analysis, kind: str, name: str, what: str, panels: Sequence
 # -- along a link ----------------------------------------------------------------------------------
 
 
-def _along(analysis: Analysis, name: str) -> Chart:
+def along_link(analysis: Analysis, name: str) -> Chart:
     """Axial force, shear force, bending moment and stress over the distance from the first point,
     at the crank angle, and in the duty state, of the largest stress.
     """

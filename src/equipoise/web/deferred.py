@@ -181,7 +181,9 @@ def deferred_replies(
         yield {"type": "side", "svg": render(side(computed.analysis)).decode()}, b""
     # Where there are none any more, such as losses of friction, the page hides those that it has.
     if not outdated():
-        yield _told_against("strokes", _strokes, computed, against), b""
+        figures, block = _told_against("strokes", _strokes, computed, against), FloatBlock()
+        charts = [*_along_links(computed.analysis, block)]
+        yield {**figures, "charts": charts, "arrays": block.placement}, block.data
     if can_be_shaken(computed.analysis.machine) and not outdated():
         yield _told_against("gauges", _gauges, computed, against), b""
     if _plants(computed) and not outdated():
@@ -282,6 +284,20 @@ def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, FigureValue]]:
     for table, name, figures in figures_by_name(analysis):
         yield from _declared_of(f"{table}.{name}", coupling_named(name), figures, _own)
     yield from _losses_of(analysis)
+
+
+def _along_links(analysis: Analysis, block: FloatBlock) -> Iterator[Values]:
+    """Charts of loads and stress along links with a section; their arrays go to the block."""
+    if analysis.sections:
+        from equipoise.figures.link_strength import ALONG, along_link
+        from equipoise.web.result_blocks import stacked_chart
+
+        for name in analysis.sections:
+            chooser, labels = (
+                say("Along {link}", link=name),
+                [f"{name}: {say(what)}" for what in ALONG],
+            )
+            yield stacked_chart(along_link(analysis, name), labels, chooser, block)
 
 
 def _losses_of(analysis: Analysis) -> Iterator[tuple[str, FigureValue]]:

@@ -69,6 +69,11 @@ CHARTS = {
         "The force in a joint over the crank angle. Its peak sizes the bearing; where it comes "
         "near zero and turns round, a joint with play knocks."
     ),
+    "stress": to_say(
+        "What a link bears along its length, at the crank angle at which its stress is largest; "
+        "the line is where. Look at which of tension and bending makes the stress, and whether a "
+        "notch or a hole could stand elsewhere."
+    ),
     "output": to_say(
         "Any figure that the machine has over the crank angle, such as velocities, transmission "
         "angles and forces: type some of its name."
@@ -82,7 +87,8 @@ CHARTS = {
         "speed of work, which should stand well away from them."
     ),
 }
-"""Name of a chart -> what it shows, what to look for."""
+"""Name of a chart, or what stands before the first hyphen of it -> what it shows, what to look for.
+"""
 
 
 def explained() -> dict[str, str]:

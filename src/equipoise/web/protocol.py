@@ -561,10 +561,22 @@ class ReadingValues(TypedDict):
     was: NotRequired[Annotated[str, "Previous value and change; empty if it is the same."]]
 
 
-class PlantedValues(TypedDict):
-    """Figures of a planting finger, of gauges, or of sliders and rockers."""
+class StrokesValues(TypedDict):
+    """Figures of sliders, rockers and parts, and charts of loads along links with a section."""
 
-    type: Literal["planting", "gauges", "strokes"]
+    type: Literal["strokes"]
+    seq: Answer
+    figures: list[ReadingValues]
+    compared: Annotated[bool, "Whether figures of another design are shown beside them."]
+    notes: list[str]
+    charts: list[ChartDataValues]
+    arrays: Arrays
+
+
+class PlantedValues(TypedDict):
+    """Figures of a planting finger or of gauges."""
+
+    type: Literal["planting", "gauges"]
     seq: Answer
     figures: list[ReadingValues]
     compared: Annotated[bool, "Whether figures of another design are shown beside them."]
@@ -676,9 +688,9 @@ class AnsweredValues(TypedDict):
 
 Sent = (
     HelloValues | SpokenValues | PicturedValues | GalleryValues | StateMessage | ResponseMessage
-    | GhostMessage | ToolMessage | StudyMessage | StoresValues | VariantsMessage | PlantedValues
-    | SideValues | BalancedValues | RunMessage | RefusedValues | TablesValues | SavedValues
-    | BusyValues | HandedOutValues | AnsweredValues
+    | GhostMessage | ToolMessage | StudyMessage | StoresValues | VariantsMessage | StrokesValues
+    | PlantedValues | SideValues | BalancedValues | RunMessage | RefusedValues | TablesValues
+    | SavedValues | BusyValues | HandedOutValues | AnsweredValues
 )  # fmt: skip
 """All that a server sends."""
 

@@ -55,15 +55,37 @@ def panel_charts(charts: Iterable[Chart], block: FloatBlock) -> Iterator[Values]
                 yield _panel_chart(f"{item.name}.{number}", panel, block)
 
 
+def stacked_chart(item: Chart, labels: Iterable[str], chooser: str, block: FloatBlock) -> Values:
+    """One chart of all panels of a picture, which stand on one x axis, each a choice of its own.
+
+    Its marker stands where the first line of the panels does.  labels : of the choices.
+    """
+    first = item.panels[0]
+    x, line = f"{item.name}.x", first.lines[0]
+    block.add(x, first.curves[0].x)
+    choices = [
+        _panel_choice(f"{item.name}.{number}", panel, label, block)
+        for number, (panel, label) in enumerate(zip(item.panels, labels, strict=True))
+    ]
+    over = {"array": x, "at": line.at, **_unit(first.x)}
+    return chart(item.name, choices, x=over, chooser=chooser)
+
+
 def _panel_chart(name: str, panel: Panel, block: FloatBlock) -> Values:
+    block.add(f"{name}.x", panel.curves[0].x)
+    choice = _panel_choice(name, panel, capital(panel.y.label), block)
+    return chart(name, [choice], x={"array": f"{name}.x", "at": None, **_unit(panel.x)})
+
+
+def _panel_choice(name: str, panel: Panel, label: str, block: FloatBlock) -> Values:
+    """Curves of a panel, whose values go to the block."""
     curves = panel.curves
     arrays = [f"{name}.{number}" for number in range(len(curves))]
-    block.add(f"{name}.x", curves[0].x)
     for array, curve in zip(arrays, curves, strict=True):
         block.add(array, curve.y)
-    choice = {
+    return {
         "name": name,
-        "label": capital(panel.y.label),
+        "label": label,
         "of": None,
         "log": panel.y.scale == "log",
         **_unit(panel.y),
@@ -72,7 +94,6 @@ def _panel_chart(name: str, panel: Panel, block: FloatBlock) -> Values:
             for array, curve in zip(arrays, curves, strict=True)
         ],
     }
-    return chart(name, [choice], x={"array": f"{name}.x", "at": None, **_unit(panel.x)})
 
 
 def _unit(axis: Axis) -> dict[str, Any]:
