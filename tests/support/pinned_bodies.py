@@ -3,7 +3,8 @@
 Each link has the place of its centre of mass and its angle, each pin two equations; a motion or a
 length between two points that is given is one more.  Multipliers follow from the second derivatives
 of all of them.  It knows nothing of drives, dyads or reduced inertias.  Dry friction in pins
-follows from the multipliers, put into itself until it stays.
+follows from the multipliers, put into itself until it stays.  The frame stands still, or is the
+body of a support on its mounts.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ Given = Callable[[float], tuple[float, float, float]]
 Torques = Callable[
     [float, Mapping[str, tuple[float, float]], Array], tuple[dict[str, float], Array]
 ]
-"""From time, angle and speed of each link, and further states: torques on links, and what these
-states change by."""
+"""From time, angle and speed of each link against the frame, and further states: torques between
+links and frame, and what these states change by."""
 
 
 ROUNDS, SAME = 60, 1e-13
@@ -42,17 +43,45 @@ class PinnedBodies:
     strokes: Sequence[tuple[tuple[str, str], tuple[str, str], Given]] = ()
     slow = 0.0
 
-    def __init__(self, machine: eq.Machine, given: Mapping[str, Given], torques: Torques) -> None:
+    def __init__(
+        self, machine: eq.Machine, given: Mapping[str, Given], torques: Torques,
+        on_support: bool = False,
+    ) -> None:  # fmt: skip
         self.machine, self.given, self.torques = machine, given, torques
         self.names = list(machine.links)
         links = machine.links.values()
-        self.mass = np.ravel([[link.mass, link.mass, link.inertia] for link in links])
+        rows = [[link.mass, link.mass, link.inertia] for link in links]
+        if on_support:
+            self.names.append(FRAME)
+            support = machine.support
+            rows.append([support.mass, support.mass, support.inertia[0]])
+        self.mass = np.ravel(rows)
+        self.inertia = np.diag(self.mass)
+        if on_support:
+            self._add_rotors()
         self.pairs = [
             (label, *pair) for label, bodies in pins(machine).items() for pair in pairwise(bodies)
         ]
 
+    def _add_rotors(self) -> None:
+        """Rotors whose mass, and whose inertia as far as they turn with it, are the support's."""
+        frame = 3 * self.names.index(FRAME) + 2
+        for item in self.machine.driven:
+            if item.motor is None:
+                continue
+            way = np.zeros(len(self.mass))
+            way[3 * self.names.index(item.link) + 2], way[frame] = 1.0, -1.0
+            way *= item.motor.ratio
+            turning = np.zeros(len(self.mass))
+            turning[frame] = 1.0
+            whole = np.outer(way + turning, way + turning) - np.outer(turning, turning)
+            self.inertia = self.inertia + item.motor.inertia * whole
+
     def arm(self, body: str, label: str, angle: float) -> Array:
-        """From a link's centre of mass to a point, in the frame."""
+        """From a body's centre of mass to a point, in space."""
+        if body == FRAME:
+            centre = self.machine.support.center_of_mass[:2]
+            return turned(angle, tuple(np.subtract(self.machine.frame[label], centre)))
         link = self.machine.links[body]
         offset = np.subtract(link.points[label], link.center_of_mass)
         return turned(angle, tuple(offset))
@@ -63,7 +92,7 @@ class PinnedBodies:
         for label, first, second in self.pairs:
             row, known = np.zeros((2, len(q))), np.zeros(2)
             for sign, body in ((1.0, first), (-1.0, second)):
-                if body == FRAME:
+                if body not in self.names:
                     continue
                 k = 3 * self.names.index(body)
                 arm = self.arm(body, label, q[k + 2])
@@ -80,6 +109,8 @@ class PinnedBodies:
         for body, law in self.given.items():
             row = np.zeros(len(q))
             row[3 * self.names.index(body) + 2] = 1.0
+            if FRAME in self.names:
+                row[3 * self.names.index(FRAME) + 2] = -1.0
             rows.append(row)
             right.append(law(time)[2])
         return np.array(rows), np.array(right)
@@ -118,12 +149,19 @@ class PinnedBodies:
         q, v, more = state[:count], state[count : 2 * count], state[2 * count :]
         jacobian, right = self.rows(q, v, time)
         force = np.tile([*self.machine.gravity, 0.0], len(self.names)) * self.mass
-        moving = {name: (q[3 * k + 2], v[3 * k + 2]) for k, name in enumerate(self.names)}
+        base = (q[-1], v[-1]) if FRAME in self.names else (0.0, 0.0)
+        moving = {
+            name: (q[3 * k + 2] - base[0], v[3 * k + 2] - base[1])
+            for k, name in enumerate(self.names)
+        }
         torques, changes = self.torques(time, moving, more)
         for name, torque in torques.items():
             force[3 * self.names.index(name) + 2] += torque
+        if FRAME in self.names:
+            force[-1] -= sum(torques.values())
+            force[-3:] += self.mounts(q[-3:], v[-3:])
         size = len(right)
-        whole = np.block([[np.diag(self.mass), jacobian.T], [jacobian, np.zeros((size, size))]])
+        whole = np.block([[self.inertia, jacobian.T], [jacobian, np.zeros((size, size))]])
         solved = np.linalg.solve(whole, np.concatenate([force, right]))
         for _ in range(ROUNDS if self.rubbing else 0):
             before = solved
@@ -136,15 +174,34 @@ class PinnedBodies:
                 break
         return np.concatenate([v, solved[:count], changes])
 
+    def mounts(self, q: Array, v: Array) -> Array:
+        """Force and moment about its centre of mass of all mounts, which have their preloads, on a
+        support at a place and speed (3,).
+        """
+        total, support = np.zeros(3), self.machine.support
+        centre = np.array(support.center_of_mass[:2])
+        for mount in support.mounts.values():
+            if mount.axis is not None:
+                total[2] += mount.preload - mount.spring * q[2] - mount.damper * v[2]
+                continue
+            along = np.array([np.cos(mount.direction), np.sin(mount.direction)])
+            arm = turned(q[2], tuple(np.array(mount.point[:2]) - centre))
+            moved = q[:2] + arm - np.array(mount.point[:2])
+            moving = v[:2] + v[2] * quarter(arm)
+            push = mount.preload - mount.spring * along @ moved - mount.damper * along @ moving
+            push = max(push, 0.0) if mount.one_sided else push
+            total += push * np.array([*along, quarter(arm) @ along])
+        return total
+
     def friction(self, pressing: Array, v: Array) -> Array:
         """Generalized forces of friction in pins that are pressed by forces (P,), N."""
         force = np.zeros(len(v))
-        turning = {name: v[3 * k + 2] for k, name in enumerate(self.names)} | {FRAME: 0.0}
+        turning = {FRAME: 0.0} | {name: v[3 * k + 2] for k, name in enumerate(self.names)}
         for size, (label, first, second) in zip(pressing, self.pairs, strict=True):
             share = np.clip((turning[first] - turning[second]) / self.slow, -1.0, 1.0)
             torque = -self.rubbing.get(label, 0.0) * size * share * (3 - share**2) / 2
             for sign, body in ((1.0, first), (-1.0, second)):
-                if body != FRAME:
+                if body in self.names:
                     force[3 * self.names.index(body) + 2] += sign * torque
         return force
 
@@ -152,7 +209,9 @@ class PinnedBodies:
         """State with all links at angles, placed from pin to pin, whose speeds meet the pins."""
         points: dict[str, Array] = {n: np.array(at) for n, at in self.machine.frame.items()}
         q = np.zeros(len(self.mass))
-        left = list(self.names)
+        if FRAME in self.names:
+            q[-3:-1] = self.machine.support.center_of_mass[:2]
+        left = list(self.machine.links)
         while left:
             body = next(b for b in left if any(n in points for n in self.machine.links[b].points))
             link = self.machine.links[body]
@@ -171,13 +230,23 @@ class PinnedBodies:
             row[3 * self.names.index(body) + 2] = 1.0
             rows.append(row)
             right.append(speed)
+        if FRAME in self.names:
+            rows += [*np.eye(len(q))[-3:]]
+            right += [0.0] * 3
         v = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
         return np.concatenate([q, v])
 
     def follow(self, state: Array, times: Array) -> dict[str, Array]:
-        """Angles of all links at times."""
+        """Angles of all links at times, against the frame; ``x`` and ``y`` of a support's centre
+        of mass, and its angle as ``frame``.
+        """
         done = solve_ivp(
             self.rates, (0.0, times[-1]), state, "DOP853", t_eval=times, rtol=1e-11, atol=1e-12
         )
         assert done.success
-        return {name: done.y[3 * k + 2] for k, name in enumerate(self.names)}
+        if FRAME not in self.names:
+            return {name: done.y[3 * k + 2] for k, name in enumerate(self.names)}
+        last = 3 * len(self.names) - 1
+        x, y, turned_by = done.y[last - 2 : last + 1]
+        angles = {name: done.y[3 * k + 2] - turned_by for k, name in enumerate(self.machine.links)}
+        return {**angles, "x": x, "y": y, FRAME: turned_by}

@@ -310,9 +310,10 @@ def run(
     off: Annotated[float | None, size("time", "give a time of more than 0")] = None,
     off_turns: Annotated[int | None, count(1, 10_000)] = None,
     fluctuation: Annotated[float | None, read_by(_share, '"2 %"')] = None,
+    support: bool = False,
     motor: Annotated[Any, read_by(_motor, f'"{MOTOR}"')] = None,
 ) -> Result:
-    """Simulate a machine on a fixed frame under its motors, weight, springs and loads.
+    """Simulate a machine under its motors, weight, springs and loads.
 
     Of several drives, those with a motor and those that are free follow from torques.  Defaults
     are those of the table [run] of the file.
@@ -335,6 +336,8 @@ def run(
     fluctuation
         Also size a flywheel for this speed fluctuation (highest minus lowest, over the mean), such
         as "2 %".
+    support
+        Also follow the support, from rest in the drawn position; without it the frame is fixed.
     motor
         Motor on the crank instead of that of the file, by the keys of [drive.motor], a comma
         between them.
@@ -354,6 +357,7 @@ def run(
             off=off,
             off_turns=off_turns,
             fluctuation=fluctuation,
+            support=support or None,
             progress=progress,
         )
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Final, Literal
 import numpy as np
 
 from equipoise.figures.chart_parts import varies
+from equipoise.figures.vibration import support_charts
 from equipoise.i18n import say, to_say
-from equipoise.results.charts import Axis, Chart, Curve, Panel
+from equipoise.results.charts import Axis, Chart, Curve, Panel, shown
 from equipoise.running.blocks import verdict
 from equipoise.running.drives_blocks import verdict as drives_verdict
 
@@ -37,7 +38,9 @@ EFFORTS: Final[Mapping[Literal["torque", "force"], str]] = {
 
 
 def drives_charts(run: DrivesRun) -> dict[str, Chart]:
-    """``speed`` of drives that turn, with torques and forces below it where there are any."""
+    """``speed`` of drives that turn, with torques and forces below it where there are any; on a
+    support ``gauges`` and ``mounts``, too.
+    """
     if not run.time[-1] > 0:
         return {}
     time, each = run.time, [*enumerate(run.drives.items(), 1)]  # a drive looks alike in both panels
@@ -52,7 +55,11 @@ def drives_charts(run: DrivesRun) -> dict[str, Chart]:
         ]
         if curves:
             panels.append(_curves(time, say(label), effort, curves))
-    return {"speed": Chart("speed", run.machine.title, drives_verdict(run), tuple(panels))}
+    charts = {"speed": Chart("speed", run.machine.title, drives_verdict(run), tuple(panels))}
+    if run.support is None:
+        return charts
+    lasting = say("run of {time} s", time=shown(float(time[-1])))
+    return charts | support_charts(run.support, time, lasting)
 
 
 def _panel(

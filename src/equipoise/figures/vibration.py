@@ -21,7 +21,6 @@ from equipoise.figures.chart_parts import (
 )
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.parts.support import AXES
 from equipoise.results.charts import (
     Array,
     Axis,
@@ -36,11 +35,13 @@ from equipoise.results.charts import (
 )
 from equipoise.vibration.forced import excitation_model_of
 from equipoise.vibration.linear import Linear
+from equipoise.vibration.response import members_of
 
 if TYPE_CHECKING:
     from equipoise.signals import Figures, Periodic
     from equipoise.vibration.free import Transient
     from equipoise.vibration.response import GaugeSignals, MountForce, Response
+    from equipoise.vibration.support_motion import SupportMotion
 
 
 QUANTITIES = {
@@ -285,38 +286,45 @@ def _told_off(response: Response, mount: MountForce, off: list[tuple[float, floa
 def transient_charts(transient: Transient) -> dict[str, Chart]:
     """``gauges`` and ``mounts`` where there are any, ``speed`` where the crank's speed varies."""
     charts: dict[str, Chart] = {}
-    support = transient.machine.support
-    if support is not None:
-        gauges = transient.gauges
-        # Without gauges in the model, the free coordinates are read.
-        own = {name: support.gauges[name].axis if support.gauges else name for name in gauges}
-        turning = {name: axis in AXES for name, axis in own.items()}
-        what = say("Displacement at the gauges")
-        charts |= _in_time(transient, "gauges", what, "displacement", gauges, turning)
-        turning = {name: mount.axis is not None for name, mount in support.mounts.items()}
-        what = say("Force in the mounts on the support")
-        charts |= _in_time(transient, "mounts", what, "force", transient.mounts, turning)
+    if transient.support is not None:
+        charts |= support_charts(transient.support, transient.time, _from_rest(transient))
     speed = transient.crank_speed
     if float(np.ptp(speed)) > VARIES * float(np.max(np.abs(speed))):
         what = say("Speed of {link}", link=short(transient.machine.drive.link))
         what += f", {_from_rest(transient)}"
-        panel = _time_panel(
-            transient, Axis.of(say("crank speed"), "angular speed", (), "rpm", room=0.08), speed
-        )
+        axis = Axis.of(say("crank speed"), "angular speed", (), "rpm", room=0.08)
+        panel = _time_panel(transient.time, axis, speed)
         charts["speed"] = Chart("speed", transient.machine.title, what, (panel,))
     return charts
 
 
+def support_charts(motion: SupportMotion, time: Array, caption: str) -> dict[str, Chart]:
+    """``gauges`` and ``mounts`` against time (M,), s, where there are any.
+
+    caption : what stands below them, after what they show.
+    """
+    charts: dict[str, Chart] = {}
+    machine = motion.body.machine
+    for key, what, quantity in (
+        ("gauges", say("Displacement at the gauges"), "displacement"),
+        ("mounts", say("Force in the mounts on the support"), "force"),
+    ):
+        read, turning = getattr(motion, key), members_of(key)(machine)
+        for name, whole, panels in _in_time(time, what, quantity, read, turning):
+            own = key + name
+            charts[own] = Chart(own, machine.title, f"{whole}, {caption}", panels)
+    return charts
+
+
 def _in_time(
-    transient: Transient,
-    name: str,
+    time: Array,
     what: str,
     quantity: str,
     read: Mapping[str, Array],
     turning: Mapping[str, bool],
-) -> dict[str, Chart]:
-    """Signals below each other against time."""
-    every, charts = list(read), {}
+) -> Iterator[tuple[str, str, tuple[Panel, ...]]]:
+    """Signals below each other against time: a suffix, what they are, and as many as fit."""
+    every = list(read)
     for suffix, names in groups(every, MOST_IN_TIME):
         panels = []
         for item in names:
@@ -324,15 +332,11 @@ def _in_time(
             y = read_axis(say(LABELS[which]), *which, values, room=0.08)
             low, high = float(np.min(values)), float(np.max(values))
             ends = say("{low} to {high}", low=y.format_value(low), high=y.quantity(high))
-            panels.append(_time_panel(transient, y, values, title=f"{short(item, 40)}: {ends}"))
-        whole = f"{what}{continued(names, every)}, {_from_rest(transient)}"
-        own = name + suffix
-        charts[own] = Chart(own, transient.machine.title, whole, tuple(panels))
-    return charts
+            panels.append(_time_panel(time, y, values, title=f"{short(item, 40)}: {ends}"))
+        yield suffix, f"{what}{continued(names, every)}", tuple(panels)
 
 
-def _time_panel(transient: Transient, y: Axis, values: Array, **rest: Any) -> Panel:
-    time = transient.time
+def _time_panel(time: Array, y: Axis, values: Array, **rest: Any) -> Panel:
     x = Axis.of(say("time"), "time", low=float(time[0]), high=float(time[-1]))
     return Panel(x, y, (Curve(time, values, "", "thin"),), **rest)
 

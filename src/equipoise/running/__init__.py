@@ -1,4 +1,6 @@
-"""Forward dynamics on a fixed frame: how a machine runs when torques decide, and its flywheel."""
+"""Forward dynamics, on a fixed frame or a support: how a machine runs when torques decide, and its
+flywheel.
+"""
 
 from __future__ import annotations
 

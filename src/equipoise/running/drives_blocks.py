@@ -15,11 +15,14 @@ from equipoise.running.blocks import EVENTS as OF_A_RUN
 from equipoise.running.blocks import MOST_EVENTS, losses_table, lossiest
 from equipoise.running.drives_run import FREE, GIVEN, MOTOR
 from equipoise.running.friction import FRICTION
+from equipoise.running.support_equation import MOUNTS
+from equipoise.vibration.blocks import PARTS, extreme_labels, support_rows
 
 if TYPE_CHECKING:
     from equipoise.running.drives_integration import DriveEvent
     from equipoise.running.drives_run import DrivesRun
     from equipoise.signals import Array
+    from equipoise.vibration.support_motion import SupportMotion
 
 EVENTS = {
     **OF_A_RUN,
@@ -86,6 +89,8 @@ def run_blocks(run: DrivesRun) -> Iterator[Block]:
     if lines := tuple(_speeds(run)):
         yield Facts(say("Last cycle"), lines)
     yield _drives(run)
+    if run.support is not None:
+        yield _of_support(run.support, run.time)
     yield _energies(run)
     yield from losses_table(run)
     error = f"{run.energy_error:.1e}"
@@ -142,10 +147,19 @@ def _largest(values: Array) -> Value:
     return Value(float(np.max(np.abs(values))))
 
 
+def _of_support(motion: SupportMotion, time: Array) -> Table:
+    """Extremes at gauges and of mounts, in all and in the first and the last fifth of the time."""
+    bounds = np.linspace(time[0], time[-1], PARTS + 1)
+    first = int(np.searchsorted(time, bounds[1], "right"))
+    last = int(np.searchsorted(time, bounds[-2]))
+    rows = [*support_rows(motion, (slice(first), slice(last, None)))]
+    return Table.of(say("Gauges and mounts"), extreme_labels(), rows)
+
+
 def _energies(run: DrivesRun) -> Table:
     """Work of everything that has acted, and what became of it."""
     labels = {source.key: say(source.label) for source in run.equation.sources}
-    labels |= {"brake": say("brake"), FRICTION: say("friction")}
+    labels |= {"brake": say("brake"), FRICTION: say("friction"), MOUNTS: say("mounts")}
     labels |= {f"drives.{link}": say("drive of {link}", link=link) for link in run.drives}
     rows = [(labels[name], Value(float(work[-1]))) for name, work in run.work.items()]
     energy = run.kinetic_energy

@@ -26,9 +26,11 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drivers import Driver
 from equipoise.running.drives_friction import DrivesFriction, FrictionOf
 from equipoise.running.drives_linkage import DrivesPose, References, pose_of, references_at
+from equipoise.running.mount_contacts import MountContacts
 from equipoise.running.sources import AppliedSource, plus, sources_of
 from equipoise.running.strokes import Strokes, solved
 from equipoise.signals import Array
+from equipoise.vibration.support_motion import SupportMotion
 
 
 class DriveAngles(NamedTuple):
@@ -119,6 +121,20 @@ class DrivesEquation:
         """Places of those that follow their motion."""
         return tuple(k for k in range(len(self.drives)) if k not in self.unknowns)
 
+    @property
+    def coordinates(self) -> int:
+        """How many coordinates the machine has: its drives come first."""
+        return len(self.drives)
+
+    def sizes(self) -> Array:
+        """Usual sizes of the unknowns (U,): 1 of a drive's angle, rad."""
+        return np.ones(len(self.unknowns))
+
+    @cached_property
+    def mounts(self) -> MountContacts:
+        """Mounts of the support: none on a fixed frame."""
+        return MountContacts((), 1.0, lambda coordinates, rates: (coordinates, rates))
+
     @cached_property
     def strokes(self) -> Strokes | None:
         """Drives that push as a given stroke has it; None without."""
@@ -140,6 +156,11 @@ class DrivesEquation:
         """What acts beside the drives and friction in joints."""
         return tuple(sources_of(self.machine))
 
+    @property
+    def acting(self) -> tuple[str, ...]:
+        """Keys of what acts beside the drives and friction in joints."""
+        return tuple(source.key for source in self.sources)
+
     @cached_property
     def dyads(self) -> Mapping[str, str]:
         """Inner joints of dyads, and the values in a state that are 0 in their dead positions."""
@@ -158,6 +179,10 @@ class DrivesEquation:
         """Moment of inertia of each drive's motor, as its link feels it, kg m2."""
         motors = (drive.motor for drive in self.drives)
         return tuple(0.0 if motor is None else motor.ratio**2 * motor.inertia for motor in motors)
+
+    def support_motion(self, coordinates: Array, rates: Array) -> SupportMotion | None:
+        """How the support moves, by coordinates (C, K) and their rates; None on a fixed frame."""
+        return None
 
     @property
     def nominal_speeds(self) -> list[float]:
@@ -198,7 +223,7 @@ class DrivesEquation:
         """
         pace = self._pace(time, speeds)
         crank = angles[0] if self.by_crank else self.start + pace * time
-        count, free = len(self.drives), self.free
+        count, free = self.coordinates, self.free
         whole = np.zeros((3, count, len(time)))
         following, ways = np.zeros((2, count, len(free), len(time)))
         following[free, range(len(free))] = ways[free, range(len(free))] = 1.0
@@ -308,7 +333,7 @@ class DrivesEquation:
         MotionError, ModelError : the machine cannot be there.
         """
         where = self.with_strokes(time, where, near)
-        pose = pose_of(self.linkage, where.crank_angle, where.angles, where.speeds, near)
+        pose = self.pose(where.crank_angle, where.angles, where.speeds, near)
         pace = self._pace(time, where.speeds[self.free])
         factors = self.factors_at(time, since)
         acting = [source.demands(pose.moving, pace, factors) for source in self.sources]
@@ -319,6 +344,10 @@ class DrivesEquation:
         if self.friction is not None:
             rubbing = self.friction.of(pose, plus(pose.turning, *acting))
         return DriveState(pose, where, self.with_rotors(pose.inertia), forces, rubbing)
+
+    def pose(self, crank: Array, angles: Array, speeds: Array, near: References) -> DrivesPose:
+        """The linkage as of `pose_of`."""
+        return pose_of(self.linkage, crank, angles, speeds, near)
 
     def with_rotors(self, inertia: Array) -> Array:
         """Inertia (N, N, K), kg m2, of links with that of motors."""
@@ -373,7 +402,7 @@ class DrivesEquation:
 
         crank : crank angles (K,), rad.  near : references there.
         """
-        pose = pose_of(self.linkage, crank, angles, speeds, near)
+        pose = self.pose(crank, angles, speeds, near)
         inertia = self.with_rotors(pose.inertia)
         return np.asarray(np.einsum("ik,ijk,jk->k", speeds, inertia, speeds) / 2)
 

@@ -99,7 +99,9 @@ class DrivesFriction:
             pressed = np.concatenate([pressed, apart], axis=2)
         else:
             pressed = pressing_rows(motion, rows, self.joints, None)
-        return FrictionOf(self, rates[:, :-1], rates[:, -1], pressed)
+        ways = np.zeros((len(self.joints), len(pose.accelerated), pose.count))
+        ways[:, :count] = rates[:, :-1]  # joints do not move by what carries the whole machine
+        return FrictionOf(self, ways, rates[:, -1], pressed)
 
 
 @dataclass(frozen=True, eq=False)

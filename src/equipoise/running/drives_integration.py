@@ -23,6 +23,7 @@ from equipoise.running.drives_linkage import References, cannot_be_assembled
 from equipoise.running.drives_rates import DrivesRates, DrivesReadings
 from equipoise.running.equation import just_after
 from equipoise.running.integration import Limits
+from equipoise.running.mount_contacts import AT_CONTACT
 from equipoise.running.tabulated import NODES, POINTS
 from equipoise.running.time_collocation import NodeValues, TimeSpan, solved_span, unresolved
 from equipoise.signals import Array
@@ -56,6 +57,8 @@ AT_EDGE = 1e-9
 """rad, within which crank angles are the same."""
 NEAR_REST_TIMES = 3.0
 """How often the time in which a joint is as fast as near rest fits into a span from there on."""
+SHORTLY = 1e-3
+"""Part of a span before an instant, from which on it is seen which way something goes there."""
 ROUNDING = 1e-15
 """Share of a time within which a span ends at it."""
 INSIDE = 1e-6
@@ -132,9 +135,11 @@ class DrivesIntegration:
     # -- from event to event -----------------------------------------------------------------------
 
     def follow(self, angles: Sequence[float], speeds: Sequence[float]) -> None:
-        """Run from angles, rad, and speeds, rad/s, of the unknowns until something ends it."""
+        """Run from the unknowns, such as angles, rad, and their speeds, rad/s, until something
+        ends it.
+        """
         equation, rates = self.equation, self.rates
-        for place, k in enumerate(equation.unknowns):
+        for place, k in self._moved_drives:
             self.drivers[k].begins(angles[place], speeds[place])
         state = np.array([*angles, *speeds, *[0.0] * len(rates.lagging)])
         ramps = (driver.ramp_end for driver in self.drivers if driver.on)
@@ -178,6 +183,8 @@ class DrivesIntegration:
                 watch = DriveWatch(last, "", lambda _: np.zeros(0))
             if watch is not None and watch.kind == "settled":
                 self._settle(self.rates.rubbing.index(watch.of), before)
+            elif watch is not None and watch.kind == "contact":
+                self._touch(watch.of, before)
             elif watch is not None:
                 goes_on, state = self._happens(watch, time, state, gained)
             if not goes_on:
@@ -219,7 +226,9 @@ class DrivesIntegration:
             nodes = time + width * (POINTS + 1) / 2
             gain, near = before[0].beyond(before[1], nodes)
             guess = start[0][:, None] + gain, near
-            span = solved_span(self.rates.at, (time, width), start, guess, self.sizes)
+            span = solved_span(
+                self.rates.at, (time, width), start, guess, self.sizes, self.rates.count
+            )
             if width <= shortest:
                 return span or self._passed(time, width, start, near)
             if span is None:
@@ -305,9 +314,9 @@ class DrivesIntegration:
     def _note_reversals(self, span: TimeSpan, until: float) -> None:
         """Note where drives turn back in a span, up to a place."""
         places = np.linspace(-1.0, until, LOOKED + 1)
-        count, unknowns = self.rates.count, self.equation.unknowns
+        count = self.rates.count
         speeds = self._look(span, places).states[count : 2 * count]
-        for row, drive in enumerate(unknowns):
+        for row, drive in self._moved_drives:
             for k in np.flatnonzero(speeds[row, 1:] * speeds[row, :-1] < 0):
                 at = self._zero(span, _value(count + row), places[k : k + 2])
                 now = self._look(span, np.array([at]))
@@ -342,8 +351,15 @@ class DrivesIntegration:
         """Kinetic energy at the start with all drives at the usual speed, J."""
         where = self.rates.where(np.zeros(1), state[:, None])
         where = self.equation.with_strokes(np.zeros(1), where, near)
-        speeds = np.full_like(where.angles, self.usual)
+        speeds = np.zeros_like(where.angles)
+        speeds[: len(self.drivers)] = self.usual
         return float(self.equation.energy(where.angles, speeds, where.crank_angle, near)[0]) or 1.0
+
+    @property
+    def _moved_drives(self) -> list[tuple[int, int]]:
+        """Places, among the unknowns and among all drives, of the drives that are unknown."""
+        drives = len(self.drivers)
+        return [(row, k) for row, k in enumerate(self.equation.unknowns) if k < drives]
 
     # -- what may happen ---------------------------------------------------------------------------
 
@@ -352,11 +368,12 @@ class DrivesIntegration:
         return "stall" if any(driver.on for driver in self.drivers) else "standstill"
 
     def _observe(self, time: float, state: Array) -> None:
-        """Set which servo motors are at their limits."""
+        """Set which servo motors are at their limits, and which mounts touch."""
         where = self.rates.where(np.array([time]), state[:, None])
         for k, driver in enumerate(self.drivers):
             if driver.controlled:
                 driver.observe(float(where.speeds[k, 0]), float(where.angles[k, 0]), time)
+        self.equation.mounts.observe(where.angles, where.speeds)
 
     def _check_settled(self, before: tuple[TimeSpan, float]) -> None:
         """Joints that are slow are not settled, whatever has been missed."""
@@ -401,6 +418,8 @@ class DrivesIntegration:
                 yield DriveWatch("limit", equation.drives[k].link, self._below_limit(k))
         for k, joint in enumerate(self.rates.rubbing):
             yield DriveWatch("settled", joint, self._settled_left(k))
+        for mount in equation.mounts.one_sided:
+            yield DriveWatch("contact", mount, self._contact_left(mount))
         if not equation.given:
             yield DriveWatch("rest", "", lambda now: self._activity(now) - AT_REST)
         if equation.by_crank:
@@ -414,6 +433,15 @@ class DrivesIntegration:
             where = self.rates.where(now.times, now.states)
             beyond = self.drivers[drive].beyond(where.speeds[drive], where.angles[drive], now.times)
             return -beyond
+
+        return left
+
+    def _contact_left(self, mount: str) -> Callable[[SpanInstants], Array]:
+        """How far a one-sided mount is from letting go, or from touching."""
+
+        def left(now: SpanInstants) -> Array:
+            where = self.rates.where(now.times, now.states)
+            return self.equation.mounts.left(mount, where.angles, where.speeds)
 
         return left
 
@@ -453,8 +481,9 @@ class DrivesIntegration:
             return np.ones(len(now.times))
         count = self.rates.count
         slow, even = (NEAR_REST, CREEPING) if self._holds_itself else (AT_REST, AT_REST)
-        sizes = [*np.abs(now.states[count : 2 * count]) / self.usual * (AT_REST / slow)]
-        sizes += [*np.abs(now.rates[count : 2 * count]) / self.usual**2 * (AT_REST / even)]
+        own = self.equation.sizes()[:, None] * self.usual
+        sizes = [*np.abs(now.states[count : 2 * count]) / own * (AT_REST / slow)]
+        sizes += [*np.abs(now.rates[count : 2 * count]) / (own * self.usual) * (AT_REST / even)]
         where = self.rates.where(now.times, now.states)
         for k in self.rates.lagging:
             driver = self.drivers[k]
@@ -507,6 +536,16 @@ class DrivesIntegration:
         settled[joint] = 0.0 if settled[joint] else np.sign(others.joint_rates[joint, 0])
         self.rates.settled = settled
 
+    def _touch(self, mount: str, at: tuple[TimeSpan, float]) -> None:
+        """A one-sided mount lets go, or touches, at a place of a span, with all that do so then."""
+        span, place = at
+        now = self._look(span, np.array([place - SHORTLY, place]))
+        where, mounts = self.rates.where(now.times, now.states), self.equation.mounts
+        for name in mounts.one_sided:
+            before, left = mounts.left(name, where.angles, where.speeds)
+            if name == mount or (left <= AT_CONTACT and left < before):
+                mounts.switch(name)
+
     def _since_mark(self, time: float, state: Array) -> float:
         """What is left of a cycle, rad."""
         return self._mark_span - abs(self._crank_angle(time, state) - self.mark)
@@ -534,8 +573,10 @@ class DrivesIntegration:
         if before is None or not self.limits.steady or self.corners or (switched and on):
             return True
         changes = self._at_mark - before
-        turned = np.abs((changes[:count] + pi) % (2 * pi) - pi)
-        gained = np.abs(changes[count:]) / self.usual
+        drives, own = [row for row, _ in self._moved_drives], self.equation.sizes()
+        turned = np.abs(changes[:count])
+        turned[drives] = np.abs((changes[drives] + pi) % (2 * pi) - pi)
+        turned, gained = turned / own, np.abs(changes[count:]) / (own * self.usual)
         if max(*turned, *gained) > STEADY:
             return True
         self._note("steady", time, state)

@@ -56,7 +56,7 @@ class DrivesRates:
         ]  # fmt: skip
         self.braked = bool(self.drivers[0].brake) and 0 in equation.unknowns
         self.works = (
-            *(source.key for source in equation.sources),
+            *equation.acting,
             *(f"{FRICTION}.{name}" for name in self.rubbing),
             *([BRAKE] if self.braked else []),
             *(f"drives.{equation.drives[k].link}" for k in self.turned),
@@ -90,7 +90,8 @@ class DrivesRates:
             circuit = self.drivers[k].circuit
             assert circuit is not None
             rated.append(circuit.voltage / circuit.resistance)
-        states = np.array([1.0] * self.count + [self.usual] * self.count + rated)
+        own = self.equation.sizes()
+        states = np.array([*own, *own * self.usual, *rated])
         return states, np.full(2 * len(self.circuits) + len(self.works), energy)
 
     def others(self, rows: Array) -> DrivesReadings:
@@ -142,7 +143,7 @@ class DrivesRates:
         return NodeValues(
             np.array(np.broadcast_arrays(*rates)),
             np.array([*electric, *works]).reshape(-1, len(time)),
-            np.concatenate([torques, margins, joint_rates]),
+            np.concatenate([torques[: len(self.drivers)], margins, joint_rates]),
             equation.references(state),
         )
 

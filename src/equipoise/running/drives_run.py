@@ -1,4 +1,4 @@
-"""A machine of several drives on a fixed frame: how it moves under motors, weight and loads."""
+"""A machine of several drives, or on its support: how it moves under motors, weight and loads."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.results.declaring import columns_of, values_of
 from equipoise.results.result import Result
 from equipoise.running.drives_equation import DriveAngles, DrivesEquation
 from equipoise.running.drives_integration import DriveEvent, DrivesIntegration, DrivesTrack, joined
@@ -20,6 +21,7 @@ from equipoise.running.electric import Electric
 from equipoise.running.friction import FRICTION
 from equipoise.running.integration import Limits
 from equipoise.signals import Array
+from equipoise.vibration.support_motion import SupportMotion
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,8 @@ class DriveCourse:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DrivesRun(Result):
-    """How a machine of several drives moves from a start on, at M instants, not equally spaced.
+    """How a machine of several drives, or on its support, moves from a start on, at M instants,
+    not equally spaced.
 
     time : (M,) s, rising.  crank_angle : (M,) rad; of a machine whose first drive has a motion of
         its own the angle of its cycle.
@@ -96,6 +99,7 @@ class DrivesRun(Result):
     losses : joint with friction -> energy that it has taken since the start (M,), J.
     references : about what running angles (..., M), and unknowns of loops, are, by their names in
         the linkage.
+    support : how the support moves; None on a fixed frame.
     """
 
     machine: Machine
@@ -108,6 +112,7 @@ class DrivesRun(Result):
     cycle_begins: tuple[float, ...]
     losses: Mapping[str, Array]
     references: Mapping[str, Array]
+    support: SupportMotion | None = None
     blocks_in = "running.drives_blocks.run_blocks"
     pictures_in = "figures.running.drives_charts"
     headline_in: ClassVar[str] = "running.drives_blocks.run_headline"
@@ -127,6 +132,10 @@ class DrivesRun(Result):
         """(M,), J, from the linkage itself and not from what was integrated."""
         courses = self.drives.values()
         angles, speeds = ([getattr(each, name) for each in courses] for name in ("angle", "speed"))
+        if self.support is not None:
+            free = [*self.support.body.free_in_plane]
+            angles += [*self.support.place[free]]
+            speeds += [*self.support.rate[free]]
         return self.equation.energy(
             np.array(angles), np.array(speeds), self.crank_angle, self.references
         )
@@ -150,8 +159,8 @@ class DrivesRun(Result):
         return worst / size if size else 0.0
 
     def motion_at(self, places: Array) -> Motion:
-        """Poses at some of the M instants, by their places (K,), where derivatives by the crank
-        angle are those by time.
+        """Poses in the frame's axes at some of the M instants, by their places (K,), where
+        derivatives by the crank angle are those by time.
         """
         courses = self.drives.values()
         angles, speeds = (
@@ -186,6 +195,8 @@ class DrivesRun(Result):
                     (f"drives.{link}.{name}", unit, values)
                     for name, unit, values in course.electric.columns()
                 ]
+        if self.support is not None:
+            columns += columns_of(self.support, SupportMotion.declared, model=self.machine)
         columns.append(("kinetic_energy", "J", self.kinetic_energy))
         columns += [(f"work.{name}", "J", values) for name, values in self.work.items()]
         return columns + [(f"losses.{name}", "J", values) for name, values in self.losses.items()]
@@ -204,15 +215,18 @@ class DrivesRun(Result):
             "kinetic_energy": self.kinetic_energy,
             "work": dict(self.work),
             "losses": dict(self.losses),
+            **({} if self.support is None else values_of(self.support, SupportMotion.declared)),
         }
 
 
 def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> DrivesRun:
-    """Run from a start until something ends it."""
+    """Run from a start until something ends it; a support begins at rest in the drawn position."""
     unknowns = equation.unknowns
     integration = DrivesIntegration(equation, limits)
     integration.on_turns = start.on_turns
-    integration.follow([start.angles[k] for k in unknowns], [start.speeds[k] for k in unknowns])
+    at_rest = [0.0] * (equation.coordinates - len(equation.drives))
+    angles, speeds = ([*each, *at_rest] for each in (start.angles, start.speeds))
+    integration.follow([angles[k] for k in unknowns], [speeds[k] for k in unknowns])
     track, rates = joined(integration.tracks), integration.rates
     where = rates.where(track.time, track.states)
     where = equation.with_strokes(track.time, where, track.references)
@@ -245,6 +259,7 @@ def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> Drives
         tuple(integration.marks),
         {name: -values for name, values in rubbed.items()},
         track.references,
+        equation.support_motion(where.angles, where.speeds),
     )
 
 

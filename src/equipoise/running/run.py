@@ -1,4 +1,4 @@
-"""A machine on a fixed frame that is set in motion by its motor, its weight, springs and loads."""
+"""A machine that is set in motion by its motor, its weight, springs and loads."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ from equipoise.running.friction import FRICTION
 from equipoise.running.integration import Event, Integration, Limits
 from equipoise.running.piece_motion import ELECTRIC, Instant
 from equipoise.running.sources import LOADS
+from equipoise.running.support_equation import SupportedEquation
 from equipoise.signals import Array
 
 TURNS = 300
@@ -298,12 +299,14 @@ def run(
     off: float | str | None = None,
     off_turns: float | None = None,
     fluctuation: float | str | None = None,
+    support: bool | None = None,
     progress: Progress | None = None,
 ) -> Run | DrivesRun:
-    """Let a machine run on a fixed frame: its crank follows from motor, weight, springs and loads.
+    """Let a machine run: its crank follows from motor, weight, springs and loads.
 
     Of a machine with several drives, those with a motor, and those that are free, follow from
-    torques, and the others have the motion that is given; the result is a `DrivesRun`.
+    torques, and the others have the motion that is given; the result is a `DrivesRun`, and so it is
+    of a machine on its support.
 
     The motor's curve holds as it is, whatever its `mean_speed`.  What is not given is that of the
     machine's `run`, where it has one; `duration` and `turns` replace its end, `off` and `off_turns`
@@ -322,6 +325,8 @@ def run(
     off_turns : turns of the crank from the start after which it is.
     fluctuation : highest less lowest speed over the mean for which a flywheel is sized; a share of
         1, or a text such as ``"2 %"``.
+    support : whether the support moves too, from rest in the drawn position; else the frame is
+        fixed.
     progress : called with the turns of the crank that were followed, and the most there can be; not
         where only a time ends the run.
 
@@ -329,8 +334,9 @@ def run(
     ------
     MassError : a link has no mass given.
     MotionError : the crank cannot turn fully.
+    ModelError : with `support`, there is none, or its mounts do not hold the machine.
     UsageError : a value cannot be used, or `fluctuation` is given of a machine that is not driven
-        by one crank.
+        by one crank on a fixed frame.
     ResponseError : the motion cannot be followed.
     """
     plan = machine.run or RunPlan()
@@ -342,23 +348,33 @@ def run(
     angle = plan.angle if angle is None else angle
     limits = _limits(machine, {"duration": duration, "turns": turns, "off": off,
                                "off_turns": off_turns})  # fmt: skip
-    if not machine.has_crank:
+    on_support = plan.support if support is None else support
+    if on_support or not machine.has_crank:
         if fluctuation is not None:
-            CrankEquation(machine)  # which says that it takes one crank
+            _refuse_flywheel(machine)
         limits = _limits_of_drives(machine, limits)
         start = _start(machine.drive.speed, speed, angle)
         starts = _start_of_drives(machine, start, _turns_counted(limits, progress), speed is None)
-        return run_drives(DrivesEquation(machine, start[1]), limits, starts)
+        equation = SupportedEquation if on_support else DrivesEquation
+        return run_drives(equation(machine, start[1]), limits, starts)
     whole_turns = _turns_counted(limits, progress)
     first = 0.0 if machine.drive.motor is not None else machine.drive.speed
     start = _start(first, speed, angle)
     wanted = None if fluctuation is None else share_of_mean(fluctuation)
-    equation, driver = CrankEquation(machine), Driver.of(machine)
-    integration = Integration(equation, driver, limits)
+    crank, driver = CrankEquation(machine), Driver.of(machine)
+    integration = Integration(crank, driver, limits)
     integration.on_turns = whole_turns
     integration.follow(start[1], start[0])
     flywheel = None if wanted is None else size_flywheel(machine, wanted, progress)
-    return _result(equation, integration, flywheel)
+    return _result(crank, integration, flywheel)
+
+
+def _refuse_flywheel(machine: Machine) -> None:
+    """Raise a `UsageError`: a flywheel is sized on one crank, on a fixed frame."""
+    CrankEquation(machine)  # which says that it takes one crank
+    raise UsageError(
+        Note("a flywheel is sized on a fixed frame; leave out the fluctuation or the support")
+    )
 
 
 def _limits(machine: Machine, given: Mapping[str, float | str | None]) -> Limits:

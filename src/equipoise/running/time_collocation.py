@@ -133,16 +133,18 @@ def solved_span(
     start: tuple[Array, Array],
     guess: tuple[Array, Mapping[str, Array]],
     sizes: Array,
+    places: int = 0,
 ) -> TimeSpan | None:
     """The motion from a begin, s, over a width, s; None where Newton's method does not arrive.
 
     start : states (n,) and quadratures (Q,).  guess : states (n, NODES), and references near them.
-    sizes : (n,) of the states.
+    sizes : (n,) of the states.  places : how many states, from the first on, have the states after
+        them as their rates, as places and speeds do.
     """
     begin, width = span
     times, paths = begin + width * (POINTS + 1) / 2, width / 2 * PATHS
     states, near = guess
-    inverse, before = None, np.inf
+    newton, before = None, np.inf
     for _ in range(MOST_ROUNDS):
         values = function(times, states, near)
         if values is None:
@@ -154,13 +156,13 @@ def solved_span(
             return TimeSpan(begin, width, *start, values)
         if not most < GROWS:
             return None
-        if inverse is None or most > QUICK * before:
+        if newton is None or most > QUICK * before:
             slopes = _slopes(function, (times, states, near), values.rates, sizes)
             if slopes is None:
                 return None
-            inverse = _inverse(slopes, paths)
+            newton = NewtonStep(slopes, paths, places)
         before = most
-        states = states + (inverse @ missed.ravel()).reshape(states.shape)
+        states = states + newton.step(missed)
     return None
 
 
@@ -186,14 +188,38 @@ def _slopes(
     return np.asarray(changed / (NUDGE * sizes[None, :, None]))
 
 
-def _inverse(slopes: Array, paths: Array) -> Array:
-    """Inverse (n NODES, n NODES) of what Newton's method solves."""
-    size = len(slopes) * NODES
-    matrix = np.einsum("kl,ijl->ikjl", paths, slopes).reshape(size, size)
-    try:
-        return np.linalg.inv(np.eye(size) - matrix)
-    except np.linalg.LinAlgError:
-        return np.full((size, size), np.nan)
+class NewtonStep:
+    """What Newton's method changes states by, of which some are places with known speeds.
+
+    With a places, w all other states, of which the first are speeds v, P integrals and A, W the
+    derivatives of the rates of w by a and w,
+
+        da = missed_a + P dv,    (1 - P W - P A P) dw = missed_w + P A missed_a
+
+    where P A P acts on v alone: half the size costs an eighth of the time.
+    """
+
+    def __init__(self, slopes: Array, paths: Array, places: int) -> None:
+        """slopes : (n, n, NODES).  paths : integrals (NODES, NODES).  places : as of
+        `solved_span`.
+        """
+        self._paths, self._places = paths, places
+        self._by_place = slopes[places:, :places]
+        matrix = np.einsum("kl,ijl->ikjl", paths, slopes[places:, places:])
+        inner = self._by_place[..., None] * paths  # (w, a, NODES, NODES)
+        matrix[:, :, :places] += np.einsum("kl,ijlm->ikjm", paths, inner, optimize=True)
+        size = (len(slopes) - places) * NODES
+        try:
+            self._inverse = np.linalg.inv(np.eye(size) - matrix.reshape(size, size))
+        except np.linalg.LinAlgError:
+            self._inverse = np.full((size, size), np.nan)
+
+    def step(self, missed: Array) -> Array:
+        """Change (n, NODES) of states whose integrals miss them by so much (n, NODES)."""
+        of_places, others = missed[: self._places], missed[self._places :]
+        right = others + np.einsum("ijl,jl->il", self._by_place, of_places) @ self._paths.T
+        changes = (self._inverse @ right.ravel()).reshape(others.shape)
+        return np.concatenate([of_places + changes[: self._places] @ self._paths.T, changes])
 
 
 def unresolved(span: TimeSpan, sizes: Array, works: Array) -> float:

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from equipoise.signals import Figures
     from equipoise.vibration.free import FreeVibration, Transient
     from equipoise.vibration.response import Mode, Response
+    from equipoise.vibration.support_motion import SupportMotion
     from equipoise.vibration.sweep import Sweep
 
 Kind = tuple[Dimension, str | None]
@@ -319,22 +320,36 @@ def transient_blocks(transient: Transient) -> Iterator[Block]:
             turns=number(abs(float(transient.crank_angle[-1])) / (2 * pi)),
         )
     )
-    rows = []
-    turning = members_of("gauges")(transient.machine)
-    for name, values in transient.gauges.items():
-        rows.append(_stretch(name, values, (TURNED if turning[name] else MOVED)[0]))
-    turning = members_of("mounts")(transient.machine)
-    for name, values in transient.mounts.items():
-        rows.append(_stretch(name, values, ("torque" if turning[name] else "force", None)))
-    rows.append(_stretch(say("crank speed"), transient.crank_speed, ("angular speed", "rpm")))
+    count = max(1, len(transient.time) // PARTS)
+    ends: Ends = slice(count), slice(-count, None)
+    rows = [] if transient.support is None else [*support_rows(transient.support, ends)]
+    speed = transient.crank_speed
+    rows.append(_in_stretches(say("crank speed"), speed, ends, ("angular speed", "rpm")))
+    yield Table.of(say("Gauges, mounts and drive"), extreme_labels(), rows)
+
+
+Ends = tuple[slice, slice]
+"""Instants in the first and the last stretch of a time."""
+
+
+def extreme_labels() -> tuple[str, ...]:
+    """Heads of a table with `support_rows`."""
     ranges = (say("range in the first fifth"), say("range in the last fifth"))
-    labels = ("", say("smallest"), say("largest"), *ranges)
-    yield Table.of(say("Gauges, mounts and drive"), labels, rows)
+    return ("", say("smallest"), say("largest"), *ranges)
 
 
-def _stretch(name: str, values: Array, kind: Kind) -> tuple[Cell, ...]:
-    count = max(1, len(values) // PARTS)
-    ranges = np.ptp(values[:count]), np.ptp(values[-count:])
+def support_rows(motion: SupportMotion, ends: Ends) -> Iterator[tuple[Cell, ...]]:
+    """Extremes of every gauge and mount, and their ranges in the first and the last stretch."""
+    turning = members_of("gauges")(motion.body.machine)
+    for name, values in motion.gauges.items():
+        yield _in_stretches(name, values, ends, (TURNED if turning[name] else MOVED)[0])
+    turning = members_of("mounts")(motion.body.machine)
+    for name, values in motion.mounts.items():
+        yield _in_stretches(name, values, ends, ("torque" if turning[name] else "force", None))
+
+
+def _in_stretches(name: str, values: Array, ends: Ends, kind: Kind) -> tuple[Cell, ...]:
+    ranges = (np.ptp(values[end]) for end in ends)
     return _row(name, (np.min(values), np.max(values), *ranges), kind)
 
 

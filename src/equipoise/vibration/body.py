@@ -49,6 +49,11 @@ class SupportBody:
         """Numbers of the coordinates in which it can move, (D,)."""
         return np.array([FREEDOMS.index(name) for name in self.support.coordinates])
 
+    @property
+    def free_in_plane(self) -> tuple[int, ...]:
+        """Which of surge, heave and pitch a planar support can move in: their places."""
+        return tuple(IN_PLANE.index(number) for number in self.free)
+
     @cached_property
     def reference(self) -> Array:
         """The point whose displacement is told, (3,), m."""

@@ -34,7 +34,7 @@ from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import PER_RPM, number
 from equipoise.signals import Array, within_period
-from equipoise.vibration.body import IN_PLANE, PITCH, MountContact, Rest, SupportBody, contacts_of
+from equipoise.vibration.body import PITCH, MountContact, Rest, SupportBody, contacts_of
 from equipoise.vibration.collocation import Rates
 from equipoise.vibration.linkages import ReducedInertia, sums
 
@@ -81,8 +81,8 @@ class Coupled:
         matrix = body.mass
         first, reference = complex(matrix[1, 5], -matrix[0, 5]), complex(*body.reference[:2])
         sums = float(matrix[0, 0]), first, float(matrix[5, 5])
-        free = tuple(IN_PLANE.index(number) for number in body.free)
-        return cls(body.machine, speed, *sums, reference, free, contacts_of(body, rest), torque)
+        contacts = contacts_of(body, rest)
+        return cls(body.machine, speed, *sums, reference, body.free_in_plane, contacts, torque)
 
     @classmethod
     def on_ground(cls, machine: Machine, speed: float, torque: Torque) -> Coupled:

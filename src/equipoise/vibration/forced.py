@@ -53,6 +53,13 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
         names = key_names("no_load_speed", "stall_torque")
         note = Note("missing; give its {no_load_speed} and {stall_torque}", **names)
         raise ModelError("drive.motor", note)
+    if drive and any(other.moves_freely for other in machine.drives):
+        raise UsageError(
+            Note(
+                "the speed follows from the motor of one crank; follow several drives by torques "
+                "with `equipoise run`, on a support with its option --support"
+            )
+        )
     if drive and model not in {None, "exact"}:
         raise UsageError(
             Note("the speed follows from the motor in the exact model, not in {model}", model=model)

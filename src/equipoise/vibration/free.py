@@ -15,17 +15,18 @@ from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Place
-from equipoise.quantities import Dimension, in_si
+from equipoise.quantities import in_si
 from equipoise.results.declaring import NOTES, TITLE, Declarations, ResultOutput
 from equipoise.results.result import Result
 from equipoise.signals import Array
-from equipoise.vibration.body import MISSING, Reading, SupportBody
+from equipoise.vibration.body import MISSING, SupportBody
 from equipoise.vibration.coupled import Coupled, follow
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, excitation_model_of, steady_speed
 from equipoise.vibration.linear import Linear, gauges_of
-from equipoise.vibration.response import Mode, members_of, of_support
+from equipoise.vibration.response import Mode, members_of
 from equipoise.vibration.steady import equations, motor_setting
+from equipoise.vibration.support_motion import SupportMotion
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,11 +156,6 @@ LEAST_SAMPLES, SAMPLES_PER_TURN, MOST_SAMPLES = 2001, 72, 1_000_000
 """Instants where none are asked for, at least and in a turn (every 5 deg); at most."""
 
 
-def _signal(name: str, dimension: Dimension, turned: Dimension) -> ResultOutput:
-    """A signal (M,) of a gauge or mount."""
-    return ResultOutput(name, dimension, turned, read=lambda values: values, column=name)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Transient(Result):
     """A machine on its support from rest, at M instants.
@@ -176,22 +172,22 @@ class Transient(Result):
     crank_speed: Array
 
     @cached_property
+    def support(self) -> SupportMotion | None:
+        """How the support moves; None on solid ground."""
+        if self.machine.support is None:
+            return None
+        ride = self.system.place_and_rate(self.states)
+        return SupportMotion(SupportBody(self.machine), *ride, self.system.contacts)
+
+    @property
     def gauges(self) -> Mapping[str, Array]:
         """Displacement (M,) at each gauge, m or rad."""
-        if self.machine.support is None:
-            return {}
-        body = SupportBody(self.machine)
-        place, _ = self.system.place_and_rate(self.states)
-        return {
-            name: Reading.of(body, gauge).displacement(place)
-            for name, gauge in gauges_of(body).items()
-        }
+        return {} if self.support is None else self.support.gauges
 
-    @cached_property
+    @property
     def mounts(self) -> Mapping[str, Array]:
         """Force (M,) of each mount, N or N m."""
-        ride = self.system.place_and_rate(self.states)
-        return {contact.name: contact.force(*ride) for contact in self.system.contacts}
+        return {} if self.support is None else self.support.mounts
 
     blocks_in = "vibration.blocks.transient_blocks"
     pictures_in = "figures.vibration.transient_charts"
@@ -200,12 +196,7 @@ class Transient(Result):
         "time": ResultOutput("instants", "time", column="time"),
         "crank_angle": ResultOutput("crank angle since the start", "angle", column="crank_angle"),
         "crank_speed": ResultOutput("speed of the crank", "angular speed", column="crank_speed"),
-        "gauges": of_support(
-            "gauges", "of each gauge", {"displacement": _signal("displacement", "length", "angle")}
-        ),
-        "mounts": of_support(
-            "mounts", "of each mount", {"force": _signal("force", "force", "torque")}
-        ),
+        **SupportMotion.declared,
     }
 
 
@@ -230,6 +221,13 @@ def simulate(
     ModelError, UsageError, ResponseError.
     """
     duration = in_si(duration, "time", "duration")
+    if machine.support is not None and not machine.has_crank:
+        raise UsageError(
+            Note(
+                "`simulate` follows one crank that turns; follow several drives, or one that goes "
+                "by a law, with `equipoise run --support`"
+            )
+        )
     chosen_model(machine, "exact", drive)
     if missing := massless(machine):
         raise MassError(missing)

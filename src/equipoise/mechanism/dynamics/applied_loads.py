@@ -97,8 +97,13 @@ def acting_loads(motion: Motion) -> Iterator[Acting]:
 
 def outer_loads(motion: Motion) -> Iterator[Acting]:
     """Demands of loads from outside, and of the soil."""
-    yield from _acting(motion, None)
+    yield from loads_from_outside(motion)
     yield from soil_loads(motion)
+
+
+def loads_from_outside(motion: Motion) -> Iterator[Acting]:
+    """Link, point, force and torque of each load of the file whose opposite no part bears."""
+    yield from _acting(motion, None)
 
 
 def given_loads(motion: Motion) -> Iterator[Acting]:
@@ -106,7 +111,7 @@ def given_loads(motion: Motion) -> Iterator[Acting]:
     alone, be it by the angle of a link.
     """
     yield from _acting(motion, "frame")
-    yield from _acting(motion, None)
+    yield from loads_from_outside(motion)
 
 
 def soil_loads(motion: Motion) -> Iterator[Acting]:

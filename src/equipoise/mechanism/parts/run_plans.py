@@ -1,4 +1,4 @@
-"""How a machine on a fixed frame is run, and the states in which it works over its life."""
+"""How a machine is run, and the states in which it works over its life."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from equipoise.i18n import to_say
-from equipoise.keys import Frozen, Number, declared, key
+from equipoise.keys import Flag, Frozen, Number, declared, key
 from equipoise.mechanism.parts.force_elements import Load
 
 MOST_TURNS = 10_000
@@ -37,6 +37,9 @@ class RunPlan(Frozen):
         Number(), "of the crank, after which the motor is switched off", default=None, example=20,
         above=0,
     )  # fmt: skip
+    support: bool = key(
+        Flag(), "whether the support moves too; else the frame is fixed", default=False
+    )
 
 
 @declared

@@ -1,0 +1,205 @@
+"""The equations of motion of a machine's drives together with its support.
+
+Displacements and rotation of the support are unknowns beside the angles of drives.  What acts
+between links and frame, such as springs, motors and friction, acts on nothing but the drives, as
+the frame moves with the support; weight, mounts and loads from outside act on both.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from equipoise.dataclass import dataclass
+from equipoise.errors import UsageError, at_place
+from equipoise.i18n import Note, all_of
+from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.dynamics.applied_loads import loads_from_outside
+from equipoise.mechanism.dynamics.reactions import demands_of
+from equipoise.mechanism.parts.support import PLANAR
+from equipoise.running.drives_equation import DriveAngles, DrivesEquation, DriveState
+from equipoise.running.drives_linkage import References, pose_of
+from equipoise.running.mount_contacts import MountContacts
+from equipoise.running.sources import LOADS, plus
+from equipoise.running.support_pose import SupportedPose, SupportInertia
+from equipoise.signals import Array
+from equipoise.vibration.body import PITCH, MountContact, Rest, SupportBody, contacts_of
+from equipoise.vibration.linear import Linear
+from equipoise.vibration.support_motion import SupportMotion
+
+MOUNTS = "mounts"
+"""In the works of a run: springs and dampers between support and ground."""
+USUAL_TILT = 0.01
+"""rad: the usual size of a vibration; displacements over the size of the machine."""
+
+
+@dataclass(frozen=True, eq=False)
+class SupportedEquation(DrivesEquation):
+    """A machine as a function of the angles of its drives and of where its support is.
+
+    The crank of a machine with a single drive is free where it has no motor.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    ModelError : there is no support, or its mounts do not hold the machine.
+    UsageError : something acts, or moves, that such a run lacks.
+    """
+
+    def __post_init__(self) -> None:
+        if not self.body.support.planar:
+            names = [Note(n) for n in self.body.support.coordinates if n not in PLANAR]
+            raise UsageError(
+                at_place(
+                    "support.freedoms",
+                    Note(
+                        "a run with its support is for motion in the plane of the drawing; leave "
+                        "out {names}",
+                        names=all_of(names),
+                    ),
+                )
+            )
+        if self.machine.rows:
+            raise UsageError(
+                at_place(
+                    "rows",
+                    Note(
+                        "a run with its support computes one row; leave the others out, or follow "
+                        "them with `equipoise simulate`"
+                    ),
+                )
+            )
+        if self.machine.pushers:
+            raise UsageError(
+                at_place(
+                    "support",
+                    Note("a run with its support computes no strokes; leave out one or the other"),
+                )
+            )
+        super().__post_init__()
+        _ = self.rest
+
+    @cached_property
+    def body(self) -> SupportBody:
+        """The support."""
+        return SupportBody(self.machine)
+
+    @cached_property
+    def rest(self) -> Rest:
+        """What holds the machine in the drawn position, as of the exact model."""
+        return Linear.of(self.machine, "moment").rest
+
+    @cached_property
+    def support(self) -> SupportInertia:
+        """The support alone."""
+        matrix = self.body.mass
+        return SupportInertia(
+            float(matrix[0, 0]),
+            complex(matrix[1, 5], -matrix[0, 5]),
+            float(matrix[5, 5]),
+            complex(*self.body.reference[:2]),
+            self.body.free_in_plane,
+        )
+
+    @property
+    def coordinates(self) -> int:
+        """How many: first of the drives, then of the support."""
+        return len(self.drives) + len(self.support.free)
+
+    @cached_property
+    def unknowns(self) -> tuple[int, ...]:
+        """Places of coordinates that follow from forces."""
+        count, single = len(self.drives), self.machine.has_crank
+        free = (k for k, drive in enumerate(self.drives) if drive.moves_freely or single)
+        return (*free, *range(count, self.coordinates))
+
+    @property
+    def acting(self) -> tuple[str, ...]:
+        """Keys of what acts beside the drives and friction in joints."""
+        return (*super().acting, MOUNTS)
+
+    @cached_property
+    def contacts(self) -> tuple[MountContact, ...]:
+        """The mounts."""
+        return contacts_of(self.body, self.rest)
+
+    @cached_property
+    def mounts(self) -> MountContacts:
+        """The mounts, with what is known of them at the time."""
+        return MountContacts(self.contacts, float(self.usual_sizes[0]), self.place_and_rate)
+
+    def support_motion(self, coordinates: Array, rates: Array) -> SupportMotion:
+        """How the support moves, by coordinates (N + D, K) and their rates."""
+        return SupportMotion(self.body, *self.place_and_rate(coordinates, rates), self.contacts)
+
+    @cached_property
+    def usual_sizes(self) -> Array:
+        """Of a vibration (3,) along surge, heave and pitch, m, m and rad."""
+        moved = USUAL_TILT * float(size_of_bodies(self.machine))
+        return np.array([moved, moved, USUAL_TILT])
+
+    def sizes(self) -> Array:
+        """Usual sizes of the unknowns (U,): 1 of a drive's angle, and those of a vibration."""
+        of_support = self.usual_sizes[[*self.support.free]]
+        drives = len(self.unknowns) - len(of_support)
+        return np.concatenate([np.ones(drives), of_support])
+
+    def place_and_rate(self, angles: Array, speeds: Array) -> tuple[Array, Array]:
+        """Displacements and velocities (3, K) of the support along surge, heave and pitch, by
+        coordinates (N + D, K) and their rates.
+        """
+        place, rate = np.zeros((2, 3, angles.shape[1]))
+        free, drives = [*self.support.free], len(self.drives)
+        place[free], rate[free] = angles[drives:], speeds[drives:]
+        return place, rate
+
+    def pose(self, crank: Array, angles: Array, speeds: Array, near: References) -> SupportedPose:
+        """Linkage and support with coordinates (N + D, K) and their rates.
+
+        crank : crank angle (K,), rad.
+        """
+        drives = len(self.drives)
+        own = pose_of(self.linkage, crank, angles[:drives], speeds[:drives], near)
+        return SupportedPose(
+            self.linkage, own.along, self.support, *self.place_and_rate(angles, speeds)
+        )
+
+    def at(self, time: Array, since: float, where: DriveAngles, near: References) -> DriveState:
+        """What acts in K states, as of `DrivesEquation.at`."""
+        pose = self.pose(where.crank_angle, where.angles, where.speeds, near)
+        pace, factors = self._pace(time, where.speeds[self.free]), self.factors_at(time, since)
+        acting = {source.key: source.demands(pose.moving, pace, factors) for source in self.sources}
+        if "weight" in acting:
+            acting["weight"] = pose.weights
+        forces = [pose.generalized(demands) for demands in acting.values()]
+        for k, key in enumerate(acting):
+            if key == "weight":
+                forces[k] += pose.on_support(pose.weights) + pose.support_weight
+            elif key == LOADS:
+                outside = demands_of(pose.moving, loads_from_outside(pose.moving))
+                forces[k] += pose.on_support(outside)
+            elif key == "soil":
+                forces[k] += pose.on_support(acting[key])
+        mounted = np.zeros((self.coordinates, pose.count))
+        wrench = self.mounts.wrench(pose.place, pose.rate)
+        mounted[len(self.drives) :] = wrench[[*self.support.free]]
+        rubbing = None
+        if self.friction is not None:
+            rubbing = self.friction.of(pose, plus(pose.turning, *acting.values()))
+        return DriveState(
+            pose, where, self.with_rotors(pose.inertia), np.array([*forces, mounted]), rubbing
+        )
+
+    def with_rotors(self, inertia: Array) -> Array:
+        """Inertia (N + D, N + D, K) with that of motors, which turn on the support."""
+        whole, drives = np.array(inertia), len(self.drives)
+        for k, drive in enumerate(self.drives):
+            if drive.motor is None:
+                continue
+            whole[k, k] += drive.motor.ratio**2 * drive.motor.inertia
+            if PITCH in self.support.free:
+                at = drives + self.support.free.index(PITCH)
+                whole[at, k] += drive.motor.ratio * drive.motor.inertia
+                whole[k, at] += drive.motor.ratio * drive.motor.inertia
+        return whole

@@ -1,0 +1,311 @@
+"""Runs on a support: against the exact model of one crank, free bodies, and conserved momentum."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicHermiteSpline
+
+import equipoise as eq
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.steps import u
+from equipoise.mechanism.parts.force_elements import Load, Motor
+from equipoise.mechanism.parts.laws import AngleLaw
+from equipoise.mechanism.parts.machine import FRAME, FurtherDrive
+from equipoise.mechanism.parts.support import Mount, Support
+from equipoise.running.drives_friction import NEAR_REST
+from equipoise.running.drives_run import DrivesRun
+from secondroute.test_drives_run import (
+    JOINTS,
+    LAGGING,
+    QUICK,
+    at_angles,
+    five_bar,
+    motor_torques,
+)
+from support.pinned_bodies import PinnedBodies
+from support.poses import Array
+
+CLOSE = 3e-8
+"""rad and m: free bodies drift off their pins, as nothing holds them but second derivatives."""
+BALANCE = 1e-9
+CENTRE = (0.06, -0.05, 0.0)
+FEET = {
+    "left": Mount((-0.1, -0.1, 0.0), stiffness=2500.0, damping=9.0, preload=26.0),
+    "right": Mount((0.2, -0.1, 0.0), stiffness=1800.0, damping=7.0, preload=22.0),
+    "side": Mount((0.2, -0.1, 0.0), direction=0.0, stiffness=900.0, damping=4.0, preload=0.0),
+    "turn": Mount(axis="pitch", torsional_stiffness=6.0, torsional_damping=0.02, preload=0.1),
+}
+SUPPORT = Support(2.5, CENTRE, inertia=(0.03,), mounts=FEET)
+
+
+def sampled(run: DrivesRun, times: Array) -> dict[str, Array]:
+    """Angles of the drives from the start, and where the support is, at times."""
+    assert run.support is not None
+    time, places = np.unique(run.time, return_index=True)
+
+    def at(values: Array, rates: Array) -> Array:
+        return np.asarray(CubicHermiteSpline(time, values[places], rates[places])(times))
+
+    values = {
+        link: at(course.angle, course.speed) - course.angle[0]
+        for link, course in run.drives.items()
+    }
+    for row, name in enumerate(("x", "y", FRAME)):
+        values[name] = at(run.support.place[row], run.support.rate[row])
+    return values
+
+
+# -- one crank and its motor, by the exact model ---------------------------------------------------
+
+
+def rig(**changes: Any) -> eq.Machine:
+    """The bundled rig, whose motor is as its curve, on a support that moves in all ways."""
+    base = eq.load("balance-rig")
+    assert base.support is not None and base.drive.motor is not None
+    motor = replace(base.drive.motor, mean_speed="free")
+    feet = {
+        "left": Mount((-1.2, -0.3, 0.0), stiffness=4e3, damping=60.0),
+        "right": Mount((0.3, -0.3, 0.0), stiffness=4e3, damping=60.0),
+        "side": Mount((0.0, -0.3, 0.0), direction=0.0, stiffness=3e3, damping=40.0, preload=0.0),
+    }
+    support = replace(
+        base.support, pivot=None, pivot_inertia=None, inertia=(4.0,), mounts=feet,
+        freedoms=("surge", "heave", "pitch"),
+    )  # fmt: skip
+    drive = replace(base.drive, motor=motor, flywheel=0.002)
+    return replace(base, drive=drive, support=replace(support, **changes))
+
+
+def against_exact(machine: eq.Machine, duration: float, close: float) -> DrivesRun:
+    """Compare a run of one crank and its support with the exact model from rest."""
+    wanted = eq.simulate(machine, duration, drive=True, samples=60)
+    run = eq.run(machine, duration, support=True)
+    assert isinstance(run, DrivesRun)
+    found = sampled(run, wanted.time)
+    np.testing.assert_allclose(found["crank"], wanted.crank_angle, atol=close)
+    place, _ = wanted.system.place_and_rate(wanted.states)
+    for row, name in enumerate(("x", "y", FRAME)):
+        np.testing.assert_allclose(found[name], place[row], atol=close)
+    assert run.energy_error < BALANCE
+    return run
+
+
+def test_one_crank_and_its_motor_as_the_exact_model() -> None:
+    run = against_exact(rig(), 0.4, 3e-9)
+    assert run.support is not None
+    assert np.all(np.ptp(run.support.place, axis=1) > 1e-4)
+
+
+def test_a_support_about_a_pivot_as_the_exact_model() -> None:
+    base = eq.load("balance-rig")
+    assert base.drive.motor is not None
+    motor = replace(base.drive.motor, mean_speed="free")
+    against_exact(replace(base, drive=replace(base.drive, motor=motor)), 0.4, 3e-9)
+
+
+def test_loads_from_outside_push_the_support_as_in_the_exact_model() -> None:
+    machine = rig()
+    link = next(name for name in machine.links if name != "crank")
+    point = next(iter(machine.links[link].points))
+    loads = (Load(link, point, force=(6.0, -9.0)), Load(link, torque=0.3, reaction="frame"))
+    against_exact(replace(machine, loads=loads), 0.4, 3e-9)
+
+
+def test_mounts_let_go_and_touch_again() -> None:
+    feet = {
+        "left": Mount((-1.2, -0.3, 0.0), stiffness=9e3, damping=20.0, preload=1.0, one_sided=True),
+        "right": Mount((0.3, -0.3, 0.0), stiffness=9e3, damping=20.0, preload=1.0, one_sided=True),
+        "side": Mount((0.0, -0.3, 0.0), direction=0.0, stiffness=3e3, damping=40.0, preload=0.0),
+        "weak": Mount((-0.4, -0.3, 0.0), stiffness=800.0, preload=-2.0),
+    }
+    machine = replace(rig(mounts=feet), gravity=(0.0, 0.0))
+    run = against_exact(machine, 0.6, 3e-8)
+    assert run.support is not None
+    forces = run.support.mounts["right"]
+    assert np.min(forces) == 0 and np.sum(np.diff(forces > 0) != 0) >= 4
+
+
+# -- several drives, by free bodies ----------------------------------------------------------------
+
+
+def against_free_bodies(
+    machine: eq.Machine, duration: float, given: dict[str, Any] | None = None
+) -> DrivesRun:
+    """Compare drives and support over time; return the run."""
+    run = eq.run(machine, duration, support=True)
+    assert isinstance(run, DrivesRun)
+    assert run.energy_error < BALANCE
+    linkage = assemble(machine)
+    first = [course.angle[0] for course in run.drives.values()]
+    motion = at_angles(linkage, first, np.zeros((1, len(first))))
+    angles = {
+        link: float(np.angle(np.ravel(motion.state[u(link)[0]])[0])) for link in machine.links
+    }
+    torques, more = motor_torques(machine, {item.link: 1.0 for item in machine.driven})
+    bodies = PinnedBodies(machine, given or {}, torques, on_support=True)
+    bodies.rubbing = {
+        entry.joint.partition(".")[2]: (entry.friction or 0.0) * (entry.radius or 0.0)
+        for entry in machine.joints
+    }
+    bodies.slow = NEAR_REST * abs(machine.drive.speed)
+    speeds = {link: course.speed[0] for link, course in run.drives.items()}
+    state = np.concatenate([bodies.start(angles, speeds), np.zeros(more)])
+    times = np.linspace(0.0, run.time[-1], 40)
+    wanted, found = bodies.follow(state, times), sampled(run, times)
+    for name, values in found.items():
+        np.testing.assert_allclose(values, wanted[name] - wanted[name][0], atol=CLOSE)
+    return run
+
+
+def two_motors() -> eq.Machine:
+    drive = eq.Drive("left crank", 15.0, motor=LAGGING)
+    return replace(five_bar(drive, FurtherDrive("right crank", start=pi / 3, motor=QUICK)),
+                   support=SUPPORT)  # fmt: skip
+
+
+def test_two_motors_shake_their_support() -> None:
+    run = against_free_bodies(two_motors(), 0.15)
+    assert run.support is not None
+    assert np.all(np.ptp(run.support.place, axis=1) > 1e-3)
+    fixed = eq.run(replace(two_motors(), support=None), 0.15)
+    other = fixed.drives["left crank"].turns / run.drives["left crank"].turns
+    assert abs(other - 1) > 1e-3  # the support acts back on the drives
+
+
+def test_friction_in_pins_is_pressed_by_the_support_too() -> None:
+    run = against_free_bodies(replace(two_motors(), joints=JOINTS), 0.02)
+    fixed = eq.run(replace(two_motors(), joints=JOINTS, support=None), 0.02)
+    assert abs(fixed.losses["A"][-1] / run.losses["A"][-1] - 1) > 1e-3
+
+
+def test_free_drives_on_one_sided_mounts() -> None:
+    feet = {
+        **FEET,
+        "left": replace(FEET["left"], one_sided=True, preload=16.0),
+        "right": replace(FEET["right"], one_sided=True, preload=14.0),
+    }
+    drive = eq.Drive("left crank", 15.0, free=True)
+    machine = five_bar(drive, FurtherDrive("right crank", start=pi / 3, free=True))
+    machine = replace(machine, support=replace(SUPPORT, mounts=feet))
+    run = against_free_bodies(machine, 0.4)
+    assert run.support is not None
+    assert np.min(run.support.mounts["left"]) == 0 < np.max(run.support.mounts["left"])
+
+
+def test_drives_of_given_motion_on_their_support() -> None:
+    """Nothing but the support follows from forces."""
+    drive = eq.Drive("left crank", 15.0)
+    other = FurtherDrive("right crank", motion=AngleLaw(between=(0.3, 1.2)))
+
+    def swing(time: float) -> tuple[float, float, float]:
+        half, turned = 0.45, 15.0 * time
+        return (
+            0.3 + half * (1 - np.cos(turned)), half * 15.0 * np.sin(turned),
+            half * 15.0**2 * np.cos(turned),
+        )  # fmt: skip
+
+    machine = replace(five_bar(drive, other), support=SUPPORT)
+    laws = {"left crank": lambda time: (15.0 * time, 15.0, 0.0), "right crank": swing}
+    run = against_free_bodies(machine, 0.4, laws)
+    assert {course.moved_by for course in run.drives.values()} == {"given motion"}
+
+
+# -- what stays ------------------------------------------------------------------------------------
+
+
+def momenta(run: DrivesRun, places: Array) -> tuple[Array, Array]:
+    """Momentum (K,), complex, and moment of momentum (K,) about the origin of all bodies, by their
+    centres of mass in space.
+    """
+    assert run.support is not None
+    support, motion = run.machine.support, run.motion_at(places)
+    assert support is not None
+    x, y, tilt = run.support.place[:, places]
+    vx, vy, turning = run.support.rate[:, places]
+    moved, moving, turn = x + 1j * y, vx + 1j * vy, np.exp(1j * tilt)
+    reference = complex(*support.reference[:2])
+
+    def in_space(place: Array, rate: Array) -> tuple[Array, Array]:
+        arm = turn * (place - reference)
+        return reference + moved + arm, moving + 1j * turning * arm + turn * rate
+
+    bodies = [
+        (support.mass, support.inertia[0], *in_space(
+            np.full(len(x), complex(*support.center_of_mass[:2])), np.zeros(len(x))), turning)
+    ]  # fmt: skip
+    for name, link in run.machine.links.items():
+        centre = motion.mass_centers[name]
+        rate = turning + motion.state[u(name)[1]]
+        bodies.append((link.mass, link.inertia, *in_space(centre.place, centre.place_1), rate))
+    linear = sum(mass * v for mass, _, _, v, _ in bodies)
+    angular = sum(
+        mass * (np.conj(place) * v).imag + inertia * rate
+        for mass, inertia, place, v, rate in bodies
+    )
+    for item, course in zip(run.machine.driven, run.drives.values(), strict=True):
+        if item.motor is not None:
+            angular = angular + item.motor.ratio * item.motor.inertia * course.speed[places]
+    return np.asarray(linear), np.asarray(angular)
+
+
+@pytest.mark.parametrize("rubbing", [False, True])
+def test_a_free_support_keeps_momentum(rubbing: bool) -> None:
+    """Motors, friction and springs between links and support act within the machine."""
+    loose = replace(SUPPORT, mounts={"film": Mount(axis="pitch", torsional_damping=1e-15)})
+    machine = replace(two_motors(), support=loose, gravity=(0.0, 0.0),
+                      joints=JOINTS if rubbing else ())  # fmt: skip
+    run = eq.run(machine, 0.04, support=True)
+    assert isinstance(run, DrivesRun)
+    places = np.linspace(0, len(run.time) - 1, 50).astype(int)
+    linear, angular = momenta(run, places)
+    largest = np.max(np.abs(run.drives["left crank"].speed)) * 0.25 * 0.05
+    np.testing.assert_allclose(linear, 0, atol=1e-9 * largest)
+    np.testing.assert_allclose(angular, 0, atol=1e-9 * largest * 0.1)
+    assert np.ptp(run.support.place[2]) > 1e-5  # which turns against the cranks
+
+
+def test_an_undamped_support_keeps_energy() -> None:
+    """Kinetic energy, weight and springs of mounts, from where bodies are."""
+    feet = {name: replace(mount, damping=0.0, torsional_damping=0.0)
+            for name, mount in FEET.items()}  # fmt: skip
+    drive = eq.Drive("left crank", 15.0, free=True)
+    machine = five_bar(drive, FurtherDrive("right crank", start=pi / 3, free=True))
+    machine = replace(machine, support=replace(SUPPORT, mounts=feet))
+    run = eq.run(machine, 0.3, support=True)
+    assert isinstance(run, DrivesRun) and run.support is not None
+    motion = run.motion_at(np.arange(len(run.time)))
+    x, y, tilt = run.support.place
+    turn, reference = np.exp(1j * tilt), complex(*CENTRE[:2])
+    heights = {
+        name: (turn * (centre.place - reference)).imag + y
+        for name, centre in motion.mass_centers.items()
+    }
+    stored = 9.81 * (2.5 * y + sum(link.mass * heights[n] for n, link in machine.links.items()))
+    for mount in feet.values():
+        moved = tilt
+        if mount.axis is None:
+            assert isinstance(mount.point, tuple) and isinstance(mount.direction, float)
+            arm = complex(*mount.point[:2]) - reference
+            way = x + 1j * y + turn * arm - arm
+            moved = (way * np.exp(-1j * mount.direction)).real
+        stored = stored + mount.spring * moved**2 / 2 - (mount.preload or 0.0) * moved
+    total = run.kinetic_energy + stored
+    np.testing.assert_allclose(total, total[0], atol=BALANCE * np.max(run.kinetic_energy))
+
+
+def test_motor_as_curve_on_its_support_starts_and_is_switched_off() -> None:
+    """A start, a switch-off and a coast-down keep the balance of energy."""
+    line = Motor(40.0, 2.0, inertia=1e-4, mean_speed="free")
+    drive = eq.Drive("left crank", 15.0, motor=line)
+    machine = five_bar(drive, FurtherDrive("right crank", ratio=-1.0, start=pi / 3))
+    run = eq.run(replace(machine, support=SUPPORT), 0.4, off=0.2, support=True)
+    assert isinstance(run, DrivesRun)
+    assert [event.kind for event in run.events][-2:] == ["off", "time"]
+    assert run.energy_error < BALANCE
+    late = run.time > 0.2
+    assert not np.any(run.drives["left crank"].torque[late])
