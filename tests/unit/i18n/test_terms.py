@@ -17,7 +17,7 @@ OTHERWISE = {
            "カウンターウェイト", "機械的倍率", "力の拡大率", "駆動側", "駆動する側",
            "駆動歯車", "駆動プーリ"),
     "ko": ("카운터웨이트", "평형추", "무게중심", "기계적 확대", "구동 쪽", "구동하는 쪽",
-           "구동 기어", "구동 풀리"),
+           "구동 기어", "구동 풀리", "질량 중심", "밸런싱", "평형으로", "평형도", "평형에"),
 }  # fmt: skip
 """Of balancing, centre of mass, counterweight, mechanical advantage; the drive of a machine is
 another thing than what drives in a pair of gears."""
