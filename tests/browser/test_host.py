@@ -71,7 +71,8 @@ def test_the_first_load_is_small(context: BrowserContext, hosted: Site, host: st
 def test_what_the_first_machine_needs_is_compiled_already(hosted: Site) -> None:
     """Its sources are left out, as both would be a longer load; other modules are as they were.
 
-    Packages that lose their docstrings are compiled as a whole, as their modules read each other's.
+    So is what pressing Balance imports, for which a drag would have to wait. Packages that lose
+    their docstrings are compiled as a whole, as their modules read each other's.
     """
     if find_node() is None:
         pytest.skip("Node is not installed")
@@ -85,6 +86,7 @@ def test_what_the_first_machine_needs_is_compiled_already(hosted: Site) -> None:
     for path, needed, other in (
         ("runtime/python_stdlib.zip", "typing", "doctest"),
         ("wheels/equipoise-*.whl", "equipoise/results/analysis", "equipoise/cli/site"),
+        ("wheels/equipoise-*.whl", "equipoise/balancing/optimisation", "equipoise/cli/balance"),
     ):
         found = names(path)
         assert {f"{needed}.pyc", f"{other}.py"} <= found

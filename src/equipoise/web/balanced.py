@@ -41,7 +41,7 @@ from equipoise.web.edits import Computed, solved
 from equipoise.web.figures import compared, figures_of
 from equipoise.web.incomplete import Incomplete
 from equipoise.web.messages import Message
-from equipoise.web.replies import Reply
+from equipoise.web.replies import Reply, busy
 
 Values = dict[str, Any]
 MAIN = ("rms", "peak")
@@ -337,6 +337,7 @@ class BalanceSession(Protocol):
     current_state: Computed | Incomplete | None
     before: Computed | None
     lock: Lock
+    language: str
 
     def current(self) -> Computed:
         """The design that is."""
@@ -362,12 +363,6 @@ class Balancing:
     nothing: str | None = None
     design: Design | None = None
     content: Values = field(default_factory=dict)
-
-
-def begun(session: BalanceSession, message: Message) -> Reply:
-    """The reply that says that balancing has begun."""
-    with session.telling():
-        return Reply({"type": "busy", "seq": message.seq, "what": say("balancing")})
 
 
 def computed(session: BalanceSession, base: Computed, message: Message) -> Balancing:
@@ -411,5 +406,5 @@ def adopted(
 def answered(session: BalanceSession, message: Message) -> Iterator[Reply]:
     """Balance a session's machine at once, and show what came of it."""
     base = session.current()
-    yield begun(session, message)
+    yield busy(message, session.language)
     yield from adopted(session, base, computed(session, base, message), message)

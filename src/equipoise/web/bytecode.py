@@ -1,9 +1,10 @@
-"""Bytecode of what a site's page imports before its first machine moves.
+"""Bytecode of what a site's page imports before its first machine moves, or to balance it.
 
 Compiling a module takes a browser far longer than loading its bytecode.  Only the runtime's own
 Python writes bytecode that it can read, so it is started once in Node when a site is written: it
-opens a machine as a page does, and compiles the modules that it has imported by then.  They take
-the place of their sources, as both would be a longer load.
+opens a machine as a page does, and compiles the modules that it has imported by then, and those
+that balancing and running import.  They take the place of their sources, as both would be a longer
+load.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import sys
 import tempfile
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
+from importlib import import_module
 from pathlib import Path
 
 from equipoise.errors import UsageError
@@ -25,6 +27,8 @@ from equipoise.i18n import Note
 OWN = "equipoise"
 """The package whose docstrings are kept, as descriptions of tables are taken from them."""
 OPENED = '{"type": "open", "seq": 1, "example": "yamashita-1"}'
+AWAITED = "equipoise.web.balanced", "equipoise.web.runs"
+"""What is imported to show what came of balancing and of a run; no drag is answered meanwhile."""
 LONGEST = 300
 """s after which Node is given up: about twenty times as long as it takes."""
 PUBLISHED = {
@@ -121,8 +125,8 @@ def in_place(
 
 
 def export_bytecode() -> bytes:
-    """Open a machine, and return an archive of the bytecode of all modules imported by then, and
-    of all others of the packages that lose their docstrings.
+    """Open a machine, and return an archive of the bytecode of all modules imported by then, of
+    what balancing and running import, and of all others of packages that lose their docstrings.
     """
     sys.dont_write_bytecode = True
     from equipoise.web.worker import Foreground
@@ -131,6 +135,8 @@ def export_bytecode() -> bytes:
     page.take(OPENED)
     while page.step() is not None:
         pass
+    for name in AWAITED:
+        import_module(name)
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_STORED) as archive:
         for place, source, name in _sources():

@@ -9,14 +9,17 @@ from typing import Any
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.i18n import Note, key_words
+from equipoise.i18n import Note, key_words, say, speaking, to_say
 from equipoise.limits import out_of_memory
 from equipoise.schema.topics import errors, known_topic, plain_page
 from equipoise.web.forms import word_in_forms
+from equipoise.web.messages import Message
 
 LONGEST = 800
 """Signs of a sentence."""
 MISTAKE = Note("this went wrong inside the program, and nothing was changed; please report it")
+BUSY = {"balance": to_say("balancing"), "run": to_say("running the machine")}
+"""What is under way, by the kind of message that asks for it."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +60,12 @@ def unexpected(error: Exception) -> UsageError:
             error=str(error),
         )
     )
+
+
+def busy(message: Message, language: str) -> Reply:
+    """Say that what takes long has begun, which needs nothing of what computes it."""
+    with speaking(language):
+        return Reply({"type": "busy", "seq": message.seq, "what": say(BUSY[message.kind])})
 
 
 def completed(seq: int | None) -> Reply:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, say
+from equipoise.i18n import Note
 from equipoise.symbols.scene import Scene
 from equipoise.web.block import FloatBlock, Values
 from equipoise.web.drawing import moves_of
 from equipoise.web.edits import Computed
 from equipoise.web.incomplete import Incomplete
 from equipoise.web.messages import Message
-from equipoise.web.replies import Reply
+from equipoise.web.replies import Reply, busy
 from equipoise.web.result_blocks import block_messages, panel_charts
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ class RunSession(Protocol):
     """What a run needs of a session."""
 
     current_state: Computed | Incomplete | None
+    language: str
 
     def current(self) -> Computed:
         """The design that is."""
@@ -46,16 +47,10 @@ class RunSession(Protocol):
         """Inside, the reader's language is spoken, in the units of the file that is open."""
 
 
-def begun(session: RunSession, message: Message) -> Reply:
-    """The reply that says that a run has begun."""
-    with session.telling():
-        return Reply({"type": "busy", "seq": message.seq, "what": say("running the machine")})
-
-
 def answered(session: RunSession, message: Message) -> Iterator[Reply]:
     """Run a session's machine at once, and show what came of it."""
     base = session.current()
-    yield begun(session, message)
+    yield busy(message, session.language)
     yield computed(session, base, message)
 
 

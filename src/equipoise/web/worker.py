@@ -24,7 +24,7 @@ from equipoise.web.design import Design
 from equipoise.web.desk import PageBackend
 from equipoise.web.edits import Computed, solved
 from equipoise.web.messages import SLOW, Message, makes_way, read
-from equipoise.web.replies import Reply, completed, packed, refused, unexpected
+from equipoise.web.replies import BUSY, Reply, busy, completed, packed, refused, unexpected
 from equipoise.web.session import Session
 from equipoise.web.state_changes import StateChanges
 
@@ -192,14 +192,8 @@ class Foreground:
             self._replies = iter([refused(None, message)])
         elif message.kind in SLOW and self._is_for_background(message):
             session = self.desk.session
-            if message.kind == "balance":
-                from equipoise.web import balanced
-
-                self._replies = iter([balanced.begun(session, message)])
-            elif message.kind == "run":
-                from equipoise.web import runs
-
-                self._replies = iter([runs.begun(session, message)])
+            if message.kind in BUSY:
+                self._replies = iter([busy(message, session.language)])
             current = session.current() if message.kind in OF_MACHINE else None
             self._begin(message, current, None, sweep=False)
         else:

@@ -115,6 +115,11 @@ from equipoise.web.worker import Foreground
 page = Foreground()
 page.take(json.dumps({"type": "open", "seq": 1, "example": "yamashita-1"}))
 assert page.step() is not None
+for kind in sys.argv[1:]:
+    while page.step() is not None:
+        pass
+    page.take(json.dumps({"type": kind, "seq": 2}))
+    assert b'"busy"' in page.step()
 print(*{name.split(".")[1] for name in sys.modules if name.startswith("equipoise.")})
 """
 LATER = {"handheld", "studies", "codegen", "planting", "exposure", "vibration", "present"}
@@ -127,6 +132,13 @@ def test_a_first_machine_moves_before_other_rooms_are_imported() -> None:
     """Importing them takes a second in a browser, where everything is compiled at each start."""
     done = subprocess.run([sys.executable, "-c", FIRST], capture_output=True, text=True, check=True)
     assert not LATER & set(done.stdout.split())
+
+
+def test_that_something_long_has_begun_is_said_before_its_rooms_are_imported() -> None:
+    """The worker that answers drags imported all that balancing needs before it said so."""
+    command = [sys.executable, "-c", FIRST, "balance", "run"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert not {*LATER, "running"} & set(done.stdout.split())
 
 
 def test_a_session_knows_no_transport() -> None:
