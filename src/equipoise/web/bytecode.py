@@ -18,7 +18,6 @@ import sys
 import tempfile
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
-from importlib import import_module
 from pathlib import Path
 
 from equipoise.errors import UsageError
@@ -27,8 +26,6 @@ from equipoise.i18n import Note
 OWN = "equipoise"
 """The package whose docstrings are kept, as descriptions of tables are taken from them."""
 OPENED = '{"type": "open", "seq": 1, "example": "yamashita-1"}'
-AWAITED = "equipoise.web.balanced", "equipoise.web.runs"
-"""What is imported to show what came of balancing and of a run; no drag is answered meanwhile."""
 LONGEST = 300
 """s after which Node is given up: about twenty times as long as it takes."""
 PUBLISHED = {
@@ -135,8 +132,10 @@ def export_bytecode() -> bytes:
     page.take(OPENED)
     while page.step() is not None:
         pass
-    for name in AWAITED:
-        import_module(name)
+    # Imported once there is a result to show, and no drag is answered meanwhile.
+    from equipoise.web import balanced, runs
+
+    del balanced, runs
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_STORED) as archive:
         for place, source, name in _sources():
