@@ -60,8 +60,9 @@ def test_tables_of_an_example(name: str) -> None:
     text = succeeded(result)
     assert result.err == ""
     assert text.splitlines()[0] == eq.load(name).title
+    drive = "Drive, all rows together" if eq.load(name).rows else "Drive"
     for title in ("Natural frequencies", "Gauges", "Gauges by order", "Gauges by each model",
-                  "Mounts: force on the support", "Drive, all rows together"):  # fmt: skip
+                  "Mounts: force on the support", f"{drive}$"):  # fmt: skip
         assert re.search(f"^{title}", text, re.MULTILINE), title
     assert not re.search(r"\b(nan|inf|None)\b", text)
     assert all(cells(text, gauge) for gauge in GAUGES[name])

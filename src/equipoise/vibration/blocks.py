@@ -274,7 +274,8 @@ def _drive(response: Response) -> Iterator[Block]:
         figures = drive.speed.figures
         rows.append(_extremes(say("crank speed"), figures, ("angular speed", "rpm")))
     labels = ("", say("mean"), say("largest"), say("smallest"), say("peak to peak"))
-    yield Table.of(say("Drive, all rows together"), labels, rows)
+    title = say("Drive, all rows together") if response.machine.rows else say("Drive")
+    yield Table.of(title, labels, rows)
     if drive.speed is None:
         return
     share = f"{100 * drive.fluctuation:.3g}"
