@@ -122,8 +122,11 @@ def load_power(found: eq.mechanism.Forces) -> Array:
     """
     motion, rows = found.motion, [np.zeros(len(found.motion.crank_angle))]
     for link, point, force, torque in acting(found):
-        at = 0.0 if point is None else motion.points[point].velocity
-        rows.append(along(at, force) + torque * motion.links[link].angular_velocity)
+        turning, center = motion.links[link].angular_velocity, motion.mass_centers[link]
+        at: Any = 0.0
+        if point is not None:  # of the link there, of which it need not be a point
+            at = center.velocity + 1j * turning * (motion.points[point].place - center.place)
+        rows.append(along(at, force) + torque * turning)
     return np.array(rows)
 
 
@@ -156,6 +159,8 @@ def acting(found: eq.mechanism.Forces) -> Iterator[tuple[str, str | None, Array,
         if load.axes is not None:
             force = force * np.exp(1j * axes_angle(machine, load, partial(angle_of, motion)))
         yield load.link, load.point, force, torque
+        if load.reaction not in (None, FRAME):
+            yield load.reaction, load.point, -force, -torque
     if has_soil(machine):
         for link, point, _ in tips_of(machine):
             tip = motion.points[point]

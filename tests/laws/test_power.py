@@ -35,6 +35,7 @@ from laws.subjects import (
     spring_power,
     without_loads,
 )
+from support.loads import loads_by_end
 
 TOLERANCE = 1e-12
 RUNS = [(None, None), (-7.0, 0.0), (5.0, 60.0), (-3.0, -40.0), (0.0, 50.0)]
@@ -85,7 +86,7 @@ def load_resultant(found: eq.mechanism.Forces) -> tuple[Any, Any]:
     """Force and moment about the pole of all loads whose opposite the frame does not bear."""
     motion = found.motion
     total, turning = np.zeros(len(ANGLES), complex), np.zeros(len(ANGLES))
-    outer = chain((load.reaction is None for load in motion.machine.loads), repeat(True))
+    outer = chain((load.reaction is None for load in loads_by_end(motion.machine)), repeat(True))
     for _, point, force, torque in compress(acting(found), outer):
         arm = 0.0 if point is None else motion.points[point].place - found.about
         total, turning = total + force, turning + torque + along(1j * arm, force)

@@ -25,7 +25,7 @@ from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Gear, Machine
 from equipoise.mechanism.parts.racks import Rack
 from support.cams import line_of_force
-from support.loads import on_links, springs_on_links
+from support.loads import loads_by_end, on_links, springs_on_links
 from support.newton import rack_guide
 from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter, turned
 from support.rolling_reference import Rolling
@@ -476,8 +476,9 @@ def gathered(
         both[belt.name] = replace(pulled[-1], force=force)
     drives = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
-    loads = zip(machine.loads, on_links(machine, poses), strict=False)  # the soil comes behind
-    pulls += [pull_on_frame(*acting) for load, acting in loads if load.reaction]
+    # the soil comes behind
+    loads = zip(loads_by_end(machine), on_links(machine, poses), strict=False)
+    pulls += [pull_on_frame(*acting) for load, acting in loads if load.reaction == FRAME]
     pushing = [drive for drive in machine.driven if drive.stroke is not None]
     pulls += [reaction(cylinder(machine, one, poses), unknowns[one]) for one in pushing]
     torque = sum(drives[one.link] for one in machine.driven if one not in pushing)

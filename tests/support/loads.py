@@ -142,8 +142,16 @@ def soil_force(machine: Machine, place: Array, velocity: Array, speed: float) ->
     return -part[:, None] * over_ground
 
 
+def loads_by_end(machine: Machine) -> Iterator[Load]:
+    """Yield every load, once for each of its ends on a link."""
+    for load in machine.loads:
+        yield load
+        if load.reaction not in (None, FRAME):
+            yield load
+
+
 def on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array, Array]]:
-    """Yield link, point of attack, force and torque of every load."""
+    """Yield link, point of attack, force and torque of every load, on each link at its ends."""
     for load in machine.loads:
         force, torque = force_and_torque(load, poses.crank_angle)
         local = (0.0, 0.0)
@@ -155,7 +163,10 @@ def on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array
             force = np.stack(
                 [x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)], -1
             )
-        yield load.link, poses.place(load.link, local), force, torque
+        at = poses.place(load.link, local)
+        yield load.link, at, force, torque
+        if load.reaction not in (None, FRAME):
+            yield load.reaction, at, -force, -torque
     if has_soil(machine):
         for link, _, local in tips_of(machine):
             at, velocity = poses.place(link, local), poses.speed(link, local)

@@ -172,7 +172,7 @@ class Draft:
             what = rng.integers(0, 3)
             if what == 0:
                 force = _pair(rng.normal(size=2) * 100)
-                reaction: Literal["frame"] | None = "frame" if start is None else None
+                reaction = self._reaction(name, start)
                 yield Load(name, point, force, start=start, stop=stop, reaction=reaction,
                            axes=self._axes_of_load(name, point, force))  # fmt: skip
             elif what == 1:
@@ -184,6 +184,13 @@ class Draft:
                 # what holds has no mirror image that a table can tell
                 outside: Literal["zero", "wrap"] = "wrap" if len(table.crank_angle) % 2 else "zero"
                 yield Load(name, point, table=table, outside=outside)
+
+    def _reaction(self, link: str, start: float | None) -> str | None:
+        """The frame, another link or nothing, as the beginning tells, so that nothing is drawn."""
+        others = [name for name in self.links if name != link]
+        if start is None:
+            return "frame"
+        return [*others, None][int(1e3 * start) % (len(others) + 1)]
 
     def _axes_of_load(
         self, link: str, point: str, force: Vector

@@ -561,7 +561,9 @@ def _gas(chance: random.Random, document: Document) -> Files:
     load = {"link": slider["link"], "point": slider["point"], "axes": "slider", "bore": "40 mm",
             "gas": "gas.csv", "outside": chance.choice(["zero", "hold", "wrap"])}  # fmt: skip
     load |= chance.choice([{}, {"back_pressure": "1 bar"}, {"side": "behind"}])
-    document["loads"].append(load | chance.choice([{}, {"reaction": "frame"}]))
+    bearers = [{}, {"reaction": "frame"}]
+    bearers += [{"reaction": name} for name in document["links"] if name != load["link"]]
+    document["loads"].append(load | chance.choice(bearers))
     end = 360.0 * chance.choice((1, 2))
     return Files({"gas.csv": columns(chance, "crank_angle [deg],pressure [bar]", end, c1=12.0)})
 

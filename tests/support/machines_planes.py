@@ -16,7 +16,7 @@ from equipoise.mechanism.parts.bodies import Body, inertia_of
 from equipoise.mechanism.parts.links import Bearing, Link
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from support.free_bodies import FreeBodies, cylinder
-from support.loads import has_soil, on_links, springs_on_links, tips_of
+from support.loads import has_soil, loads_by_end, on_links, springs_on_links, tips_of
 from support.poses import Array, Poses
 
 
@@ -96,7 +96,7 @@ def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:
         asked[name] = asked[name] - shaken - carried
     loads = zip(_of_loads(machine), on_links(machine, poses), strict=True)
     springs = zip(_of_springs(machine), springs_on_links(machine, poses), strict=True)
-    outer = chain((load.reaction is None for load in machine.loads), repeat(True))
+    outer = chain((load.reaction is None for load in loads_by_end(machine)), repeat(True))
     for acting, wholes in ((loads, outer), (springs, repeat(False))):
         for (plane, (body, _, force, _)), whole in zip(acting, wholes, strict=False):
             moment = about_axes(plane, force)
@@ -150,7 +150,7 @@ def rocking_of(machine: Machine, poses: Poses, name: str) -> tuple[Array, Array]
 
 def _of_loads(machine: Machine) -> list[float]:
     """Planes of loads and of the soil."""
-    found = [point_plane(machine, load.link, load.point or "") for load in machine.loads]
+    found = [point_plane(machine, load.link, load.point or "") for load in loads_by_end(machine)]
     if has_soil(machine):
         found += [point_plane(machine, link, point) for link, point, _ in tips_of(machine)]
     return found

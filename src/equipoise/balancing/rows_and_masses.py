@@ -255,7 +255,7 @@ class JointPhaseMassOptimizer:
             start=start,
             close=LinearizationPoint(like),
             counts=problem.before,
-            known=rubbing and Effects(start, problem.parts, rubbing=rubbing),
+            known=None if rubbing is None else Effects(start, problem.parts, rubbing=rubbing),
         )
 
     def _offer(self, phases: Array, solution: Solution) -> float:

@@ -95,8 +95,10 @@ def solve_problem(
     """
     problem = _begun(problem)
     bent = problem.reads_gauges and problem.supports_more
-    solve = _with_its_friction if problem.rubs else _solve_once
-    solution = solve(problem, progress, above)
+    if problem.rubs:
+        solution = _with_its_friction(problem, progress, above)
+    else:
+        solution = _solve_once(problem, progress, above)
     if not bent and not problem.flips:
         return solution
     cost, limits_gauges = problem.cost_of(solution.machine), bool(_gauged(problem))

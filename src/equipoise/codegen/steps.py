@@ -76,8 +76,10 @@ HoldingWrench = tuple[str, Any, Any]
 """Link, and force and moment that hold something against it."""
 
 
-def trace_load(trace: Trace, number: int, load: Load) -> HoldingWrench:
-    """What holds the load of this number, from 1 on."""
+def trace_load(trace: Trace, number: int, load: Load) -> Iterator[HoldingWrench]:
+    """What holds the load of this number, from 1 on, at each of its ends on a link: first that on
+    the loaded one.
+    """
     parts = (
         trace.row(f"load {number} {key}", partial(_part_of_load, load, key))
         for key in ("x", "y", "torque")
@@ -93,7 +95,11 @@ def trace_load(trace: Trace, number: int, load: Load) -> HoldingWrench:
             return np.exp(1j * machine.loads[number - 1].axes_angle(machine.sliders))
 
         force = force * trace.slot(f"load {number} axes", turn, vector=True)
-    return holding_wrench(trace, load.link, load.point, force, torque)
+    yield holding_wrench(trace, load.link, load.point, force, torque)
+    if (other := load.reaction_link) is not None:
+        anchor = trace.body(other)[0]
+        at = anchor if load.point is None else trace.point(load.link, load.point)[0]
+        yield other, *kernels.load_demand(anchor, at, -force, -torque)
 
 
 def _part_of_load(load: Load, key: str, theta: Array) -> Array:
@@ -280,8 +286,8 @@ def trace_across(
     """Add ``Q(link)``, the sum of planes times forces that each link needs, and ``rocking
     moment`` and ``frame rocking moment`` of all of them.
 
-    loads, springs : the force that holds each, of force elements and then of preloads of couplings,
-        at each end on a link.  soil : as of `trace_soil`.
+    loads : the force that holds each on the loaded link.  springs : that of force elements and then
+        of preloads of couplings, at each end on a link.  soil : as of `trace_soil`.
     """
     machine, state = trace.machine, trace.state
     moving, needed = [], {}
@@ -310,6 +316,8 @@ def trace_across(
     state["frame rocking moment"] = _about((*of_links, *outer))
     for load, force in acting:
         needed[load.link].append(force)
+        if load.reaction_link is not None:
+            needed[load.reaction_link].append(-force)
     ends: list[tuple[str, str, str | None]]
     ends = [
         (body, body, dict(element.points).get(body))
@@ -494,7 +502,10 @@ def trace_demands(trace: Trace) -> None:
         raise MassError(missing)
     machine, state = trace.machine, trace.state
     moving, weights = trace_inertia(trace)
-    loads = [trace_load(trace, k, load) for k, load in enumerate(loads_of(trace.linkage), 1)]
+    every = enumerate(loads_of(trace.linkage), 1)
+    ends_of_loads = [[*trace_load(trace, k, load)] for k, load in every]
+    loads = [ends[0] for ends in ends_of_loads]
+    opposite = [wrench for ends in ends_of_loads for wrench in ends[1:]]
     springs = [
         wrench
         for table, number, _ in machine.force_elements
@@ -512,7 +523,9 @@ def trace_demands(trace: Trace) -> None:
     _on_frame(trace, "frame", [*moving, *weights, *outer])
     for link in trace.linkage.joints.bodies[1:]:
         parts = [
-            wrench for wrench in (*moving, *weights, *loads, *soil, *springs) if wrench[0] == link
+            wrench
+            for wrench in (*moving, *weights, *loads, *opposite, *soil, *springs)
+            if wrench[0] == link
         ]
         force, moment = demand_names(link)
         state[force] = sum(force for _, force, _ in parts)

@@ -41,8 +41,8 @@ SYSTEMS = {"linux": ("linux64", ".so"), "darwin": ("darwin64", ".dylib")}
 
 def export_bytes(job: Job) -> bytes:
     """The file's content."""
-    machine = replace(job.machine, loads=tuple(load for _, load in constant_loads(job)),
-                      planting=None, balance=None)  # fmt: skip
+    loads = tuple(load for _, load in constant_loads(job, between=True))
+    machine = replace(job.machine, loads=loads, planting=None, balance=None)
     if machine.support:
         job.leave_out(Note("the support"))
     if machine.rows[1:]:

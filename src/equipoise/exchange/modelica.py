@@ -241,12 +241,15 @@ def _forces(model: Flat, job: Job) -> None:
     _bushings(model, job)
     _stops(model)
     _resistances(model)
-    for _, load in constant_loads(job):
+    for _, load in constant_loads(job, between=True):
+        other = load.reaction or FRAME
         if load.force is not None and load.point is not None:
-            fx, fy = _force(model, load)
-            model.push(load.link, load.point, (fx, fy), "+")
+            force = _force(model, load)
+            model.push(load.link, load.point, force, "+")
+            model.push_back(other, model.place(load.link, load.point), force)
         if load.torque is not None:
             model.turn(load.link, _in_brackets(load.torque))
+            model.turn(other, _in_brackets(-load.torque))
 
 
 def _force(model: Flat, load: Load) -> tuple[str, str]:

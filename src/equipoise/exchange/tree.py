@@ -227,14 +227,22 @@ def preloads(machine: Machine) -> Mapping[str, float]:
     return modes(machine, "moment").preloads
 
 
-def constant_loads(job: Job) -> Iterator[tuple[int, Load]]:
-    """Loads that are always the same, by number; others, and soil, are told to be left out."""
+def constant_loads(job: Job, *, between: bool = False) -> Iterator[tuple[int, Load]]:
+    """Loads that are always the same, by number; others, and soil, are told to be left out.
+
+    between : whether the format can hold those whose opposite another link bears.
+    """
     job.leave_out_soil()
     for number, load in enumerate(job.machine.loads, 1):
         if not load.constant:
             job.leave_out(Note("load {number}, which is not constant", number=number))
             continue
-        if load.reaction is not None and job.machine.support is not None:
+        if load.reaction_link is not None and not between:
+            note = Note("load {number}, whose opposite {link!r} bears", number=number,
+                        link=load.reaction_link)  # fmt: skip
+            job.leave_out(note)
+            continue
+        if load.reaction == FRAME and job.machine.support is not None:
             job.leave_out(Note("the reaction of load {number} on the frame", number=number))
         yield number, load
 

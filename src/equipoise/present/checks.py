@@ -306,7 +306,10 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
             if load.start is None:
                 ends = (table.crank_angle[0], table.crank_angle[-1])
                 beyond = "" if table.covers else load.outside or ""
-        what = listed(what, say("borne by the frame")) if load.reaction else what
+        if load.reaction_link is not None:
+            what = listed(what, say("borne by {link}", link=load.reaction_link))
+        elif load.reaction is not None:
+            what = listed(what, say("borne by the frame"))
         shown = [Value(end, after=1) for end in ends if end is not None]
         where: tuple[Cell, ...] = (*shown, beyond) if shown else (say("always"), None, None)
         yield place, what, *where, Value(work.largest, dimension=kind), Value(work.net, work.both)

@@ -27,8 +27,8 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
 from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.dynamics.applied_loads import (
-    inner_demands,
     load_demands,
+    loads_between,
     outer_loads,
     spring_demands,
 )
@@ -150,7 +150,7 @@ def _bodies(motion: Motion, shift: complex) -> Iterator[tuple[Any, ...]]:
 def _loads(motion: Motion, shift: complex) -> tuple[Array, Array, Array]:
     """Force and moment on the support, and torque on the crank, of loads from outside.
 
-    Springs and loads between links and support turn the crank only: what they do to both cancels.
+    Springs and loads between bodies turn the crank only: what they do to both cancels.
     """
     about = np.zeros(len(motion.crank_angle))
     total = about + 0j
@@ -159,7 +159,8 @@ def _loads(motion: Motion, shift: complex) -> tuple[Array, Array, Array]:
         anchor = motion.state[p(motion.linkage.anchors[link])[0]]
         total = total - force
         about = about - moment - cross(anchor + shift, force)
-    every = (loads, inner_demands(motion), spring_demands(motion, rated=False))
+    between = demands_of(motion, loads_between(motion))
+    every = (loads, between, spring_demands(motion, rated=False))
     turning = sum(generalized_force(motion, demands) for demands in every)
     return total, about, np.asarray(turning + _rubbed(motion))
 

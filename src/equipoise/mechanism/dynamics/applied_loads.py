@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import chain
 from math import degrees
 from typing import Any
@@ -19,7 +19,7 @@ from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.field import Soil
-from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.machine import FRAME, Load
 from equipoise.mechanism.parts.ramps import table_value
 from equipoise.mechanism.parts.resistances import TINY
 from equipoise.mechanism.parts.springs import MEETING as SPRING_MEETING
@@ -86,13 +86,20 @@ def acting_preloads(motion: Motion) -> Iterator[tuple[str, list[Acting]]]:
 
 def inner_demands(motion: Motion) -> dict[str, Demand]:
     """What holds those of the loads whose opposite the frame bears."""
-    return demands_of(motion, _acting(motion, "frame"))
+    return demands_of(motion, _acting(motion, lambda load: load.reaction == FRAME))
+
+
+def loads_between(motion: Motion) -> Iterator[Acting]:
+    """Link, point, force and torque of those of the loads whose opposite a body of the machine
+    bears, at each end on a link.
+    """
+    return _acting(motion, lambda load: load.reaction is not None)
 
 
 def acting_loads(motion: Motion) -> Iterator[Acting]:
-    """Link, point, force and torque of each load."""
-    yield from _acting(motion, "frame")
-    yield from outer_loads(motion)
+    """Link, point, force and torque of each load, at each of its ends on a link."""
+    yield from given_loads(motion)
+    yield from soil_loads(motion)
 
 
 def outer_loads(motion: Motion) -> Iterator[Acting]:
@@ -103,15 +110,14 @@ def outer_loads(motion: Motion) -> Iterator[Acting]:
 
 def loads_from_outside(motion: Motion) -> Iterator[Acting]:
     """Link, point, force and torque of each load of the file whose opposite no part bears."""
-    yield from _acting(motion, None)
+    return _acting(motion, lambda load: load.reaction is None)
 
 
 def given_loads(motion: Motion) -> Iterator[Acting]:
-    """Link, point, force and torque of each load of the file, which depend on the crank angle
-    alone, be it by the angle of a link.
+    """Link, point, force and torque of each load of the file, at each of its ends on a link; they
+    depend on the crank angle alone, be it by the angle of a link.
     """
-    yield from _acting(motion, "frame")
-    yield from loads_from_outside(motion)
+    return _acting(motion, lambda load: True)
 
 
 def soil_loads(motion: Motion) -> Iterator[Acting]:
@@ -122,9 +128,12 @@ def soil_loads(motion: Motion) -> Iterator[Acting]:
             yield tip_link(machine, arm.tip), arm.tip, soil_force(motion, arm.tip), 0.0
 
 
-def _acting(motion: Motion, reaction: str | None) -> Iterator[Acting]:
-    for load in (item for item in loads_of(motion.linkage) if item.reaction == reaction):
-        yield load.link, load.point, *acting_load(motion, load)
+def _acting(motion: Motion, counts: Callable[[Load], bool]) -> Iterator[Acting]:
+    for load in filter(counts, loads_of(motion.linkage)):
+        force, torque = acting_load(motion, load)
+        yield load.link, load.point, force, torque
+        if load.reaction_link is not None:  # in the same line, so at the same place
+            yield load.reaction_link, load.point, -force, -torque
 
 
 def soil_force(motion: Motion, tip: str | None = None) -> Array:

@@ -33,6 +33,7 @@ from equipoise.mechanism.dynamics.out_of_plane import (
     OutOfPlaneMoments,
     apart,
     exerted_in,
+    loads_across,
     masses_across,
     pushes_across,
     springs_across,
@@ -219,7 +220,7 @@ class Forces(ForceReadings, Displayed):
     def across(self) -> OutOfPlaneMoments:
         """What links beside each other do across the plane."""
         motion = self.motion
-        loads = pushes_across(motion, applied_loads.acting_loads(motion))
+        loads = loads_across(motion)
         springs = springs_across(motion)
         outer = pushes_across(motion, applied_loads.outer_loads(motion))
         return OutOfPlaneMoments(

@@ -76,6 +76,7 @@ def work_in_cycle(machine: Machine, load: Load) -> LoadWork:
     Gauss's quadrature between its rows, its ends and the angles of a grid, so that what sets in or
     ends suddenly is no trouble; from the motion alone, without masses.  What the mean of a load
     does is known: a force nothing, as its point comes back, a torque itself times the link's turns.
+    Where a link bears the opposite, its work is that of both.
 
     Raises
     ------
@@ -88,18 +89,38 @@ def work_in_cycle(machine: Machine, load: Load) -> LoadWork:
     theta = (edges[:-1] + half + half * nodes[:, None]).ravel()
     motion = move(machine, theta)
     force, torque = acting_load(motion, load)
-    turning = motion.links[load.link].angle_1
-    way = turning * 0j if load.point is None else motion.points[load.point].place_1
+    turning, way = _ways(motion, load)
     share = (half * weights[:, None]).ravel()
     parts = share * (torque * turning + kernels.dot(force, way))
     steady = share @ force / edges[-1], share @ torque / edges[-1]
+    if load.reaction_link is not None:  # past which its point does not come back in the frame
+        steady = 0j, steady[1]
     summed = np.sum(parts - share * (steady[1] * turning + kernels.dot(steady[0], way)))
     # just behind and just before each edge, where what is linear between them is largest
     ends = (load_at(load, at) for at in (edges, edges - 3 * ROUNDING))
     sizes = [np.hypot(abs(force), torque) for force, torque in ends]
-    whole = summed + steady[1] * 2 * pi * cycle.windings[load.link]
+    windings = cycle.windings[load.link]
+    if load.reaction_link is not None:
+        windings -= cycle.windings[load.reaction_link]
+    whole = summed + steady[1] * 2 * pi * windings
     net = float(whole) * (1 if machine.drive.speed >= 0 else -1)
     return LoadWork(net, float(np.sum(np.abs(parts))), float(np.max(sizes)))
+
+
+def _ways(motion: Motion, load: Load) -> tuple[Array, Array]:
+    """Turning and way of the loaded point, by the crank angle (N,): past the link that bears the
+    opposite of the load, if one does, so that work is that of both.
+    """
+    turning = motion.links[load.link].angle_1
+    point = None if load.point is None else motion.points[load.point]
+    way = turning * 0j if point is None else point.place_1
+    if load.reaction_link is None:
+        return turning, way
+    other, anchor = motion.links[load.reaction_link].angle_1, motion.linkage.anchors
+    if point is not None:
+        at = motion.points[anchor[load.reaction_link]]
+        way = way - at.place_1 - 1j * other * (point.place - at.place)
+    return turning - other, way
 
 
 def _edges(load: Load, turns: int) -> Array:

@@ -27,7 +27,8 @@ from equipoise.decompositions import pinv
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.checks import FRAME, NamedItems
-from equipoise.mechanism.dynamics.applied_loads import acting_elements, acting_preloads
+from equipoise.mechanism.dynamics.applied_loads import acting_elements, acting_preloads, outer_loads
+from equipoise.mechanism.dynamics.loads import acting_load
 from equipoise.mechanism.dynamics.reactions import (
     PUSH,
     Acting,
@@ -38,7 +39,9 @@ from equipoise.mechanism.dynamics.reactions import (
 )
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.cylinders import ends_of, pushes
+from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.force_elements import Load
 from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.links import Mechanism, masses_of, moments_across
 
@@ -253,6 +256,9 @@ def _flat(machine: Any, link: str, joints: Sequence[BodyContact]) -> bool:
     planes |= {
         body.plane_of(item.point) for item in machine.loads if item.link == link and item.point
     }
+    planes |= {
+        load_plane(machine, item) for item in machine.loads if item.reaction == link and item.point
+    }
     ends = (end for *_, element in machine.force_elements for end in element.points)
     planes |= {body.plane_of(point) for on, point in ends if on == link}
     planting = machine.planting
@@ -383,6 +389,24 @@ def pushes_across(motion: Motion, acting: Iterable[Acting]) -> dict[str, Any]:
     for link, point, force, _ in acting:
         values[link] = values.get(link, 0.0) - links[link].plane_of(point) * force
     return values
+
+
+def loads_across(motion: Motion) -> dict[str, Any]:
+    """What holds loads and the soil: both ends of a load between links in its own plane."""
+    values = pushes_across(motion, outer_loads(motion))
+    between = [load for load in loads_of(motion.linkage) if load.reaction is not None]
+    for load in between:
+        plane, (force, _) = load_plane(motion.machine, load), acting_load(motion, load)
+        values[load.link] = values.get(load.link, 0.0) - plane * force
+        if load.reaction_link is not None:
+            other = load.reaction_link
+            values[other] = values.get(other, 0.0) + plane * force
+    return values
+
+
+def load_plane(machine: Any, load: Load) -> float:
+    """Plane of the line of a load, m."""
+    return machine.links[load.link].plane_of(load.point)
 
 
 def springs_across(motion: Motion) -> dict[str, Any]:

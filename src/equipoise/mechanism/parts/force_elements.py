@@ -30,8 +30,10 @@ from equipoise.keys import (
 )
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import (
+    FRAME,
     Bodies,
     Vector,
+    unknown_body,
     unknown_link,
     unknown_point,
 )
@@ -147,7 +149,7 @@ class LoadGuide(Protocol):
 @declared
 class Load(Frozen):
     """A force at a point of a link, or a torque on a link: from outside the machine, or between the
-    link and the frame.
+    link and another body.
 
     Exactly one of force, torque, table, gas and indicator.  Without `start` and `stop` it acts
     always.
@@ -239,11 +241,11 @@ class Load(Frozen):
         "wherever its guide turns; those of the frame where left out",
         default=None,
     )
-    reaction: Literal["frame"] | None = key(
-        TextKind(("frame",)),
-        "what bears its opposite, in the same line: the frame, as of gas between a piston and the "
-        "cylinder's head, so that it does not shake the machine as a whole; nothing of the machine "
-        "where left out",
+    reaction: str | None = key(
+        TextKind(of="body"),
+        "what bears its opposite, in the same line: the frame, or another link, as of gas between "
+        "a piston and its cylinder, so that it does not shake the machine as a whole; nothing of "
+        "the machine where left out",
         default=None,
     )
 
@@ -257,6 +259,11 @@ class Load(Frozen):
         area = self.area * (-1 if self.side == "ahead" else 1)
         along = tuple(area * (pressure - self.back_pressure) for pressure in self.gas.pressure)
         return LoadTable(self.gas.crank_angle, (along, (0.0,) * len(along)), self.gas.file)
+
+    @property
+    def reaction_link(self) -> str | None:
+        """The link that bears its opposite, if one does."""
+        return None if self.reaction == FRAME else self.reaction
 
     @property
     def area(self) -> float | None:
@@ -434,6 +441,10 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
         return
     if load.point is not None:
         yield from unknown_point(f"{where}.point", load.point, load.link, bodies)
+    if load.reaction is not None:
+        yield from unknown_body(f"{where}.reaction", load.reaction, bodies)
+    if load.reaction == load.link:
+        yield ModelError(f"{where}.reaction", Note("{link!r} cannot push itself", link=load.link))
     if sum(getattr(load, name) is not None for name in KINDS) != 1:
         note = Note("give exactly one of force, torque, table, gas and indicator")
         yield ModelError(where, note)
