@@ -4,7 +4,7 @@ import { menuOf } from "./actions";
 import { Bench } from "./bench";
 import { Charts } from "./charts";
 import { type Asking, ContextMenu, type Menu } from "./context_menu";
-import { Conversation, type Events } from "./conversation";
+import { type Computation, Conversation, type Events } from "./conversation";
 import { cureOf } from "./cure";
 import { h, set, write } from "./dom";
 import { dropZone, handOut, picker, save, tooLarge } from "./files";
@@ -22,7 +22,7 @@ import type { Asked, FileKind, Hello, Numbers, Planted, RunMessage, State, Strok
 import { BalancePanel, FigureTable, headline, Readings } from "./readings";
 import { Board } from "./board";
 import { Border } from "./border";
-import { Running } from "./running";
+import { RunPanel } from "./run_panel";
 import { Seeing } from "./seeing";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
@@ -52,7 +52,7 @@ export class App {
   private readonly board: Board;
   private readonly bench: Bench;
   private readonly charts: Charts;
-  private readonly running: Running;
+  private readonly runPanel: RunPanel;
   private readonly seeing: Seeing;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
@@ -137,7 +137,7 @@ export class App {
         this.tour.did("balanced", headline(message));
       },
       ran: (message, numbers) => this.ran(message, numbers),
-      busy: (what) => this.busy(what),
+      busy: (computed) => this.busy(computed),
       tables: (message) => this.bench.show(message),
       file: save,
       pictured: (one, numbers) => (one ? this.gallery.add(one, numbers) : this.gallery.done()),
@@ -164,7 +164,7 @@ export class App {
     el.append(this.root);
     this.theme = new Theme(this.root, () => {
       this.charts.repaint();
-      this.running.repaint();
+      this.runPanel.repaint();
       this.views.repaint();
     });
     this.views = new Views(this.talk, this.theme, (asked) => this.command(asked));
@@ -213,11 +213,14 @@ export class App {
       (names) => this.command({ type: "outputs", names }),
       (asked) => this.command(asked),
     );
-    this.running = new Running(
+    this.runPanel = new RunPanel(
       this.theme,
-      () => (this.player.time === null ? this.play() : this.leave()),
-      () => this.unrun(),
-      (time) => this.instant(time),
+      () => (this.player.time === null ? this.play() : this.showCycle()),
+      () => {
+        this.closeRun();
+        this.toolbar.focusRun();
+      },
+      (time) => this.goToTime(time),
     );
     this.inspector = new Inspector(this.talk, (on) => this.hold(on), locks);
     this.balance = new BalancePanel(
@@ -260,7 +263,7 @@ export class App {
     this.frames.close();
     this.views.close();
     this.charts.close();
-    this.running.clear();
+    this.runPanel.clear();
     this.bench.close();
     this.talk.close();
     this.keeping.close();
@@ -279,12 +282,12 @@ export class App {
     const empty = say(
       "Forces, torque and paths appear here as soon as the machine moves. The line above the drawing says what is missing.",
     );
-    this.side.append(h("p", { class: "quiet empty" }, empty), this.running.charts, this.charts.root);
+    this.side.append(h("p", { class: "quiet empty" }, empty), this.runPanel.charts, this.charts.root);
     // A file that plays shows numbers, and takes none.
     const disabled = this.played;
     const parts = [...this.bench.roots, this.inspector.root];
     const held = disabled ? h("fieldset", { class: "bare", disabled }, ...parts) : h("div", {}, ...parts);
-    this.aside.append(this.running.root, this.balance.root, held);
+    this.aside.append(this.runPanel.root, this.balance.root, held);
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
     const border = new Border(this.views.body, () => this.measure());
     this.views.body.append(stage, border.root, this.side, this.aside);
@@ -312,6 +315,10 @@ export class App {
   private offered({ target, at: [x, y], keys }: Asking): Menu | null {
     const { svg } = this.stage;
     if (!svg.contains(target)) return null;
+    if (this.acyclic) {
+      this.showCycle();
+      this.pose(); // the menu is of what is there in the cycle
+    }
     const box = svg.getBoundingClientRect();
     const hit = keys ? this.tools.focused(target) : this.tools.at([x - box.left, y - box.top]);
     const { parts } = this.bench;
@@ -391,7 +398,7 @@ export class App {
     this.views.machine();
     measure(state.length);
     this.player.take(state);
-    if (state.design !== this.running.design) this.unrun();
+    if (state.design !== this.runPanel.design) this.closeRun();
     if (other) {
       this.player.angle = 0;
       this.side.scrollTop = this.aside.scrollTop = 0;
@@ -447,7 +454,7 @@ export class App {
       this.heading.show(state);
     }
     this.seeing.show(state, other);
-    this.stage.show(this.player.time === null ? state : this.running.poses(state), other);
+    this.stage.show(this.player.time === null ? state : this.runPanel.poses(state), other);
     this.transport.take();
     this.charts.show(state, other);
     this.point();
@@ -485,25 +492,24 @@ export class App {
   private point(): void {
     if (!this.state) return;
     this.turned = false;
-    const { player, running } = this;
     const { angles, turns } = this.state;
     const k = this.pose();
     this.transport.point();
     this.transport.state();
-    if (player.time !== null && !running.cyclic) return;
+    if (this.acyclic) return;
     this.charts.point(k, (k / angles) * 360 * turns);
   }
 
   /** Draw the pose of the moment; gives the sample of the cycle. */
   private pose(): number {
-    const { player, running, stage, state } = this;
+    const { player, runPanel, stage, state } = this;
     if (player.time === null) {
       const k = this.seeing.crank(player.sample);
       stage.pose(k);
       return k;
     }
-    const k = running.at(player.time, running.poses(state as State).angles);
-    if (running.cyclic) player.sample = k;
+    const k = runPanel.at(player.time, runPanel.poses(state as State).angles);
+    if (runPanel.cyclic) player.sample = k;
     stage.swing = null; // it runs on a fixed frame
     stage.pose(k);
     return k;
@@ -514,56 +520,61 @@ export class App {
     const { state } = this;
     if (!state || message.design !== state.design)
       return this.tell(say("the machine was changed while it ran; run it again"), true);
-    this.running.show(message, numbers, state);
-    this.board.say(this.running.verdict, false);
+    this.runPanel.show(message, numbers, state);
+    this.board.say(this.runPanel.verdict, false);
     this.measure();
     this.play();
   }
 
   /** Play the run from its start. */
   private play(): void {
-    this.player.run(this.running.span);
+    this.tools.rest();
+    this.player.run(this.runPanel.span);
     this.player.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.clocked();
+    this.switchClock();
   }
 
   /** Play the cycle, and not the run. */
-  private leave(): void {
+  private showCycle(): void {
     if (this.player.time === null) return;
     this.player.leave();
     this.player.playing = false;
-    this.clocked();
+    this.switchClock();
+  }
+
+  /** Whether the drawing shows a pose that is none of the cycle, and in which nothing can be changed. */
+  private get acyclic(): boolean {
+    return this.player.time !== null && !this.runPanel.cyclic;
   }
 
   /** Nothing is taken hold of in poses that are none of the cycle: the cycle is shown first. */
   private toCycle(event: PointerEvent | KeyboardEvent): void {
-    if (this.player.time === null || this.running.cyclic) return;
-    if (!this.stage.svg.contains(event.target as Node)) return;
-    if (event instanceof KeyboardEvent && !event.key.startsWith("Arrow")) return;
+    if (!this.acyclic || !(event.target as Element).closest(".grip")) return;
+    if (event instanceof KeyboardEvent ? !event.key.startsWith("Arrow") : event.button) return;
     event.preventDefault();
     event.stopPropagation();
-    this.leave();
+    this.showCycle();
   }
 
   /** The run or the cycle is played from now on. */
-  private clocked(): void {
-    const { player, running, state } = this;
+  private switchClock(): void {
+    const { player, runPanel, state } = this;
     const runs = player.time !== null;
     this.root.classList.toggle("running", runs);
-    running.playing(runs);
-    if (state) this.stage.show(runs ? running.poses(state) : state, false);
+    runPanel.playing(runs);
+    if (state) this.stage.show(runs ? runPanel.poses(state) : state, false);
     this.transport.take();
     this.stir();
   }
 
   /** Show no run any more. */
-  private unrun(): void {
-    if (this.running.design === null) return;
-    this.running.drop();
-    this.leave();
+  private closeRun(): void {
+    if (this.runPanel.design === null) return;
+    this.runPanel.drop();
+    this.showCycle();
   }
 
-  private instant(time: number): void {
+  private goToTime(time: number): void {
     if (this.player.time === null) this.play();
     this.player.time = time;
     this.crank();
@@ -581,12 +592,13 @@ export class App {
     const { clientWidth, clientHeight } = this.board.root;
     if (clientWidth && clientHeight) this.stage.resize(clientWidth, clientHeight);
     this.charts.resize(this.charts.root.clientWidth);
-    this.running.resize(this.charts.root.clientWidth);
+    this.runPanel.resize(this.charts.root.clientWidth);
     this.stir();
   }
 
-  private busy(what: string | null): void {
-    this.toolbar.busy(what, this.wire.cancel && (() => this.wire.cancel?.()));
+  private busy(computed: Computation[]): void {
+    this.toolbar.busy(computed, this.wire.cancel && (() => this.wire.cancel?.()));
+    const what = computed.at(-1)?.what;
     if (what) this.board.say(`${what.slice(0, 1).toUpperCase()}${what.slice(1)} …`, false);
     else this.board.clear(false);
   }
@@ -610,7 +622,7 @@ export class App {
   private line(up: boolean, other: boolean, waiting: number): void {
     this.lost.hidden = up;
     set(this.root, { "data-lost": !up });
-    this.unrun(); // numbers of designs begin anew
+    this.closeRun(); // numbers of designs begin anew
     if (waiting === 0) this.tools.anew(); // what was asked is not answered any more
     if (up) return write(this.lost, "");
     const why = other
@@ -691,7 +703,7 @@ export class App {
   private async film(): Promise<void> {
     const { state, player } = this;
     if (!state) return;
-    this.leave();
+    this.showCycle();
     const [angle, playing] = [player.angle, player.playing];
     player.playing = false;
     this.tell(say("Recording one cycle …"), false);
@@ -739,7 +751,7 @@ export class App {
     this.seeing.hold(on);
     this.charts.hold(on);
     if (on) {
-      this.leave();
+      this.showCycle();
       this.resumes = this.player.playing;
       this.player.playing = false;
     } else if (this.resumes) {
@@ -770,7 +782,7 @@ export class App {
   }
 
   private turn(degrees: number): void {
-    this.leave();
+    this.showCycle();
     this.player.angle = degrees;
     this.crank();
   }

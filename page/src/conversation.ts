@@ -7,6 +7,12 @@ import type { GhostMessage, RunMessage, Stores, StudyMessage, ToolMessage, Varia
 import { OPENS, type Shelf, type Shown, Story, type Told as Kept } from "./story";
 import { language, say } from "./words";
 
+/** What takes long: the kind of its question, and what is done, in words. */
+export interface Computation {
+  kind: Asked["type"];
+  what: string;
+}
+
 export interface Events {
   hello(message: Extract<Told, { type: "hello" }>): void;
   state(state: State): void;
@@ -23,7 +29,8 @@ export interface Events {
   refused(message: string, edit: number | null, told: Refused | null): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   ran(message: RunMessage, numbers: Numbers): void;
-  busy(what: string | null): void;
+  /** What takes long is computed now, in the order in which it began. */
+  busy(computed: Computation[]): void;
   tables(message: Tables): void;
   saved(name: string): void;
   pictured(message: Pictured | null, numbers: Numbers): void;
@@ -78,6 +85,8 @@ export class Conversation {
   private readonly queue: Question[] = [];
   private waiting: Question | null = null;
   private readonly aside = new Map<number, Question>();
+  /** What the server computes, by the numbers of the questions. */
+  private readonly computed = new Map<number, Computation>();
   private readonly story: Story;
   /** The last question of which all is told. */
   private whole = 0;
@@ -212,7 +221,7 @@ export class Conversation {
         this.end(told.seq, null); // which takes away that it runs
         return this.events.ran(told, new Numbers(told.arrays, buffers[0]));
       case "busy":
-        return this.events.busy(told.what);
+        return this.begun(told.seq, told.what);
       case "file":
         this.file(told, buffers[0]);
         return this.end(told.seq, null);
@@ -224,6 +233,17 @@ export class Conversation {
         return this.line(told.type === "back");
     }
   };
+
+  private begun(seq: number, what: string): void {
+    const kind = this.question(seq)?.asked.type;
+    if (!kind) return; // nobody waits for it any more
+    this.computed.set(seq, { kind, what });
+    this.events.busy([...this.computed.values()]);
+  }
+
+  private question(seq: number): Question | undefined {
+    return this.flight?.seq === seq ? this.flight : this.aside.get(seq);
+  }
 
   private file(told: HandedOut, bytes: DataView | undefined): void {
     const got = this.aside.get(told.seq)?.got ?? this.flight?.got;
@@ -242,10 +262,11 @@ export class Conversation {
   }
 
   private end(seq: number, refusal: string | null, told: Refused | null = null): void {
-    const question = this.flight?.seq === seq ? this.flight : this.aside.get(seq);
+    const question = this.question(seq);
     if (!question) return;
     if (question === this.flight) this.land();
-    else if (this.aside.delete(seq)) this.events.busy(null);
+    else this.aside.delete(seq);
+    if (this.computed.delete(seq)) this.events.busy([...this.computed.values()]);
     // Without what a story began with, nothing of it can be done.
     if (this.repeated(seq) && refusal !== null && OPENS.has(question.asked.type)) {
       this.queue.splice(0, this.repeats - seq);
@@ -274,7 +295,7 @@ export class Conversation {
   /** A question was answered by what is open now. */
   private heard(state: Shown): void {
     const { seq } = state;
-    const asked = (this.flight?.seq === seq ? this.flight : this.aside.get(seq))?.asked;
+    const asked = this.question(seq)?.asked;
     if (asked && !this.repeated(seq) && !isMove(asked) && !IDLE.has(asked.type))
       this.story.remember(asked, state);
     this.story.heard(state);
@@ -329,7 +350,8 @@ export class Conversation {
     const asked = [...(this.flight ? [this.flight] : []), ...this.queue, ...this.aside.values()];
     this.land();
     this.waiting = null;
-    if (this.aside.size) this.events.busy(null);
+    if (this.computed.size) this.events.busy([]);
+    this.computed.clear();
     this.aside.clear();
     this.queue.length = 0;
     for (const question of asked.filter(({ seq }) => !this.repeated(seq))) {

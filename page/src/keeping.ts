@@ -5,7 +5,7 @@ import { h } from "./dom";
 import type { Asked, Hello } from "./protocol";
 import { question } from "./question";
 import { fragment, LONGEST, read, type Shared } from "./share";
-import { stepsOf, type Told } from "./story";
+import { stepCount, type Told } from "./story";
 import type { Opened } from "./toolbar";
 import { say } from "./words";
 
@@ -161,7 +161,7 @@ export class Keeping {
   }
 
   private show(told: Told, base: string): void {
-    const count = stepsOf(told);
+    const count = stepCount(told);
     this.offer.replaceChildren(
       say("{name} was changed here before, in {count} steps.", { name: told.name, count }),
       " ",

@@ -604,12 +604,13 @@ export interface TextBlock {
   kind: "text";
   text: string;
   /** Whether it stands out, as of a limit that is broken. */
-  broken: boolean;
+  emphasized: boolean;
 }
 
 /** Sentences of a kind. */
 export interface FactsBlock {
   kind: "facts";
+  /** Empty where there is none. */
   title: string;
   items: string[];
 }
@@ -622,6 +623,8 @@ export interface TableBlock {
   rows: string[][];
   /** Whether each column is set to the right. */
   numbers: boolean[];
+  /** Row and column of each cell that stands out. */
+  emphasized: [number, number][];
 }
 
 /** How the machine runs, and what came of it. */
@@ -634,7 +637,7 @@ export interface RunMessage {
   charts: ChartData[];
   /** Poses that come along; 0 where those of the cycle are played. */
   frames: number;
-  /** `run.time`, and `run.part`, the place in all poses; poses, and values of charts. */
+  /** `run.time`, and `run.cycles`, the crank angle in cycles; poses; curves. */
   arrays: Arrays;
 }
 

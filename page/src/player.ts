@@ -10,7 +10,7 @@ const SLOW = 2.4;
 /** A run is played for at least this long, s. */
 const LONG = 6;
 /** Steps of the slider over a run. */
-const OF_A_RUN = 1001;
+const STEPS_OF_RUN = 1000;
 
 export class Player {
   playing = false;
@@ -57,18 +57,18 @@ export class Player {
     if (this.playing && this.time !== null && this.time >= this.span) this.time = 0;
   }
 
-  /** Where what is played is, in steps of so many. */
+  /** How many places the slider has. */
   get steps(): number {
-    return this.time === null ? this.count : OF_A_RUN;
+    return this.time === null ? this.count : STEPS_OF_RUN + 1;
   }
 
   get step(): number {
-    return this.time === null ? this.sample : Math.round((this.time / (this.span || 1)) * (OF_A_RUN - 1));
+    return this.time === null ? this.sample : Math.round((this.time / (this.span || 1)) * STEPS_OF_RUN);
   }
 
   set step(k: number) {
     if (this.time === null) this.sample = k;
-    else this.time = (Math.min(Math.max(k, 0), OF_A_RUN - 1) / (OF_A_RUN - 1)) * this.span;
+    else this.time = (Math.min(Math.max(k, 0), STEPS_OF_RUN) / STEPS_OF_RUN) * this.span;
   }
 
   get sample(): number {

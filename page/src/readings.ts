@@ -155,7 +155,7 @@ export function capital(text: string): string {
 /** What balancing found: before and after, what was changed, and whether it is proven. */
 export class BalancePanel {
   readonly root = h("section", {
-    class: "balance",
+    class: "panel balance",
     "aria-label": say("Balancing"),
     hidden: true,
     tabindex: -1,

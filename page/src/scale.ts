@@ -36,7 +36,7 @@ export function extremes(every: Iterable<ArrayLike<number>>): Pair {
 }
 
 /** Place of the last of rising values that is not beyond another; 0 where all are. */
-export function before(values: ArrayLike<number>, value: number): number {
+export function indexAtOrBelow(values: ArrayLike<number>, value: number): number {
   let [low, high] = [0, values.length];
   while (high - low > 1) {
     const middle = (low + high) >> 1;

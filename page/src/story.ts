@@ -82,7 +82,7 @@ export class Story {
   /** Stories of closed tabs that began with what the server has open. */
   async offered(base: string): Promise<Told[]> {
     const left = (await this.shelf?.left()) ?? [];
-    return left.filter((one) => stepsOf(one) && fits(one, base));
+    return left.filter((one) => stepCount(one) && fits(one, base));
   }
 
   /** Whether a server which has that open can be told it. */
@@ -150,7 +150,7 @@ export class Story {
 }
 
 /** How many steps there are, with those that wait. */
-export function stepsOf({ past, lost = [] }: Told): number {
+export function stepCount({ past, lost = [] }: Told): number {
   return past.length + lost.length;
 }
 

@@ -3,7 +3,7 @@
 import uPlot from "uplot";
 import { h, set, write } from "./dom";
 import { multiples, plain, shown, steady } from "./format";
-import { before, extremes, levels, marked, type Scale, scaleOf, share, spacing } from "./scale";
+import { extremes, indexAtOrBelow, levels, marked, type Scale, scaleOf, share, spacing } from "./scale";
 import type { Theme } from "./theme";
 import {
   BELOW,
@@ -110,7 +110,7 @@ export class Strip {
 
   /** Put the cursor at x, wherever that is between the samples, and write the values there. */
   play(x: number): void {
-    this.point(x, before(this.content.x, x));
+    this.point(x, indexAtOrBelow(this.content.x, x));
     this.read();
   }
 

@@ -1,5 +1,6 @@
 /** The bar at the top: what to look at, undo and redo, balancing, downloads, help. */
 
+import type { Computation } from "./conversation";
 import { h, icon, put, set } from "./dom";
 import type { Example, FileKind, State } from "./protocol";
 import { language as spoken, languages, say } from "./words";
@@ -47,8 +48,6 @@ export class Toolbar {
   private readonly balance: HTMLButtonElement;
   private readonly run: HTMLButtonElement;
   private readonly save: HTMLButtonElement;
-  /** Whether a run was asked for last, of what takes long. */
-  private runs = false;
   private readonly cancel = h("button", { type: "button", hidden: true }, say("Cancel"));
   private readonly own = h("option", { value: "" }, "");
   private readonly menu: HTMLDetailsElement;
@@ -64,10 +63,7 @@ export class Toolbar {
     this.redo = button("", "redo", () => commands.redo(), say("Redo"));
     this.balance = button(say("Balance"), "balance", () => commands.balance());
     set(this.balance, { "data-do": "balance" });
-    this.run = button(say("Run"), "run", () => {
-      this.runs = true;
-      commands.run();
-    });
+    this.run = button(say("Run"), "run", () => commands.run());
     set(this.run, { "data-do": "run" });
     this.save = button("", "disk", () => commands.save(), say("Save"));
     this.save.hidden = true;
@@ -132,13 +128,17 @@ export class Toolbar {
     this.examples.after(element);
   }
 
+  /** Let keys go on at the button that runs the machine. */
+  focusRun(): void {
+    this.run.focus({ preventScroll: true });
+  }
+
   /** What takes long is computed, and can be given up by `cancel`, if that is possible. */
-  busy(what: string | null, cancel?: () => void): void {
-    set(this.root, { "data-busy": what });
-    this.balance.classList.toggle("working", what !== null && !this.runs);
-    this.run.classList.toggle("working", what !== null && this.runs);
-    if (what === null) this.runs = false;
-    this.cancel.hidden = what === null || !cancel;
+  busy(computed: Computation[], cancel?: () => void): void {
+    set(this.root, { "data-busy": computed.at(-1)?.what ?? null });
+    for (const [kind, element] of [["balance", this.balance], ["run", this.run]] as const)
+      element.classList.toggle("working", computed.some((one) => one.kind === kind));
+    this.cancel.hidden = !computed.length || !cancel;
     this.cancel.onclick = () => cancel?.();
   }
 }

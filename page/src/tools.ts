@@ -94,6 +94,11 @@ export class Tools {
     this.draw(null);
   }
 
+  /** Take no tool any more: the drawing shows poses in which nothing can be made. */
+  rest(): void {
+    if (this.tool !== "select") this.take("select");
+  }
+
   /** Do something as soon as all that was asked before is there: joints may be among it. */
   private soon(act: () => void): void {
     if (this.unheard || this.later.length) this.later.push(act);

@@ -83,12 +83,13 @@ def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -
     wired.settled()
     cycle = page.get_by_role("slider", name="Crank angle", exact=True)
     cycle.fill("90")
-    wired.button("Run").click()
-    told = page.get_by_role("region", name="Run", exact=True)
+    again = page.get_by_role("button", name="Run", exact=True)
+    again.click()
+    told = page.get_by_role("region", name="Result of the run", exact=True)
     expect(told).to_contain_text(run.headline()[0].text, timeout=LONGEST * 1000)
     expect(told.get_by_role("table", name="Events")).to_contain_text("stands still")
     assert wired.findings() == []
-    charts = page.get_by_role("group", name="Run", exact=True)
+    charts = page.get_by_role("group", name="Run over time", exact=True)
     expect(charts.get_by_role("figure")).to_have_count(2)
     clock = page.get_by_role("slider", name="Time of the run", exact=True)
     expect(clock).to_have_attribute("aria-valuetext", "0.000 s after the start")
@@ -107,6 +108,12 @@ def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -
     expect(cycle).to_be_visible()
     told.get_by_role("button", name="Play the run").click()
     expect(clock).to_be_visible()
+    told.get_by_role("button", name="Close").click()
+    expect(told).to_be_hidden()
+    expect(cycle).to_be_visible()
+    expect(again).to_be_focused()
+    again.click()
+    expect(clock).to_be_visible(timeout=LONGEST * 1000)
     wired.type(wired.field("crank mass"), "9 kg")
     expect(told).to_be_hidden()
     expect(charts).to_be_hidden()
@@ -131,9 +138,44 @@ def test_drives_that_go_their_own_ways_are_drawn_and_not_dragged(wired: Live) ->
     end = 1000 * complex(*own.links["left-crank"].points["B"]) * np.exp(1j * turned)
     told = f"{end.real:.2f}".rstrip("0")
     expect(joint).to_have_attribute("aria-valuetext", re.compile(re.escape(told)))
+    # Who moves the sheet takes hold of nothing.
+    box = page.get_by_role("group", name="Linkage", exact=True).bounding_box()
+    assert box is not None
+    corner = box["x"] + 8, box["y"] + box["height"] - 8
+    page.mouse.move(*corner)
+    page.mouse.down()
+    page.mouse.move(corner[0] + 30, corner[1] - 30, steps=4)
+    page.mouse.up()
+    expect(clock).to_be_visible()
     wired.drag(joint, (20, 20))
     expect(clock).to_be_hidden()
     wired.comes_to(joint, of_cycle, 0.01)
+    assert wired.machine() == own
+
+
+@pytest.mark.exhaustive
+@OVER_A_SOCKET
+def test_a_tool_makes_nothing_in_poses_of_a_run(wired: Live) -> None:
+    """A run that is played puts it away; a tool that is taken then shows the cycle first."""
+    page, own = wired.page, eq.load("two-motor-mixer")
+    example(page).select_option("two-motor-mixer")
+    wired.settled()
+    of_cycle = wired.place(wired.joint("B"))
+    point = page.get_by_role("button", name="Point", exact=True)
+    point.click()
+    expect(point).to_have_attribute("aria-pressed", "true")
+    wired.button("Run").click()
+    clock = page.get_by_role("slider", name="Time of the run", exact=True)
+    expect(clock).to_be_visible(timeout=LONGEST * 1000)
+    expect(point).to_have_attribute("aria-pressed", "false")
+    clock.fill("700")
+    box = page.get_by_role("group", name="Linkage", exact=True).bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    expect(clock).to_be_visible()
+    point.click()
+    expect(clock).to_be_hidden()
+    wired.comes_to(wired.joint("B"), of_cycle, 0.01)
     assert wired.machine() == own
 
 

@@ -296,6 +296,22 @@ def sign_of(unit: str) -> str:
     return printed(Display(unit, 1.0).name)
 
 
+def printed_grid(table: Table) -> Grid:
+    """A table as texts that are ready for print."""
+    text = grid(table)
+    heads = (Head(printed(head.label), sign_of(head.unit), sign_of(head.at)) for head in text.heads)
+    rows = (
+        tuple(replace(item, text=printed(item.text), at=printed(item.at)) for item in row)
+        for row in text.rows
+    )
+    return Grid(printed(text.title), tuple(heads), tuple(rows))
+
+
+def with_omitted(text: str, omitted: int) -> str:
+    """A text, and how many further ones are left out."""
+    return say("{what} (and {count} more)", what=text, count=omitted) if omitted else text
+
+
 def noted(note: Note | str) -> str:
     """A note in the language that is spoken; what that lacks, in its original wording."""
     if isinstance(note, Note) and note.is_translated:

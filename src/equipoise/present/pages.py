@@ -6,7 +6,7 @@ import re
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import field, replace
+from dataclasses import field
 from functools import cache
 from html import escape
 from importlib import resources
@@ -22,7 +22,7 @@ from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures.style import DIM, GRID, LOUD, POINTS, QUIET, STRETCH, STUBBLE
 from equipoise.i18n import Note, decimals, say, speaking, spoken
 from equipoise.i18n.languages import KNOWN
-from equipoise.present.cells import CellText, Grid, Head, grid, noted, printed, sign_of
+from equipoise.present.cells import CellText, noted, printed, printed_grid
 from equipoise.present.terminal import Looks
 from equipoise.quantities import Units, showing
 from equipoise.results.blocks import Block, Emphasis, ReportSection, SvgPicture, Table
@@ -276,17 +276,6 @@ def _environment() -> jinja2.Environment:
     environment.globals["stress"] = LIGHT["stress"]
     environment.filters |= {**FILTERS, "inlined": _inlined, "classes": _classes}
     return environment
-
-
-def printed_grid(table: Table) -> Grid:
-    """A table as texts that are ready for print."""
-    text = grid(table)
-    heads = (Head(printed(head.label), sign_of(head.unit), sign_of(head.at)) for head in text.heads)
-    rows = (
-        tuple(replace(item, text=printed(item.text), at=printed(item.at)) for item in row)
-        for row in text.rows
-    )
-    return Grid(printed(text.title), tuple(heads), tuple(rows))
 
 
 def _classes(cell: CellText) -> Markup:

@@ -17,7 +17,7 @@ from unicodedata import combining, east_asian_width
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import said, say, to_say
-from equipoise.present.cells import CellText, Grid, Head, bound, grid
+from equipoise.present.cells import CellText, Grid, Head, bound, grid, with_omitted
 from equipoise.results.blocks import (
     Block,
     Emphasis,
@@ -385,11 +385,6 @@ def coloured(stream: TextIO | None) -> bool:
     return known and os.environ.get("TERM") not in ("dumb", "unknown")
 
 
-def _with_omitted(text: str, omitted: int) -> str:
-    """What stands above a list or ends it, with how many items are left out."""
-    return say("{what} (and {count} more)", what=text, count=omitted) if omitted else text
-
-
 class _Printer:
     """Lines of blocks, one below the other.  begun : whether something stands above them."""
 
@@ -419,14 +414,14 @@ class _Printer:
         elif isinstance(block, Facts):
             if block.title:
                 self.space()
-                self.words(_with_omitted(block.title, block.omitted), "title")
+                self.words(with_omitted(block.title, block.omitted), "title")
             for item in block.items:
                 self.words(f"  {item}")
         elif isinstance(block, Notes):
             self.space()
             for place, note in enumerate(block.notes, 1):
                 omitted = block.omitted if place == len(block.notes) else 0
-                self.words(_with_omitted(f"note: {said(note)}", omitted))
+                self.words(with_omitted(f"note: {said(note)}", omitted))
             if not block.notes and block.omitted:
                 self.words(say("notes left out here: {count}", count=block.omitted))
         elif isinstance(block, FileText):

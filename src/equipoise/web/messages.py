@@ -199,10 +199,9 @@ class Message:
         """
         place, values = self.values.get("place"), self.values.get("values")
         name = self.values.get("name")
-        if not isinstance(place, str):
-            _wrong("entry: place", place, Note("the path of a table such as springs[1]"))
-        path = KeyPath.parse(place) if place else KeyPath(())  # which is the whole file
-        if len(path) > DEEPEST:
+        whole = KeyPath(())  # the file
+        path = (KeyPath.parse(place) if place else whole) if isinstance(place, str) else None
+        if path is None or len(path) > DEEPEST:
             _wrong("entry: place", place, Note("the path of a table such as springs[1]"))
         if values is not None and not (isinstance(values, dict) and _is_plain(values, DEEPEST)):
             _wrong("entry: values", values, Note("a table of values as in a file"))

@@ -604,14 +604,14 @@ class TextBlockValues(TypedDict):
 
     kind: Literal["text"]
     text: str
-    broken: Annotated[bool, "Whether it stands out, as of a limit that is broken."]
+    emphasized: Annotated[bool, "Whether it stands out, as of a limit that is broken."]
 
 
 class FactsBlockValues(TypedDict):
     """Sentences of a kind."""
 
     kind: Literal["facts"]
-    title: str
+    title: Annotated[str, "Empty where there is none."]
     items: list[str]
 
 
@@ -623,6 +623,7 @@ class TableBlockValues(TypedDict):
     heads: list[str]
     rows: list[list[str]]
     numbers: Annotated[list[bool], "Whether each column is set to the right."]
+    emphasized: Annotated[list[tuple[int, int]], "Row and column of each cell that stands out."]
 
 
 class RunMessage(TypedDict):
@@ -635,7 +636,8 @@ class RunMessage(TypedDict):
     charts: list[ChartDataValues]
     frames: Annotated[int, "Poses that come along; 0 where those of the cycle are played."]
     arrays: Annotated[
-        Arrays, "`run.time`, and `run.part`, the place in all poses; poses, and values of charts."
+        Arrays,
+        "`run.time`, and `run.cycles`, the crank angle in cycles; poses; curves.",
     ]
 
 

@@ -4,55 +4,85 @@ curves over the values of their x axis.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from equipoise.i18n import say
-from equipoise.present.cells import grid
-from equipoise.quantities import typeset
-from equipoise.results.blocks import Block, Facts, ReportSection, Table, Text
+import numpy as np
+
+from equipoise.present.cells import noted, printed, printed_grid, with_omitted
+from equipoise.results.blocks import Block, Facts, Notes, ReportSection, Table, Text
 from equipoise.results.charts import Axis, Chart, Panel
-from equipoise.web.block import FloatBlock, Values
+from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.figures import capital, chart
+
+MOST_POINTS = 20_000
+"""Values of a curve that are sent; no screen has more columns of pixels."""
 
 
 def block_messages(blocks: Iterable[Block | ReportSection]) -> Iterator[Values]:
-    """Texts, lists of sentences and tables; what is of another kind is left out."""
+    """Texts, lists of sentences and tables.
+
+    Raises
+    ------
+    TypeError : a block is of another kind, which no page shows.
+    """
     for block in blocks:
         if isinstance(block, Text):
-            yield {"kind": "text", "text": block.text, "broken": block.emphasis is not None}
+            yield _text(block.text, block.emphasis is not None)
         elif isinstance(block, Facts):
-            yield {"kind": "facts", "title": block.title, "items": list(block.items)}
+            title = with_omitted(printed(block.title), block.omitted)
+            yield {"kind": "facts", "title": title, "items": [*map(printed, block.items)]}
         elif isinstance(block, Table):
             yield _table(block)
+        elif isinstance(block, Notes):
+            for place, note in enumerate(block.notes, 1):
+                omitted = block.omitted if place == len(block.notes) else 0
+                yield _text(with_omitted(noted(note), omitted), False)
+        else:
+            raise TypeError(f"a block of the kind {block.kind} has no message")
+
+
+def _text(text: str, emphasized: bool) -> Values:
+    return {"kind": "text", "text": printed(text), "emphasized": emphasized}
 
 
 def _table(table: Table) -> Values:
     """A table; `numbers` says of each column whether it is set to the right."""
-    cells = grid(table)
-    rows = [
-        [typeset(cell.text) if cell.number else cell.text_with_note for cell in row]
-        for row in cells.rows
-    ]
-    heads = [_heading(head.label, head.unit) for head in cells.heads]
-    numbers = [not cells.is_words(place) for place in range(len(heads))]
-    return {"kind": "table", "title": table.title, "heads": heads, "rows": rows, "numbers": numbers}
-
-
-def _heading(label: str, unit: str) -> str:
-    """A heading, with its unit as print has it."""
-    return say("{quantity}, {unit}", quantity=label, unit=typeset(unit)) if unit else label
+    cells = printed_grid(table)
+    return {
+        "kind": "table",
+        "title": cells.title,
+        "heads": [head.heading for head in cells.heads],
+        "rows": [[cell.text_with_note for cell in row] for row in cells.rows],
+        "numbers": [not cells.is_words(place) for place in range(len(cells.heads))],
+        "emphasized": [
+            (number, place)
+            for number, row in enumerate(cells.rows)
+            for place, cell in enumerate(row)
+            if cell.emphasis
+        ],
+    }
 
 
 def panel_charts(charts: Iterable[Chart], block: FloatBlock) -> Iterator[Values]:
     """A chart for each panel with curves, which share the values of their x axis.
 
-    The place on the x axis is that of what is played.
+    The place on the x axis is that of what is played.  Of long curves not all values are sent.
     """
-    for item in charts:
-        for number, panel in enumerate(item.panels):
-            if panel.curves:
-                yield _panel_chart(f"{item.name}.{number}", panel, block)
+    panels = {
+        f"{item.name}.{number}": panel
+        for item in charts
+        for number, panel in enumerate(item.panels)
+        if panel.curves
+    }
+    shared: dict[int, tuple[Array, Array | slice]] = {}
+    for name, panel in panels.items():
+        x = panel.curves[0].x
+        if id(x) not in shared:
+            curves = [curve.y for one in panels.values() for curve in one.curves if curve.x is x]
+            kept = drawn_places(x, curves) if len(x) > MOST_POINTS else slice(None)
+            shared[id(x)] = (x if isinstance(kept, slice) else x[kept]), kept
+        yield _panel_chart(name, panel, shared[id(x)], block)
 
 
 def stacked_chart(item: Chart, labels: Iterable[str], chooser: str, block: FloatBlock) -> Values:
@@ -71,18 +101,41 @@ def stacked_chart(item: Chart, labels: Iterable[str], chooser: str, block: Float
     return chart(item.name, choices, x=over, chooser=chooser)
 
 
-def _panel_chart(name: str, panel: Panel, block: FloatBlock) -> Values:
-    block.add(f"{name}.x", panel.curves[0].x)
-    choice = _panel_choice(name, panel, capital(panel.y.label), block)
+def drawn_places(x: Array, curves: Sequence[Array]) -> Array:
+    """Places in curves (N,) over rising x (N,) that are drawn, rising and at most `MOST_POINTS`.
+
+    They are the ends, and the highest and the lowest value of each curve in equal steps of x, so
+    that a chart shows every extreme.
+    """
+    steps = max((MOST_POINTS - 2) // (2 * len(curves)), 1)
+    starts = np.unique(np.searchsorted(x, np.linspace(x[0], x[-1], steps, endpoint=False)))
+    ends = np.append(starts[1:], len(x))
+    step = np.repeat(np.arange(len(starts)), ends - starts)
+    kept = [np.array([0, len(x) - 1])]
+    for y in curves:
+        rising = np.lexsort((y, step))  # in each step, from its lowest value to its highest
+        kept += [rising[starts], rising[ends - 1]]
+    return np.unique(np.concatenate(kept))
+
+
+def _panel_chart(
+    name: str, panel: Panel, shared: tuple[Array, Array | slice], block: FloatBlock
+) -> Values:
+    """A chart; `shared` are the values of its x axis that are sent, and their places."""
+    x, kept = shared
+    block.add(f"{name}.x", x)
+    choice = _panel_choice(name, panel, capital(panel.y.label), block, kept)
     return chart(name, [choice], x={"array": f"{name}.x", "at": None, **_unit(panel.x)})
 
 
-def _panel_choice(name: str, panel: Panel, label: str, block: FloatBlock) -> Values:
-    """Curves of a panel, whose values go to the block."""
+def _panel_choice(
+    name: str, panel: Panel, label: str, block: FloatBlock, kept: Array | slice = slice(None)
+) -> Values:
+    """Curves of a panel, of which the values at the places `kept` go to the block."""
     curves = panel.curves
     arrays = [f"{name}.{number}" for number in range(len(curves))]
     for array, curve in zip(arrays, curves, strict=True):
-        block.add(array, curve.y)
+        block.add(array, curve.y[kept])
     return {
         "name": name,
         "label": label,

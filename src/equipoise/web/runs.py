@@ -25,9 +25,11 @@ if TYPE_CHECKING:
     from equipoise.running.run import Run
 
 FRAME_TURN = pi / 36
-"""rad that a drive turns from one pose of a run of several drives to the next, at most, as long as
+"""rad that the fastest of several drives turns from one pose to the next, on average, as long as
 there are not more than `MOST_FRAMES` of them."""
 MOST_FRAMES = 2000
+MOST_INSTANTS = 20_000
+"""Instants of a run of one crank whose angles are sent; between them a page interpolates."""
 CHANGED = Note("the machine was changed while it ran; run it again")
 
 
@@ -77,22 +79,26 @@ def computed(session: RunSession, base: Computed, message: Message) -> Reply:
 def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:
     """What a page shows of a run: blocks, charts, and the pose at each instant.
 
-    Arrays: ``run.time`` (M,), s, and ``run.part`` (M,), the place of each instant in the poses, as
-    a part of all of them, counted on through the turns.  With one crank these poses are those of
-    the cycle that the page has; with several drives they come along, ``frames`` of them.
+    Arrays: ``run.time`` (M,), s, and ``run.cycles`` (M,), the crank angle in cycles, which goes on
+    rising through all turns.  With several drives the whole run is one cycle, whose ``frames``
+    poses come along.
     """
     from equipoise.running.run import Run
 
     block, frames = FloatBlock(), 0
     if isinstance(run, Run):
-        time, part = run.time, run.crank_angle / (2 * pi * base.motion.turns)
+        time, angle = run.time, run.crank_angle
+        if len(time) > MOST_INSTANTS:
+            kept = np.linspace(0, len(time) - 1, MOST_INSTANTS).astype(int)
+            time, angle = time[kept], angle[kept]
+        cycles = angle / (2 * pi * base.motion.turns)
     else:
         places = _frames_of(run)
         moves_of(Scene.of(run.motion_at(places)), block)
         frames, time = len(places), run.time[places]
-        part = np.arange(frames) / frames
+        cycles = np.arange(frames) / frames
     block.add("run.time", time)
-    block.add("run.part", part)
+    block.add("run.cycles", cycles)
     content: Values = {
         "blocks": [*block_messages((*run.headline(), *run.blocks()))],
         "charts": [*panel_charts(run.charts().values(), block)],
@@ -103,7 +109,9 @@ def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:
 
 
 def _frames_of(run: DrivesRun) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    """Places of the instants at which a run of several drives is drawn, about equally spaced."""
+    """Places of the instants at which a run of several drives is drawn, equally spaced in time but
+    for the distance to the next instant that was computed.
+    """
     ways = [float(np.sum(np.abs(np.diff(drive.angle)))) for drive in run.drives.values()]
     count = int(min(MOST_FRAMES, max(2.0, np.ceil(max(ways) / FRAME_TURN))))
     wanted = np.linspace(run.time[0], run.time[-1], count)

@@ -42,7 +42,7 @@ from equipoise.web.incomplete import (
     state_of_sketch,
 )
 from equipoise.web.measured_records import MeasuredSignals
-from equipoise.web.messages import MOST_LANGUAGES, Message
+from equipoise.web.messages import MOST_LANGUAGES, SLOW, Message
 from equipoise.web.replies import Reply, refused
 from equipoise.web.sketch import Sketch
 from equipoise.web.sketch_edits import lost, sketch_after
@@ -101,7 +101,7 @@ class Session:
         except EquipoiseError as error:
             yield refused(message.seq, error, self.language)
         except Exception:  # a mistake of the program; what cannot be told must not stay
-            if message.kind not in ("balance", "run"):  # beside which other steps are made
+            if message.kind not in SLOW:  # beside which other steps are made
                 self.history, self.current_state, self.preview = good
             raise
 

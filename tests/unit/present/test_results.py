@@ -26,8 +26,8 @@ from equipoise.i18n import speaking
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.planting.summary import plant
 from equipoise.present import html_of, terminal
-from equipoise.present.cells import grid, printed
-from equipoise.present.pages import ReportDocument, page, pdf, printed_grid
+from equipoise.present.cells import grid, printed, printed_grid
+from equipoise.present.pages import ReportDocument, page, pdf
 from equipoise.present.terminal import plain
 from equipoise.present.tool_summary import tool_tiles
 from equipoise.quantities import showing

@@ -8,13 +8,18 @@ import shutil
 import subprocess
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError
-from equipoise.web import runs
+from equipoise.present.cells import printed
+from equipoise.results.blocks import Block, Column, Facts, FileText, Notes, Table, Text, Value
+from equipoise.results.charts import Axis, Chart, Curve, Panel
+from equipoise.web import result_blocks, runs
+from equipoise.web.block import FloatBlock
 from equipoise.web.messages import message_of
 from unit.web.pages import State, ask, edit, opened, refusal
 
@@ -35,7 +40,9 @@ def test_a_run_on_the_page_is_that_of_the_command() -> None:
     machine, (shown, told) = eq.load("cutter-bar"), run_of("cutter-bar")
     run = eq.run(machine)
     assert told.content["design"] == shown.content["design"]
-    assert [block["text"] for block in told.content["blocks"][:1]] == [run.headline()[0].text]  # type: ignore[union-attr]
+    headline = run.headline()[0]
+    assert isinstance(headline, Text)
+    assert told.content["blocks"][0]["text"] == printed(headline.text)
     tables = {one["title"]: one for one in told.content["blocks"] if one["kind"] == "table"}
     events = tables["Events"]
     assert [row[0] for row in events["rows"]] == ["motor switched off", "stands still"]
@@ -49,15 +56,18 @@ def test_a_run_on_the_page_is_that_of_the_command() -> None:
     assert told.array("speed.0.0") == pytest.approx(run.crank_speed, rel=1e-6, abs=1e-6)
     assert told.array("speed.1.0") == pytest.approx(run.drive_torque, rel=1e-6, abs=1e-6)
     assert told.array("run.time") == pytest.approx(run.time, rel=1e-6)
-    assert told.array("run.part") * 2 * pi == pytest.approx(run.crank_angle, rel=1e-6)
+    assert told.array("run.cycles") * 2 * pi == pytest.approx(run.crank_angle, rel=1e-6)
     assert told.content["frames"] == 0
+    # One array for all that is over time.
+    arrays = told.content["arrays"]
+    assert arrays["run.time"] == arrays["speed.0.x"] == arrays["speed.1.x"]
 
 
 def test_a_cycle_of_several_turns_is_one_part() -> None:
     shown, told = run_of("four-stroke-engine")
     run = eq.run(eq.load("four-stroke-engine"))
     assert shown.content["turns"] == 2
-    assert told.array("run.part")[-1] == pytest.approx(run.turned / 2, rel=1e-6)
+    assert told.array("run.cycles")[-1] == pytest.approx(run.turned / 2, rel=1e-6)
 
 
 def test_drives_that_go_their_own_ways_bring_their_poses() -> None:
@@ -66,7 +76,7 @@ def test_drives_that_go_their_own_ways_bring_their_poses() -> None:
     run = eq.run(machine)
     count, time = told.content["frames"], told.array("run.time")
     assert len(time) == count == len(told.place("C"))
-    assert told.array("run.part") == pytest.approx(np.arange(count) / count)
+    assert told.array("run.cycles") == pytest.approx(np.arange(count) / count)
     for link in machine.links.values():
         for (a, at), (b, to) in itertools.pairwise(link.points.items()):
             gap = abs(complex(*to) - complex(*at))
@@ -113,8 +123,78 @@ def test_a_run_is_told_in_the_language_of_the_page() -> None:
     ask(session, "speak", seq=2, languages=["de"])
     busy, told = ask(session, "run", seq=3)
     assert busy.content["what"] == "die Maschine läuft"
-    assert told.content["blocks"][0]["text"].startswith("Die Maschine steht nach 3,789 s")
+    assert told.content["blocks"][0]["text"].startswith(
+        "Die Maschine steht nach 3,789\N{NO-BREAK SPACE}s"
+    )
     assert told.content["charts"][0]["choices"][0]["label"] == "Kurbeldrehzahl"
+
+
+def test_blocks_are_told_as_print_has_them() -> None:
+    """With true signs, what stands out, and what is left out."""
+    table = Table.of(
+        "Gap of 2e-5 m",
+        ("", Column("Largest", "length", "mm"), Column("Angle", "angle", "deg")),
+        [("A", Value(-2.0, limit=1.0, emphasis="broken"), Value(1.0))],
+    )
+    blocks: list[Block] = [
+        Text("error -2.4e-13", "worse"),
+        Facts("", ("5 N m",), omitted=0),
+        Facts("Events", ("a",), omitted=2),
+        table,
+        Notes(("no load",), omitted=1),
+    ]
+    text, untitled, titled, grid, note = result_blocks.block_messages(blocks)
+    assert text == {"kind": "text", "text": "error −2.4×10⁻¹³", "emphasized": True}
+    assert (untitled["title"], untitled["items"]) == ("", [printed("5 N m")])
+    assert titled["title"] == "Events (and 2 more)"
+    assert grid["title"] == "Gap of 2×10⁻⁵ m"
+    assert grid["heads"] == ["", "Largest, mm", "Angle, °"]
+    assert grid["rows"][0][1].startswith("−2000")
+    assert "over the limit of 1000" in grid["rows"][0][1]
+    assert (grid["numbers"], grid["emphasized"]) == ([False, True, True], [(0, 1)])
+    assert note["text"] == "Note: no load (and 1 more)"
+    with pytest.raises(TypeError, match="listing"):
+        list(result_blocks.block_messages([FileText("model", "text")]))
+
+
+def test_long_curves_keep_their_extremes() -> None:
+    """Of each step of time the highest and the lowest value, of all curves at the same instants."""
+    count = 30 * result_blocks.MOST_POINTS
+    time = np.sort(np.random.default_rng(7).uniform(0, 9, count))
+    slow, fast = np.sin(time), np.cos(400 * time)
+    slow[123_457], fast[400_001] = 5.0, -7.0  # of one instant alone
+    axis = Axis.of("time", "time", low=0.0, high=9.0)
+    panels = tuple(Panel(axis, axis, (Curve(time, values),)) for values in (slow, fast))
+    block = FloatBlock()
+    charts = list(result_blocks.panel_charts([Chart("speed", "", "", panels)], block))
+    told = State({"arrays": block.placement}, np.frombuffer(block.data, "<f4"))
+    assert [chart["x"]["array"] for chart in charts] == ["speed.0.x", "speed.1.x"]
+    assert told.content["arrays"]["speed.0.x"] == told.content["arrays"]["speed.1.x"]
+    at = told.array("speed.0.x")
+    assert len(at) <= result_blocks.MOST_POINTS
+    assert np.all(np.diff(at) >= 0)
+    assert (at[0], at[-1]) == (np.float32(time[0]), np.float32(time[-1]))
+    edges = np.linspace(time[0], time[-1], 50)
+    for name, values in (("speed.0.0", slow), ("speed.1.0", fast)):
+        sent = told.array(name)
+        assert len(sent) == len(at)
+        for low, high in itertools.pairwise(edges):
+            whole = values[(time >= low) & (time <= high)]
+            part = sent[(at >= low) & (at <= high)]
+            assert np.max(part) == pytest.approx(np.max(whole), abs=3e-3)
+            assert np.min(part) == pytest.approx(np.min(whole), abs=3e-3)
+    assert (np.max(told.array("speed.0.0")), np.min(told.array("speed.1.0"))) == (5.0, -7.0)
+
+
+def test_the_clock_of_a_long_run_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The angles that are sent are those of the run, from its start to its end."""
+    monkeypatch.setattr(runs, "MOST_INSTANTS", 500)
+    _, told = run_of("cutter-bar")
+    run = eq.run(eq.load("cutter-bar"))
+    time, angle = told.array("run.time"), told.array("run.cycles") * 2 * pi
+    assert len(time) == len(angle) == 500
+    assert angle == pytest.approx(np.interp(time, run.time, run.crank_angle), abs=1e-3)
+    assert (time[-1], angle[-1]) == pytest.approx((run.time[-1], run.crank_angle[-1]), rel=1e-6)
 
 
 PAGE = Path(__file__).parents[3] / "page"
@@ -122,7 +202,7 @@ ESBUILD = PAGE / "node_modules" / ".bin" / "esbuild"
 NODE = shutil.which("node")
 PLAYED = """
 import { Player } from "./player.mjs";
-import { before } from "./scale.mjs";
+import { indexAtOrBelow } from "./scale.mjs";
 const player = new Player();
 player.take({ angles: 360, turns: 1, speed: 30 });
 player.suit();
@@ -145,27 +225,63 @@ tell();
 player.leave();
 told.push([player.time, player.sample, player.steps, player.rate === rate]);
 const times = [0, 0.5, 0.5, 2, 3];
-console.log(JSON.stringify([told, [-1, 0, 0.4, 0.5, 2.5, 3, 9].map((t) => before(times, t))]));
+const places = [-1, 0, 0.4, 0.5, 2.5, 3, 9].map((t) => indexAtOrBelow(times, t));
+console.log(JSON.stringify([told, places]));
 """
 
 
-@pytest.mark.skipif(NODE is None or not ESBUILD.exists(), reason="the page's tools are not here")
+TALK = """
+import { Conversation } from "./conversation.mjs";
+globalThis.window = globalThis;
+let hear;
+const shown = [];
+const busy = (now) => shown.push(now);
+const events = new Proxy({ busy }, { get: (own, name) => own[name] ?? (() => 0) });
+const sent = [];
+const wire = { send: (one) => sent.push(one), on: (_, heard) => (hear = heard), off: () => 0 };
+const talk = new Conversation(wire, events, null);
+for (const type of ["balance", "run", "gallery"]) talk.ask({ type });
+const [balance, run, gallery] = sent.map(({ seq }) => seq);
+hear({ type: "busy", seq: balance, what: "balancing" }, []);
+hear({ type: "busy", seq: run, what: "running" }, []);
+hear({ type: "gallery", seq: gallery }, []);
+hear({ type: "refused", seq: run, message: "no" }, []);
+hear({ type: "refused", seq: balance, message: "no" }, []);
+hear({ type: "busy", seq: balance, what: "balancing" }, []);
+console.log(JSON.stringify(shown.map((now) => now.map(({ kind, what }) => [kind, what]))));
+"""
+needs_tools = pytest.mark.skipif(
+    NODE is None or not ESBUILD.exists(), reason="the page's tools are not here"
+)
+
+
+def said_by(script: str, names: tuple[str, ...], folder: Path) -> Any:
+    """What a script prints as JSON that imports modules of the page."""
+    for name in names:
+        words = [str(PAGE / "src" / f"{name}.ts"), "--bundle", "--format=esm"]
+        words.append(f"--outfile={folder / name}.mjs")
+        subprocess.run([str(ESBUILD), *words], check=True, timeout=300, capture_output=True)
+    (folder / "ask.mjs").write_text(script, encoding="utf-8")
+    command = [str(NODE), "ask.mjs"]
+    done = subprocess.run(
+        command, cwd=folder, check=True, capture_output=True, text=True, timeout=300
+    )
+    return json.loads(done.stdout)
+
+
+@needs_tools
+def test_what_is_computed_is_shown_until_it_is_answered(tmp_path: Path) -> None:
+    """Each by its own question: others that end meanwhile take nothing of it away."""
+    balance, run = ["balance", "balancing"], ["run", "running"]
+    shown = said_by(TALK, ("conversation",), tmp_path)
+    assert shown == [[balance], [balance, run], [balance], []]
+
+
+@needs_tools
 def test_the_clock_of_the_page_plays_a_run_to_its_end_and_the_cycle_again(tmp_path: Path) -> None:
     """At half of the true speed, so that 3 s are seen for 6 s; a run that is over begins anew."""
-    for name in ("player", "scale"):
-        words = [str(PAGE / "src" / f"{name}.ts"), "--bundle", "--format=esm"]
-        words.append(f"--outfile={tmp_path / name}.mjs")
-        subprocess.run([str(ESBUILD), *words], check=True, timeout=300, capture_output=True)
-    (tmp_path / "ask.mjs").write_text(PLAYED, encoding="utf-8")
-    done = subprocess.run(
-        [str(NODE), "ask.mjs"],
-        cwd=tmp_path,
-        check=True,
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
-    (begun, later, ended, over, again, cycle), places = json.loads(done.stdout)
+    told, places = said_by(PLAYED, ("player", "scale"), tmp_path)
+    begun, later, ended, over, again, cycle = told
     assert begun == [0, True, 0, 0.5]
     assert later == [pytest.approx(0.5), True, 167, 0.5]
     assert ended == [3, True, 1000, 0.5]

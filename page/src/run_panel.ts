@@ -4,21 +4,21 @@ import { blocksOf } from "./blocks";
 import { Chart } from "./chart";
 import { h, show, write } from "./dom";
 import type { Numbers, RunMessage, State } from "./protocol";
-import { before } from "./scale";
+import { indexAtOrBelow } from "./scale";
 import type { Theme } from "./theme";
 import { say } from "./words";
 
-/** A run that can be played: the instants, s, and the place of each in all poses, counted on. */
+/** A run that can be played: its instants, s, and the crank angle at each, in cycles. */
 interface Run {
   message: RunMessage;
   numbers: Numbers;
   time: Float32Array;
-  part: Float32Array;
+  cycles: Float32Array;
 }
 
-export class Running {
-  readonly root = h("section", { class: "balance run", "aria-label": say("Run"), hidden: true, tabindex: -1 });
-  readonly charts = h("div", { class: "charts timed", role: "group", "aria-label": say("Run"), hidden: true });
+export class RunPanel {
+  readonly root = h("section", { class: "panel run", "aria-label": say("Result of the run"), hidden: true, tabindex: -1 });
+  readonly charts = h("div", { class: "charts timed", role: "group", "aria-label": say("Run over time"), hidden: true });
   private readonly turn: HTMLButtonElement;
   private readonly drawn = new Map<string, Chart>();
   private run: Run | null = null;
@@ -45,8 +45,8 @@ export class Running {
   }
 
   show(message: RunMessage, numbers: Numbers, state: State): void {
-    const [time, part] = ["time", "part"].map((name) => numbers.get(`run.${name}`) ?? new Float32Array(0));
-    this.run = { message, numbers, time: time as Float32Array, part: part as Float32Array };
+    const [time, cycles] = ["time", "cycles"].map((name) => numbers.get(`run.${name}`) ?? new Float32Array(0));
+    this.run = { message, numbers, time: time as Float32Array, cycles: cycles as Float32Array };
     const close = h("button", { type: "button", onclick: this.close }, say("Close"));
     this.root.replaceChildren(
       h("h2", {}, say("Run")),
@@ -79,6 +79,7 @@ export class Running {
   drop(): void {
     this.run = null;
     this.clear();
+    this.root.replaceChildren();
     show(this.root, false);
     show(this.charts, false);
   }
@@ -109,12 +110,12 @@ export class Running {
   /** Point at an instant in all charts; gives the pose there, of so many of them. */
   at(now: number, count: number): number {
     for (const chart of this.drawn.values()) chart.play(now);
-    const { time, part } = this.run ?? { time: [], part: [] };
-    const k = before(time, now);
+    const { time, cycles } = this.run ?? { time: [], cycles: [] };
+    const k = indexAtOrBelow(time, now);
     const [t0, t1] = [time[k] ?? 0, time[k + 1] ?? Infinity];
-    const [p0, p1] = [part[k] ?? 0, part[k + 1] ?? part[k] ?? 0];
-    const place = p0 + (t1 > t0 && t1 < Infinity ? ((now - t0) / (t1 - t0)) * (p1 - p0) : 0);
-    const whole = Math.round(place * count) % count;
+    const [c0, c1] = [cycles[k] ?? 0, cycles[k + 1] ?? cycles[k] ?? 0];
+    const turned = c0 + (t1 > t0 && t1 < Infinity ? ((now - t0) / (t1 - t0)) * (c1 - c0) : 0);
+    const whole = Math.round(turned * count) % count;
     return whole < 0 ? whole + count : whole;
   }
 
@@ -127,5 +128,4 @@ export class Running {
   repaint(): void {
     for (const { strip } of this.drawn.values()) strip.repaint();
   }
-
 }
