@@ -94,6 +94,7 @@ TITLES = {
     "planting": to_say("Planting"),
     "forces": to_say("Forces on frame and drive"),
     "joints": to_say("Forces in the joints"),
+    "run": to_say("Run on a fixed frame"),
     "vibration": to_say("Vibration on the support"),
     "balance": to_say("Balancing: before and after"),
     "tool": to_say("Vibration of the tool"),
@@ -154,6 +155,8 @@ def _of_linkage(findings: Findings, language: str, command: str, parallel: bool)
             *_details(_with_after(force_blocks, analysis, again)),
         ]
         blocks["joints"] = [*pictures.get("joints", []), *_with_after(_joints, analysis, again)]
+    if findings.run is not None:
+        blocks["run"] = [*findings.run.headline(), *pictures.get("run", []), *findings.run.blocks()]
     if findings.response is not None:
         response = None if later is None else later.response
         blocks["vibration"] = [*pictures.get("vibration", []), *pictures.get("modes", [])]

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from equipoise.handheld.sweep import ToolSweep, Transmissions
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
+    from equipoise.running.drives_run import DrivesRun
+    from equipoise.running.run import Run
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Response
     from equipoise.vibration.sweep import Sweep
@@ -83,7 +85,7 @@ class Findings(_ComputedParts):
     swings : that its crank cannot turn, and how far it is let swing; None where it can.
     """
 
-    dependents = ("planting", "sweep", "modes", "balanced")
+    dependents = ("planting", "run", "sweep", "modes", "balanced")
 
     machine: Machine
     text: str
@@ -109,6 +111,15 @@ class Findings(_ComputedParts):
         from equipoise.planting.summary import plant
 
         return None if self.machine.planting is None else plant(self.machine)
+
+    @part(to_say("run"))
+    def run(self) -> Run | DrivesRun | None:
+        """Run on a fixed frame; None where the file has no table ``[run]``."""
+        if self.machine.run is None:
+            return None
+        from equipoise.running.run import run
+
+        return run(self.machine)
 
     @part(to_say("vibration"))
     def response(self) -> Response | None:

@@ -44,6 +44,8 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
     from equipoise.present.findings import Findings
     from equipoise.results.analysis import Analysis
+    from equipoise.running.drives_run import DrivesRun
+    from equipoise.running.run import Run
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Response
     from equipoise.vibration.sweep import Sweep
@@ -286,6 +288,27 @@ def stroked(analysis: Analysis) -> str:
     return fastest(analysis)
 
 
+def ran(run: Run | DrivesRun | None) -> str:
+    """The highest speed of a run, and how it ended."""
+    if run is None:
+        return ""
+    from equipoise.running.blocks import event_named as event_of_crank
+    from equipoise.running.drives_blocks import event_named
+    from equipoise.running.run import Run
+
+    if isinstance(run, Run):
+        speeds, event = [run.crank_speed], event_of_crank(run.end)
+    else:
+        speeds, event = [drive.speed for drive in run.drives.values()], event_named(run.end)
+    fastest = max(float(np.max(np.abs(speed))) for speed in speeds)
+    return say(
+        "Speed up to {speed}, {event} after {time}",
+        speed=format_quantity(fastest, "angular speed", "rpm"),
+        event=event,
+        time=format_quantity(run.end.time, "time"),
+    )
+
+
 def kinematic(analysis: Analysis, name: str) -> str:
     """Of a chart of motion: the range of the transmission angles, or the largest velocity."""
     from equipoise.figures.points import kinematics_named
@@ -509,6 +532,7 @@ def seen_in(part: str, findings: Findings) -> str:
         "planting": lambda: planted(findings.planting),
         "forces": lambda: shaking_headline(findings),
         "joints": lambda: carried(analysis),
+        "run": lambda: ran(findings.run),
         "vibration": lambda: first_gauge(findings.response),
         "balance": lambda: aimed(findings),
     }

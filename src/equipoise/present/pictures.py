@@ -115,7 +115,8 @@ def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
 
 
 SECTIONS = (
-    *("model", "motion", "planting", "forces", "joints", "vibration", "modes", "balance", "tool"),
+    *("model", "motion", "planting", "forces", "joints", "run", "vibration", "modes", "balance"),
+    "tool",
 )
 """In the order in which they are shown."""
 
@@ -325,6 +326,14 @@ def _joints(findings: Findings) -> Iterator[PictureEntry]:
         yield PictureEntry(chart.name, caption, partial(unchanged, chart), detail=True)
 
 
+def _run(findings: Findings) -> Iterator[PictureEntry]:
+    if findings.run is None:
+        return
+    caption = to_say("Speed and torque over the time of the run.")
+    for chart in findings.run.charts().values():
+        yield PictureEntry("run", caption, partial(unchanged, chart))
+
+
 def _vibration(findings: Findings) -> Iterator[PictureEntry]:
     from equipoise.figures import sweep, vibration
 
@@ -449,6 +458,7 @@ OF_LINKAGE: dict[str, Callable[[Findings], Iterator[PictureEntry]]] = {
     "planting": _planting,
     "forces": _forces,
     "joints": _joints,
+    "run": _run,
     "vibration": _vibration,
     "modes": _modes,
     "balance": _balance,

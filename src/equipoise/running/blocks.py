@@ -246,6 +246,11 @@ def losses_table(run: Run | DrivesRun) -> Iterator[Block]:
     yield Table.of(say("Friction in joints from the start to the end"), columns, rows)
 
 
+def event_named(event: Event) -> str:
+    """What happened, in words."""
+    return say(EVENTS[event.kind])
+
+
 def run_blocks(run: Run) -> Iterator[Block]:
     """Figures, energies and events."""
     if lines := tuple(_figures(run)):
@@ -265,7 +270,7 @@ def run_blocks(run: Run) -> Iterator[Block]:
     yield Text(say("Kinetic energy and work agree to {error} of the largest.", error=error))
     events = [
         (
-            say(EVENTS[event.kind]),
+            event_named(event),
             Value(event.time),
             Value(event.crank_angle / (2 * pi)),
             Value(event.speed),

@@ -97,7 +97,7 @@ def run_blocks(run: DrivesRun) -> Iterator[Block]:
     yield Text(say("Kinetic energy and work agree to {error} of the largest.", error=error))
     rows = [
         (
-            _event(event),
+            event_named(event),
             Value(event.time),
             Value((event.crank_angle - run.crank_angle[0]) / (2 * pi)),
         )
@@ -107,7 +107,8 @@ def run_blocks(run: DrivesRun) -> Iterator[Block]:
     yield Table.of(say("Events"), heads, rows)
 
 
-def _event(event: DriveEvent) -> str:
+def event_named(event: DriveEvent) -> str:
+    """What happened, in words."""
     return say(EVENTS[event.kind], of=event.of) if event.of else say(EVENTS[event.kind])
 
 

@@ -10,8 +10,12 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError
+from equipoise.present.composition import build
 from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.pictures import SECTIONS, LazyPicture, each, pictures
+from equipoise.quantities import PER_RPM
+from equipoise.results.blocks import SvgPicture
+from equipoise.running.run import Run
 from surface.running import example_text
 
 
@@ -73,6 +77,7 @@ def pictured(name: str) -> list[LazyPicture]:
         ("four-row-transplanter", {"spectrum", "phases", "rows", "joint-polars"}),
         ("transplanter", {"path", "ratio-rocker", "tip-velocity-x", "soil-torque"}),
         ("kim-chung-c", {"balanced-polar", "changes"}),
+        ("two-motor-mixer", {"run"}),
     ],
 )
 def test_pictures_have_a_place_a_caption_and_a_name_of_their_own(name: str, some: set[str]) -> None:
@@ -83,6 +88,25 @@ def test_pictures_have_a_place_a_caption_and_a_name_of_their_own(name: str, some
         assert picture.caption.endswith(".") and picture.caption[0].isupper()
     names = [picture.name for picture in every]
     assert len(names) == len({*names}) and some <= {*names}
+
+
+def test_a_report_has_the_run_that_the_file_asks_for() -> None:
+    found = of("cutter-bar")
+    run = eq.run(found.machine)
+    assert isinstance(run, Run)
+    assert (run.end.kind, found.notes) == ("standstill", ())
+    report = build(found)
+    (section,) = [one for one in report.sections if one.name == "run"]
+    speed, time = max(run.crank_speed) / PER_RPM, run.end.time
+    assert section.headline == f"Speed up to {speed:.4g} rpm, stands still after {time:.4g} s"
+    (verdict,) = run.headline()
+    assert section.blocks[0] == verdict
+    appendix = [one for one in report.appendix if one.name == "run"]
+    shown = [block for part in (section, *appendix) for block in part.blocks]
+    (picture,) = [block for block in shown if isinstance(block, SvgPicture)]
+    assert picture.name == "run"
+    assert [block for block in run.blocks() if block not in shown] == []
+    assert of("yamashita-1").run is None
 
 
 def test_what_comes_later_is_not_computed() -> None:
