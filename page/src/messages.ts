@@ -1016,6 +1016,11 @@ export interface DesignRequest {
   store: string;
 }
 
+/** Questions that take long are given up. */
+export interface CancelRequest {
+  type: "cancel";
+}
+
 /** An operation on the parts of a machine, with what it needs. */
 export interface Made {
   do: string;
@@ -1036,4 +1041,4 @@ export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played
 
 export type Sent = Hello | Spoken | Pictured | Gallery | StateMessage | ResponseMessage | GhostMessage | ToolMessage | StudyMessage | Stores | VariantsMessage | Strokes | Planted | Side | Balanced | RunMessage | Refused | Tables | Saved | Busy | HandedOut | Answered;
 
-export type Asked = ReadyRequest | LanguageRequest | ExampleRequest | NewRequest | FileRequest | EditRequest | MakeRequest | PlainRequest | BalanceRequest | RunRequest | CompareRequest | EntryRequest | OutputsRequest | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest | VariantRequest | AgainstRequest | RecordRequest | StudyRequest | DesignRequest;
+export type Asked = ReadyRequest | LanguageRequest | ExampleRequest | NewRequest | FileRequest | EditRequest | MakeRequest | PlainRequest | BalanceRequest | RunRequest | CompareRequest | EntryRequest | OutputsRequest | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest | VariantRequest | AgainstRequest | RecordRequest | StudyRequest | DesignRequest | CancelRequest;

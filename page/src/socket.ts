@@ -35,6 +35,10 @@ export class Socket extends Bytes implements Wire {
     else this.unsent.push(text);
   }
 
+  cancel(): void {
+    this.send({ type: "cancel" });
+  }
+
   close(): void {
     this.closed = true;
     this.others.close();

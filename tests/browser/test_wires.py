@@ -12,7 +12,9 @@ from playwright.sync_api import Browser, Page, expect
 
 import equipoise as eq
 from browser.live import LONGEST, OVER_A_SOCKET, Live
+from equipoise.mechanism.parts.run_plans import MOST_TURNS
 from support.chosen import few
+from surface.running import example_text
 
 NAME = "balance-crank"
 WIRES = ["socket", "worker"]
@@ -121,6 +123,24 @@ def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -
 
 
 @pytest.mark.exhaustive
+@OVER_A_SOCKET
+def test_a_run_is_cancelled_and_the_page_goes_on(wired: Live) -> None:
+    """Over a socket; in a worker `test_host` cancels a balance."""
+    page = wired.page
+    longest = f"{example_text('balance-rig')}\n[run]\nturns = {MOST_TURNS}\n"  # more than a minute
+    wired.drop("long.toml", longest)
+    wired.settled()
+    run, cancel = wired.button("Run"), page.get_by_role("button", name="Cancel", exact=True)
+    expect(cancel).to_be_hidden()
+    run.click()
+    cancel.click()
+    expect(wired.told("cancelled; nothing was changed")).to_be_visible()
+    expect(cancel).to_be_hidden()
+    expect(page.get_by_role("region", name="Result of the run", exact=True)).to_be_hidden()
+    wired.type(wired.field("crank mass"), "9 kg")
+    assert wired.machine().links["crank"].mass == 9.0
+
+
 @OVER_A_SOCKET
 def test_drives_that_go_their_own_ways_are_drawn_and_not_dragged(wired: Live) -> None:
     """Poses of such a run are none of the cycle, in which alone something can be moved."""

@@ -42,7 +42,7 @@ interface Foreground {
   tasks: { length: number; popleft(): Bytes };
   wants_reply(): boolean;
   result_of_task(data: unknown): void;
-  cancel(): Bytes | undefined;
+  cancel(): void;
 }
 interface Background {
   begin(data: unknown): void;
@@ -243,8 +243,7 @@ async function foreground(): Promise<void> {
       other?.terminate();
       other = begin();
       post({ type: "loading", what: null });
-      const refusal = page.cancel();
-      if (refusal) answer(refusal);
+      page.cancel();
     } else page.take(data);
     void work();
   };

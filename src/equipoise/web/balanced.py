@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import field, replace
 from math import dist, isclose, sqrt
@@ -339,6 +339,10 @@ class BalanceSession(Protocol):
     lock: Lock
     language: str
 
+    @property
+    def before_change(self) -> Callable[[], None]:
+        """What is called before the design becomes another one."""
+
     def current(self) -> Computed:
         """The design that is."""
 
@@ -392,6 +396,7 @@ def adopted(
         yield from session.state_replies(message.seq, *filter(None, [balancing.nothing]))
         return
     after = solved(balancing.design)
+    session.before_change()
     with session.lock:
         if session.current_state is not base:
             raise UsageError(

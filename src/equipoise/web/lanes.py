@@ -57,8 +57,8 @@ def _of_heaps(name: str) -> Callable[..., int] | None:
 
 
 class EndedError(BaseException):
-    """The page for which something is computed has been closed; nothing may take it for an error
-    of the computation.
+    """The page for which something is computed has been closed, or its reader has cancelled it;
+    nothing may take it for an error of the computation.
     """
 
 
@@ -89,10 +89,11 @@ class PageWork:
 
     def __init__(self) -> None:
         self.spent = 0.0
-        self._lock, self._threads, self._ended = Lock(), set[int](), False
+        self._lock, self._threads = Lock(), set[int]()
+        self._ended = self._committed = False
 
     def do(self, compute: Callable[[], Answer]) -> Answer:
-        """Compute in this thread; `EndedError` as soon as the page is closed."""
+        """Compute in this thread; `EndedError` as soon as `end` is called."""
         thread = get_ident()
         with self._lock:
             if self._ended:
@@ -111,9 +112,27 @@ class PageWork:
         finally:
             self.spent = time.thread_time() - begun
 
-    def end(self) -> None:
-        """Stop what is computed, wherever it is, and begin nothing more."""
+    def commit(self) -> None:
+        """Let what this thread computes go on to its end: it is about to change what is open, which
+        must not stop half way.
+
+        Raises
+        ------
+        EndedError : it has been ended before.
+        """
+        self._leave(get_ident())
         with self._lock:
+            if self._ended:
+                raise EndedError
+            self._committed = True
+
+    def end(self) -> None:
+        """Stop what is computed, wherever it is, and begin nothing more; no effect on what has been
+        committed.
+        """
+        with self._lock:
+            if self._committed:
+                return
             self._ended = True
             for thread in self._threads:
                 _raise_in(thread, EndedError)

@@ -26,6 +26,7 @@ KINDS = (
     "redo",
     "balance",
     "run",
+    "cancel",
     "compare",
     "outputs",
     "save",

@@ -17,9 +17,9 @@ from starlette.websockets import WebSocketDisconnect
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.web.desk import PageBackend
-from equipoise.web.lanes import MOMENT, Lanes, PageWork, give_back
+from equipoise.web.lanes import MOMENT, EndedError, Lanes, PageWork, give_back
 from equipoise.web.messages import SLOW, Message, makes_way, read
-from equipoise.web.replies import Reply, completed, packed, refused, unexpected
+from equipoise.web.replies import CANCELLED, Reply, completed, packed, refused, unexpected
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -41,11 +41,15 @@ class Page:
     """A page that is open.
 
     lanes : threads that compute; what takes long has its own, so that dragging goes on.
+    question : the work on the last question that takes long, and whether it goes on (`answering`).
+    cancelled : questions that take long and were cancelled, and are to be refused.
     whole : when all that follows from a message was told last, s.
     """
 
     def __init__(self, socket: WebSocket, desk: PageBackend, lanes: Lanes) -> None:
         self.socket, self.desk, self.lanes, self.work = socket, desk, lanes, PageWork()
+        self.answering, self.question = False, PageWork()
+        self.cancelled: deque[Message] = deque()
         self.waiting: deque[Message | UsageError] = deque()
         self.come = asyncio.Event()
         self.closed = False
@@ -65,6 +69,7 @@ class Page:
         finally:
             self.closed = True
             self.work.end()
+            self.question.end()
             tasks += [self.deferred_task] if self.deferred_task is not None else []
             for task in tasks:
                 task.cancel()
@@ -84,6 +89,9 @@ class Page:
             if event["type"] != "websocket.receive":
                 break
             message = _message(event.get("text"))
+            if isinstance(message, Message) and message.kind == "cancel":
+                await self._cancel()  # before what waits for an answer
+                continue
             if self.waiting and makes_way(self.waiting[-1], message):
                 self.waiting.pop()
             self.waiting.append(message)
@@ -121,9 +129,39 @@ class Page:
         """Answer what takes long, one after the other, beside what does not."""
         while True:
             message = await self.questions.get()
-            await self._answer(self.desk.receive(message), message, self.lanes.long)
-            self._go_on(message)
+            self.answering, self.question = True, PageWork()
+            self.desk.session.before_change = self.question.commit
+            try:
+                replies, lane = self.desk.receive(message), self.lanes.long
+                await self._answer(replies, message, lane, self.question.do)
+            except EndedError:
+                if self.closed:
+                    raise
+                self.cancelled.appendleft(message)
+            else:
+                self._go_on(message)
+            self.answering = False
+            await self._refuse_cancelled()
             await asyncio.get_running_loop().run_in_executor(self.lanes.long, give_back)
+
+    async def _cancel(self) -> None:
+        """Give up the question that is answered, if it has not yet changed anything, and those that
+        wait for it.
+        """
+        self.cancelled += [self.questions.get_nowait() for _ in range(self.questions.qsize())]
+        for message in [*self.waiting]:
+            if isinstance(message, Message) and message.kind in SLOW:
+                self.waiting.remove(message)
+                self.cancelled.append(message)
+        self.question.end()
+        if not self.answering:  # else when that has ended: a page takes the last answer for all
+            await self._refuse_cancelled()
+
+    async def _refuse_cancelled(self) -> None:
+        while self.cancelled:
+            message, language = self.cancelled.popleft(), self.desk.session.language
+            await self._send(refused(message.seq, UsageError(CANCELLED), language))
+            self._go_on(message)
 
     def _go_on(self, message: Message) -> None:
         self.answered = max(self.answered, message.seq or 0)

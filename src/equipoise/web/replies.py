@@ -17,6 +17,7 @@ from equipoise.web.messages import Message
 
 LONGEST = 800
 """Signs of a sentence."""
+CANCELLED = Note("cancelled; nothing was changed")
 MISTAKE = Note("this went wrong inside the program, and nothing was changed; please report it")
 BUSY = {"balance": to_say("balancing"), "run": to_say("running the machine")}
 """What is under way, by the kind of message that asks for it."""

@@ -232,10 +232,17 @@ class DesignRequest(TypedDict):
     store: str
 
 
+class CancelRequest(TypedDict):
+    """Questions that take long are given up."""
+
+    type: Literal["cancel"]
+
+
 Asked = (
     ReadyRequest | LanguageRequest | ExampleRequest | NewRequest | FileRequest | EditRequest
     | MakeRequest | PlainRequest | BalanceRequest | RunRequest | CompareRequest | EntryRequest
     | OutputsRequest | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest
     | VariantRequest | AgainstRequest | RecordRequest | StudyRequest | DesignRequest
+    | CancelRequest
 )  # fmt: skip
 """All that a page asks, beside the number of the question (``seq``)."""

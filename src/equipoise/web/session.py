@@ -5,7 +5,7 @@ It knows nothing of how messages travel.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import field
 from threading import Lock
@@ -69,6 +69,8 @@ class Session:
     written : those figures and numbers; None where the machine was unfinished.
     spectra : amplitudes by order, of the machine that `written` is about.
     numbered : the design that was shown last, and how many were shown until then.
+    before_change : called before a question that takes long changes the design, in the thread that
+        answers it; from then on it cannot be cancelled.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
@@ -87,6 +89,7 @@ class Session:
     written: Values | None = None
     spectra: Mapping[str, Array] = field(default_factory=dict)
     numbered: tuple[Computed | Incomplete | None, int] = (None, 0)
+    before_change: Callable[[], None] = field(default=lambda: None)
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -122,6 +125,9 @@ class Session:
         from equipoise.web import runs
 
         yield from runs.answered(self, message)
+
+    def _cancel(self, message: Message) -> Iterator[Reply]:
+        yield from ()  # a server acts on it at once; elsewhere nothing is computed any more
 
     def _speak(self, message: Message) -> Iterator[Reply]:
         language = language_of(message.names("languages", MOST_LANGUAGES))

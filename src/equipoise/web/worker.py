@@ -24,7 +24,16 @@ from equipoise.web.design import Design
 from equipoise.web.desk import PageBackend
 from equipoise.web.edits import Computed, solved
 from equipoise.web.messages import SLOW, Message, makes_way, read
-from equipoise.web.replies import BUSY, Reply, busy, completed, packed, refused, unexpected
+from equipoise.web.replies import (
+    BUSY,
+    CANCELLED,
+    Reply,
+    busy,
+    completed,
+    packed,
+    refused,
+    unexpected,
+)
 from equipoise.web.session import Session
 from equipoise.web.state_changes import StateChanges
 
@@ -33,7 +42,6 @@ OF_MACHINE = ("balance", "run", "download")
 SELDOM = 0.3
 """s after which all that follows from an edit is computed in a drag that never pauses, and figures,
 numbers and spectra are written anew."""
-CANCELLED = Note("cancelled; nothing was changed")
 LACKING = to_say("this needs {package}, which this site does not have and could not load")
 
 Buffer = bytes | memoryview
@@ -78,6 +86,7 @@ class Foreground:
         self.missing: str | None = None
         """A package that has to be loaded before the next step."""
         self._running: deque[tuple[SlowTask, Computed | None]] = deque()
+        self._cancelled: deque[Message] = deque()
         self._message: Message | None = None
         self._replies: Iterator[Reply] | None = None
         self._refused_packages: set[str] = set()
@@ -155,21 +164,20 @@ class Foreground:
         elif task.message is not None:
             self._answer(task.message)
 
-    def cancel(self) -> bytes | None:
+    def cancel(self) -> None:
         """Give up what is computed in the background, which has been ended from outside."""
         running, self._running = self._running, deque()
         self.tasks.clear()
-        questions = [task.message for task, _ in running if task.message is not None]
-        for message in questions:
-            self._answer(message)
-        seq = questions[0].seq if questions else None
-        language = self.desk.session.language
-        return packed(refused(seq, UsageError(CANCELLED), language)) if questions else None
+        self._cancelled += [task.message for task, _ in running if task.message is not None]
 
     # -- one step ----------------------------------------------------------------------------------
 
     def _next(self) -> Reply | None:
         while True:
+            if self._cancelled:
+                message = self._cancelled.popleft()
+                self._answer(message)
+                return refused(message.seq, UsageError(CANCELLED), self.desk.session.language)
             if self._replies is not None:
                 if self._overtaken():
                     self._end()

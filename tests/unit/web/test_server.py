@@ -31,7 +31,10 @@ from equipoise.web import server as served_module
 from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
 from equipoise.web.design import Design
+from equipoise.web.desk import PageBackend
+from equipoise.web.edits import Computed
 from equipoise.web.gallery import opened_example
+from equipoise.web.incomplete import Incomplete
 from equipoise.web.lanes import MOMENT, EndedError, Lanes, PageWork, print_no_endings
 from equipoise.web.page import MOST_WAITING
 from equipoise.web.server import (
@@ -97,10 +100,10 @@ def ask(page: ClientConnection, message: object) -> Content:
 
 @pytest.fixture(scope="module")
 def here() -> Iterator[Here]:
-    def begin() -> Session:
+    def begin() -> PageBackend:
         session = Session()
         session.open(opened_example("balance-crank"))
-        return session
+        return PageBackend(session)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
@@ -397,6 +400,82 @@ def test_work_ends_though_an_error_is_lost(capfd: pytest.CaptureFixture[str]) ->
         assert threads.submit(lambda: 3).result(20) == 3  # and nothing is raised afterwards
     assert lost.is_set()
     assert capfd.readouterr().err == ""
+
+
+def test_what_is_committed_goes_to_its_end() -> None:
+    """What has been ended before cannot be committed."""
+    work, late = PageWork(), PageWork()
+
+    def ended_after() -> int:
+        work.commit()
+        work.end()
+        return 3
+
+    def ended_before() -> None:
+        late.end()
+        late.commit()
+
+    with ThreadPoolExecutor(1) as threads:
+        assert threads.submit(work.do, ended_after).result(300) == 3
+        assert threads.submit(work.do, lambda: 4).result(300) == 4
+        with pytest.raises(EndedError):
+            threads.submit(late.do, ended_before).result(300)
+        assert threads.submit(lambda: 5).result(300) == 5  # and nothing is raised afterwards
+
+
+def test_what_takes_long_is_cancelled_and_asked_again(
+    here: Here, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With what waits for it; each question has an answer, and the page goes on."""
+    begun, ended = threading.Event(), threading.Event()
+
+    def without_end(design: Design, hold: bool) -> Balanced:
+        begun.set()
+        try:
+            while True:
+                pass
+        finally:
+            ended.set()
+
+    with here.page() as page:
+        hear(page)
+        with monkeypatch.context() as patch:
+            patch.setattr(balanced_module, "balanced", without_end)
+            assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
+            assert begun.wait(300)
+            page.send('{"type": "run", "seq": 2}')
+            page.send('{"type": "cancel"}')
+            answers = [*iter(lambda: hear(page), {"type": "told", "seq": 2})]
+        assert ended.is_set()
+        refusals = {one["seq"]: one["message"] for one in answers if one["type"] == "refused"}
+        assert refusals == dict.fromkeys((1, 2), "cancelled; nothing was changed")
+        page.send('{"type": "cancel"}')  # when nothing is computed
+        assert ask(page, {"type": "balance", "seq": 3})["type"] == "busy"
+        again = hear(page)
+        assert (again["type"], again["seq"]) == ("balanced", 3)
+
+
+def test_a_balance_that_changes_the_machine_is_not_cancelled(
+    here: Here, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cancelled, changing = threading.Event(), threading.Event()
+    go_to = Session.go_to
+
+    def slowly(self: Session, computed: Computed | Incomplete, label: str) -> None:
+        changing.set()
+        assert cancelled.wait(300)
+        go_to(self, computed, label)
+
+    monkeypatch.setattr(Session, "go_to", slowly)
+    with here.page() as page:
+        hear(page)
+        assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
+        assert changing.wait(300)
+        page.send('{"type": "cancel"}')
+        assert ask(page, {"type": "stores", "seq": 2})["type"] == "stores"  # so that it was heard
+        cancelled.set()
+        assert hear(page)["type"] == "balanced"
+        assert hear(page)["undo"] == "balance"
 
 
 @pytest.mark.parametrize("how", ["closed", "gone"])

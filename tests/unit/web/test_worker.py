@@ -118,11 +118,15 @@ def test_a_run_is_computed_beside_of_the_design_that_was_shown(page: Foreground)
 @pytest.mark.exhaustive(but=["run"])
 @pytest.mark.parametrize("what", ["balance", "run"])
 def test_what_takes_long_can_be_cancelled(page: Foreground, what: str) -> None:
-    asked(page, what)
-    refusal = page.cancel()
-    assert refusal is not None
-    assert unpacked(refusal)[0]["message"] == "cancelled; nothing was changed"
+    """Every question that was asked has its answer."""
+    busy = [*asked(page, what), *asked(page, "run")]
+    assert kinds(busy) == ["busy", "busy"]
+    page.cancel()
     assert not page.tasks
+    *refusals, last = texts(page)
+    assert {one["message"] for one in refusals} == {"cancelled; nothing was changed"}
+    assert [one["seq"] for one in refusals] == [one["seq"] for one in busy]
+    assert last == {"type": "told", "seq": busy[-1]["seq"]}
     assert kinds(asked(page, "edit", label="mass", edits=[MASS]))[0] == "state"
 
 
