@@ -221,6 +221,7 @@ export class App {
         this.toolbar.focusRun();
       },
       (time) => this.goToTime(time),
+      (asked) => this.command(asked),
     );
     this.inspector = new Inspector(this.talk, (on) => this.hold(on), locks);
     this.balance = new BalancePanel(
@@ -699,28 +700,26 @@ export class App {
     this.command({ type: "download", kind, language, at, ...(format && { format }) });
   }
 
-  /** Record one cycle as it is played, and hand it out. */
+  /** Record one cycle, or the run, as it is played, and hand it out. */
   private async film(): Promise<void> {
     const { state, player } = this;
     if (!state) return;
-    this.showCycle();
-    const [angle, playing] = [player.angle, player.playing];
+    const { share, playing } = player;
     player.playing = false;
-    this.tell(say("Recording one cycle …"), false);
-    const degrees = 360 * state.turns;
-    const turn = (share: number) => {
-      player.angle = share * degrees;
+    this.tell(player.time === null ? say("Recording one cycle …") : say("Recording the run …"), false);
+    const show = (now: number) => {
+      player.share = now;
       this.point();
     };
     try {
       const areas = [this.board.root, this.side].filter((area) => area.checkVisibility());
-      const { blob, suffix } = await record({ root: this.el, areas, seconds: player.cycle, turn });
+      const { blob, suffix } = await record({ root: this.el, areas, seconds: player.duration, show });
       handOut(`${state.name.replace(/\.toml$/, "")}.${suffix}`, blob.type, blob);
       this.tell("", false);
     } catch {
       this.tell(say("This browser does not record pages; take the motion as a GIF."), true);
     } finally {
-      [player.angle, player.playing] = [angle, playing];
+      [player.share, player.playing] = [share, playing];
       this.stir();
     }
   }

@@ -88,9 +88,19 @@ export class Player {
     this.sample = Math.round((degrees / (360 * this.turns)) * this.count);
   }
 
-  /** How long a cycle takes as it is played, s. */
-  get cycle(): number {
-    return this.turns / Math.abs(this.turning);
+  /** How long the cycle, or the run, takes as it is played, s. */
+  get duration(): number {
+    return this.time === null ? this.turns / Math.abs(this.turning) : this.span / this.rate;
+  }
+
+  /** How much of the cycle, or of the run, is over, as a share of it. */
+  get share(): number {
+    return this.time === null ? this.part : this.time / (this.span || 1);
+  }
+
+  set share(share: number) {
+    if (this.time === null) this.part = share;
+    else this.time = share * this.span;
   }
 
   /** Turns in a second as it is played; a machine that stands still can be turned by hand, and so it is here. */

@@ -3,6 +3,7 @@
 import { blocksOf } from "./blocks";
 import { Chart } from "./chart";
 import { h, show, write } from "./dom";
+import { type Ask, explain } from "./explain";
 import type { Numbers, RunMessage, State } from "./protocol";
 import { indexAtOrBelow } from "./scale";
 import type { Theme } from "./theme";
@@ -30,6 +31,7 @@ export class RunPanel {
     play: () => void,
     private readonly close: () => void,
     private readonly picked: (time: number) => void,
+    private readonly ask: Ask,
   ) {
     this.turn = h("button", { type: "button", class: "strong", onclick: play });
   }
@@ -58,6 +60,7 @@ export class RunPanel {
       const chart = new Chart(data, this.theme, true, { picked: this.picked, chosen: () => undefined });
       this.drawn.set(data.name, chart);
       this.charts.append(chart.strip.root);
+      explain(chart.strip.root, data.choices[0]?.label ?? "", data.name, this.ask, () => "");
       chart.strip.resize(this.width);
       chart.show({ state, numbers, before: false }, "", "");
       chart.strip.describe();

@@ -4,7 +4,7 @@ import { h } from "./dom";
 
 /** Kinds of videos, the first that a browser can write is taken. */
 const KINDS = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
-/** How long a cycle is recorded at least and at most, s. */
+/** How long a video is at least and at most, s. */
 const [SHORTEST, LONGEST] = [2, 20];
 const BITS = 8e6;
 /** Of which attributes do not tell what was chosen or typed. */
@@ -15,10 +15,10 @@ export interface Scenery {
   /** Around them: its classes and those above it are what style sheets ask for. */
   root: HTMLElement;
   areas: HTMLElement[];
-  /** How long a cycle takes as it is played, s. */
+  /** How long what moves takes as it is played, s. */
   seconds: number;
-  /** Show a share of the cycle. */
-  turn(share: number): void;
+  /** Show the moment at which a share of it is over. */
+  show(share: number): void;
 }
 
 export interface Video {
@@ -35,8 +35,8 @@ function kind(): string | undefined {
   return KINDS.find((one) => MediaRecorder.isTypeSupported(one));
 }
 
-/** Record one cycle: a picture at every frame that the browser gives. */
-export async function record({ root, areas, seconds, turn }: Scenery): Promise<Video> {
+/** Record what moves from its start to its end: a picture at every frame that the browser gives. */
+export async function record({ root, areas, seconds, show }: Scenery): Promise<Video> {
   const mimeType = kind() as string;
   const reel = new Reel(root, areas);
   const stream = reel.canvas.captureStream(0);
@@ -46,15 +46,17 @@ export async function record({ root, areas, seconds, turn }: Scenery): Promise<V
   recorder.addEventListener("dataavailable", ({ data }) => parts.push(data));
   const stopped = new Promise((resolve) => recorder.addEventListener("stop", resolve));
   const whole = Math.min(Math.max(seconds, SHORTEST), LONGEST);
-  turn(0);
+  show(0);
   await reel.draw();
   recorder.start();
   const start = performance.now();
-  for (let share = 0; share < 1; share = (performance.now() - start) / 1000 / whole) {
-    turn(share);
+  // However slow a browser draws, the first and the last moment are recorded.
+  for (let share = 0; ; share = Math.min((performance.now() - start) / 1000 / whole, 1)) {
+    show(share);
     await reel.draw();
     track.requestFrame();
     await new Promise((resolve) => requestAnimationFrame(resolve));
+    if (share === 1) break;
   }
   recorder.stop();
   await stopped;

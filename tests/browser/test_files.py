@@ -12,7 +12,7 @@ import pytest
 from playwright.sync_api import expect
 
 import equipoise as eq
-from browser.live import OVER_A_SOCKET, Live
+from browser.live import LONGEST, OVER_A_SOCKET, Live
 from surface.running import example_text
 
 PICKED = {
@@ -84,20 +84,39 @@ def test_a_report_is_given_as_a_file(live: Live) -> None:
     assert eq.load("yamashita-1").title in text
 
 
+WATCH = """(slider) => {
+    window.shown = [];
+    const note = () => window.shown.push(slider.getAttribute("aria-valuetext"));
+    new MutationObserver(note).observe(slider, { attributeFilter: ["aria-valuetext"] });
+}"""
+
+
 @pytest.mark.exhaustive
-def test_drawing_and_charts_are_recorded_as_a_video(live: Live, tmp_path: Path) -> None:
-    """One cycle; the machine stands where it stood before."""
-    page = live.page
-    crank = page.get_by_role("slider", name="Crank angle")
-    crank.fill("30")
+@pytest.mark.parametrize("what", ["cycle", "run"])
+def test_drawing_and_charts_are_recorded_as_a_video(live: Live, what: str, tmp_path: Path) -> None:
+    """One cycle, or the run that is played; the machine stands where it stood before."""
+    page, name = live.page, "yamashita-1"
+    slider = page.get_by_role("slider", name="Crank angle")
+    if what == "run":
+        name = "cutter-bar"
+        page.get_by_role("combobox", name="Example").select_option(name)
+        live.settled()
+        live.button("Run").click()
+        slider = page.get_by_role("slider", name="Time of the run", exact=True)
+        expect(slider).to_be_visible(timeout=LONGEST * 1000)
+    slider.fill("30")
+    slider.evaluate(WATCH)
     page.get_by_label("Download", exact=True).click()
     with page.expect_download() as download:
         page.get_by_role("button", name="Drawing and charts as video").click()
-    assert download.value.suggested_filename == "yamashita-1.webm"
+    assert download.value.suggested_filename == f"{name}.webm"
     path = tmp_path / "video.webm"
     download.value.save_as(path)
     video = path.read_bytes()
     assert video.startswith(b"\x1a\x45\xdf\xa3") and b"V_VP" in video[:4096]  # Matroska, VP8 or 9
     clusters = video.count(b"\x1f\x43\xb6\x75")
     assert clusters >= 1 and len(video) > 20_000
-    expect(crank).to_have_value("30")
+    expect(slider).to_have_value("30")
+    shown = page.evaluate("window.shown")
+    assert len({*shown}) > 2
+    assert shown[0] == ("0.000 s after the start" if what == "run" else "0.0 degrees")

@@ -13,6 +13,8 @@ from playwright.sync_api import Browser, Page, expect
 import equipoise as eq
 from browser.live import LONGEST, OVER_A_SOCKET, Live
 from equipoise.mechanism.parts.run_plans import MOST_TURNS
+from equipoise.present.cells import printed
+from equipoise.web.figures import CHARTS
 from support.chosen import few
 from surface.running import example_text
 
@@ -88,11 +90,15 @@ def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -
     again = page.get_by_role("button", name="Run", exact=True)
     again.click()
     told = page.get_by_role("region", name="Result of the run", exact=True)
-    expect(told).to_contain_text(run.headline()[0].text, timeout=LONGEST * 1000)
+    expect(told).to_contain_text(printed(run.headline()[0].text), timeout=LONGEST * 1000)
     expect(told.get_by_role("table", name="Events")).to_contain_text("stands still")
     assert wired.findings() == []
     charts = page.get_by_role("group", name="Run over time", exact=True)
     expect(charts.get_by_role("figure")).to_have_count(2)
+    why = charts.get_by_role("button", name="Crank speed: what does it show?")
+    why.click()
+    expect(charts.get_by_text(CHARTS["run.speed.0"])).to_be_visible()
+    why.click()
     clock = page.get_by_role("slider", name="Time of the run", exact=True)
     expect(clock).to_have_attribute("aria-valuetext", "0.000 s after the start")
     joint, length = wired.joint("B"), 1000 * abs(complex(*own.links["crank"].points["B"]))
@@ -101,6 +107,7 @@ def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -
         clock.fill(str(step))
         if step:
             expect(joint).not_to_have_attribute("aria-valuetext", str(before))
+        wired.painted()
         place = eq.move(own, run.crank_angle[[k]]).points["B"].place[0]
         # Drawn at the nearest of 360 crank angles, and told in 0.01 mm.
         within = length * pi / 360 + 0.01
@@ -169,6 +176,7 @@ def test_drives_that_go_their_own_ways_are_drawn_and_not_dragged(wired: Live) ->
     expect(clock).to_be_visible()
     wired.drag(joint, (20, 20))
     expect(clock).to_be_hidden()
+    wired.painted()
     wired.comes_to(joint, of_cycle, 0.01)
     assert wired.machine() == own
 
@@ -195,6 +203,7 @@ def test_a_tool_makes_nothing_in_poses_of_a_run(wired: Live) -> None:
     expect(clock).to_be_visible()
     point.click()
     expect(clock).to_be_hidden()
+    wired.painted()
     wired.comes_to(wired.joint("B"), of_cycle, 0.01)
     assert wired.machine() == own
 

@@ -11,6 +11,7 @@ from typing import Any
 from equipoise.errors import UsageError
 from equipoise.i18n import LANGUAGES, Note, speaking
 from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.charts import Chart
 from equipoise.schema.files import to_csv
 from equipoise.schema.models import taken_along
@@ -64,11 +65,25 @@ def chart_of(computed: Computed, name: str, choice: str) -> Chart:
         from equipoise.figures.link_strength import link_charts
 
         return _named({chart.name: chart for chart, _ in link_charts(analysis)}, name)
+    if name.startswith("run."):
+        return _named(_charts_of_run(machine), name)
     if name in SAME:
         from equipoise.figures.pictures import analysis_pictures
 
         return _named(analysis_pictures(analysis), SAME[name])
     return _over_crank(computed, choice)
+
+
+def _charts_of_run(machine: Machine) -> dict[str, Chart]:
+    """Each panel of the charts of a machine's run as a chart, by its name on the page."""
+    from equipoise.running.run import run
+    from equipoise.web.result_blocks import panel_name
+
+    return {
+        panel_name("run", item, number): replace(item, panels=(panel,))
+        for item in run(machine).charts().values()
+        for number, panel in enumerate(item.panels)
+    }
 
 
 def _named(pictures: Mapping[str, Chart], name: str) -> Chart:

@@ -86,6 +86,14 @@ CHARTS = {
         "What the gauges read against speed, peak to peak. Peaks are resonances; the line is the "
         "speed of work, which should stand well away from them."
     ),
+    "run.speed.0": to_say(
+        "Speed of each drive from the start of the run. Look for the time until it rises no more, "
+        "and for how far it swings in a turn, which a flywheel makes smaller."
+    ),
+    "run.speed.1": to_say(
+        "Torque of each drive from the start of the run. What it gives at first and not later "
+        "speeds the machine up; its peak is what shaft and gears have to bear."
+    ),
 }
 """Name of a chart, or what stands before the first hyphen of it -> what it shows, what to look for.
 """

@@ -64,13 +64,21 @@ def _table(table: Table) -> Values:
     }
 
 
-def panel_charts(charts: Iterable[Chart], block: FloatBlock) -> Iterator[Values]:
+def panel_name(result: str, chart: Chart, number: int) -> str:
+    """Name on the page of a panel of a chart, by the number of the panel, from 0.
+
+    result : what the chart is of, such as ``run``.
+    """
+    return f"{result}.{chart.name}.{number}"
+
+
+def panel_charts(result: str, charts: Iterable[Chart], block: FloatBlock) -> Iterator[Values]:
     """A chart for each panel with curves, which share the values of their x axis.
 
     The place on the x axis is that of what is played.  Of long curves not all values are sent.
     """
     panels = {
-        f"{item.name}.{number}": panel
+        panel_name(result, item, number): panel
         for item in charts
         for number, panel in enumerate(item.panels)
         if panel.curves

@@ -101,7 +101,7 @@ def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:
     block.add("run.cycles", cycles)
     content: Values = {
         "blocks": [*block_messages((*run.headline(), *run.blocks()))],
-        "charts": [*panel_charts(run.charts().values(), block)],
+        "charts": [*panel_charts("run", run.charts().values(), block)],
         "frames": frames,
     }
     content["arrays"] = block.placement

@@ -15,6 +15,7 @@ from equipoise.i18n import catalogue
 from equipoise.schema.models import text_of
 from equipoise.web import documents as played_module
 from equipoise.web import interactive as interactive_module
+from equipoise.web.edits import Computed
 from equipoise.web.figures import CHARTS
 from equipoise.web.gallery import titles
 from equipoise.web.replies import Reply
@@ -34,12 +35,17 @@ def kept(session: Session, **values: Any) -> Reply:
 def charts_of(session: Session) -> dict[str, list[str]]:
     """Choices of every chart that a page is told of, by its name."""
     told = [*session.state_replies(None), *session.tell_more()]
+    if isinstance(session.base(), Computed) and session.current().design.machine.run is not None:
+        told += ask(session, "run", seq=1)
     charts = [chart for reply in told for chart in reply.content.get("charts", [])]
     return {chart["name"]: [one["name"] for one in chart["choices"]] for chart in charts}
 
 
-@pytest.mark.exhaustive(but=["stephenson-six-bar", "four-row-transplanter"])
-@pytest.mark.parametrize("name", ["yamashita-rig", "four-row-transplanter", "stephenson-six-bar"])
+EXPLAINED = ["yamashita-rig", "four-row-transplanter", "stephenson-six-bar", "cutter-bar"]
+
+
+@pytest.mark.exhaustive(but=EXPLAINED[1:])
+@pytest.mark.parametrize("name", EXPLAINED)
 def test_every_chart_is_explained_and_can_be_kept(name: str) -> None:
     session, _ = opened(name)
     charts = charts_of(session) | {"polar": [""], "path": [""], "output": ["links.crank.angle"]}
@@ -68,6 +74,7 @@ def test_every_explanation_is_of_a_chart() -> None:
 def test_what_cannot_be_drawn_is_refused() -> None:
     session, _ = opened("yamashita-1")
     for told, values in {
+        "run.speed.7": {"kind": "chart", "chart": "run.speed.7"},
         "no.such": {"kind": "chart", "chart": "polr", "choice": "no.such"},
         "format of pictures": {"kind": "drawing", "format": "bmp"},
         "sample of the crank angle": {"kind": "drawing", "at": 720},

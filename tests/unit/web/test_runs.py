@@ -49,18 +49,18 @@ def test_a_run_on_the_page_is_that_of_the_command() -> None:
     assert events["numbers"] == [False, True, True, True]
     assert float(events["rows"][1][1]) == pytest.approx(run.end.time, rel=1e-3)  # four digits
     speed, torque = told.content["charts"]
-    assert speed["x"] == {"array": "speed.0.x", "at": None, "unit": "s", "factor": 1.0}
+    assert speed["x"] == {"array": "run.speed.0.x", "at": None, "unit": "s", "factor": 1.0}
     assert (speed["choices"][0]["label"], torque["choices"][0]["unit"]) == ("Crank speed", "N m")
     assert speed["choices"][0]["factor"] == pytest.approx(30 / pi)
     # What follows is as 32-bit floats are.
-    assert told.array("speed.0.0") == pytest.approx(run.crank_speed, rel=1e-6, abs=1e-6)
-    assert told.array("speed.1.0") == pytest.approx(run.drive_torque, rel=1e-6, abs=1e-6)
+    assert told.array("run.speed.0.0") == pytest.approx(run.crank_speed, rel=1e-6, abs=1e-6)
+    assert told.array("run.speed.1.0") == pytest.approx(run.drive_torque, rel=1e-6, abs=1e-6)
     assert told.array("run.time") == pytest.approx(run.time, rel=1e-6)
     assert told.array("run.cycles") * 2 * pi == pytest.approx(run.crank_angle, rel=1e-6)
     assert told.content["frames"] == 0
     # One array for all that is over time.
     arrays = told.content["arrays"]
-    assert arrays["run.time"] == arrays["speed.0.x"] == arrays["speed.1.x"]
+    assert arrays["run.time"] == arrays["run.speed.0.x"] == arrays["run.speed.1.x"]
 
 
 def test_a_cycle_of_several_turns_is_one_part() -> None:
@@ -166,16 +166,16 @@ def test_long_curves_keep_their_extremes() -> None:
     axis = Axis.of("time", "time", low=0.0, high=9.0)
     panels = tuple(Panel(axis, axis, (Curve(time, values),)) for values in (slow, fast))
     block = FloatBlock()
-    charts = list(result_blocks.panel_charts([Chart("speed", "", "", panels)], block))
+    charts = list(result_blocks.panel_charts("run", [Chart("speed", "", "", panels)], block))
     told = State({"arrays": block.placement}, np.frombuffer(block.data, "<f4"))
-    assert [chart["x"]["array"] for chart in charts] == ["speed.0.x", "speed.1.x"]
-    assert told.content["arrays"]["speed.0.x"] == told.content["arrays"]["speed.1.x"]
-    at = told.array("speed.0.x")
+    assert [chart["x"]["array"] for chart in charts] == ["run.speed.0.x", "run.speed.1.x"]
+    assert told.content["arrays"]["run.speed.0.x"] == told.content["arrays"]["run.speed.1.x"]
+    at = told.array("run.speed.0.x")
     assert len(at) <= result_blocks.MOST_POINTS
     assert np.all(np.diff(at) >= 0)
     assert (at[0], at[-1]) == (np.float32(time[0]), np.float32(time[-1]))
     edges = np.linspace(time[0], time[-1], 50)
-    for name, values in (("speed.0.0", slow), ("speed.1.0", fast)):
+    for name, values in (("run.speed.0.0", slow), ("run.speed.1.0", fast)):
         sent = told.array(name)
         assert len(sent) == len(at)
         for low, high in itertools.pairwise(edges):
@@ -183,7 +183,7 @@ def test_long_curves_keep_their_extremes() -> None:
             part = sent[(at >= low) & (at <= high)]
             assert np.max(part) == pytest.approx(np.max(whole), abs=3e-3)
             assert np.min(part) == pytest.approx(np.min(whole), abs=3e-3)
-    assert (np.max(told.array("speed.0.0")), np.min(told.array("speed.1.0"))) == (5.0, -7.0)
+    assert (np.max(told.array("run.speed.0.0")), np.min(told.array("run.speed.1.0"))) == (5.0, -7.0)
 
 
 def test_the_clock_of_a_long_run_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
