@@ -803,6 +803,8 @@ def beside_the_machine(chance: random.Random, document: Document) -> Document:
         found["run"] = {"turns": turns, "speed": f"{chance.choice((-1, 0, 1, 9)) * 10} rpm"}
         if chance.random() < 0.3:
             found["run"] |= {"angle": "40 deg", "off_turns": turns / 2}
+            if "support" in document:
+                found["run"]["support"] = True
     if any("bearing" in one for one in document.get("joints", ())) and chance.random() < 0.5:
         found["duty"] = [{"share": 2}, {"share": 0.3, "speed": "31 rpm", "load_factor": 0.6}]
     if chance.random() < 0.15:
