@@ -201,10 +201,9 @@ class JointPhaseMassOptimizer:
                 break
             self.problem = self.problem.linearized_at(numbers)
             self.each_row = EachRow(self.problem, self._measured)
-            known, self.best = self.best, None
-            self._offer(known.phases, known.solution)
+            known, cost = self.best, replace(self._cost(self.best.solution), limits=())
+            self.best = replace(known, cost=float(cost.values(known.phases)))
             self._in_turn(known.phases, known.solution, ROUNDS, NO_GAIN)
-            self.best = self.best or known
 
     def _improved(self, phases: Array, cost: float) -> tuple[Array, float]:
         """Masses and phases in turn, begun where a box looks better."""

@@ -406,7 +406,8 @@ def loads_across(motion: Motion) -> dict[str, Any]:
 
 def load_plane(machine: Any, load: Load) -> float:
     """Plane of the line of a load, m."""
-    return machine.links[load.link].plane_of(load.point)
+    plane: float = machine.links[load.link].plane_of(load.point)
+    return plane
 
 
 def springs_across(motion: Motion) -> dict[str, Any]:
