@@ -137,10 +137,10 @@ def _parts(space: Any, parts: list[Part], scene: Scene, sizes: str) -> None:
             moved = [(MM * place + shift, bulge) for place, bulge in edges]
             rows = [(item.real, item.imag, bulge) for item, bulge in moved]
             space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs=layer)
-        for place in part.threads.places if part.threads is not None else ():
+        for place, radius in part.thread_circles:
             hole = MM * place + shift
             looks = _layer("threads", part.name)
-            space.add_circle((hole.real, hole.imag), part.threads.size / 2, dxfattribs=looks)
+            space.add_circle((hole.real, hole.imag), MM * radius, dxfattribs=looks)
         _measures(space, part, shift, gap)
         corner -= 1j * ((highest - lowest).imag + gap)
         rounded = [sizes] if part.kind == COUNTERWEIGHT and sizes else []

@@ -182,6 +182,13 @@ class Part:
             yield say("its centre at {place} mm in the axes of the link", place=place)
 
     @property
+    def thread_circles(self) -> tuple[tuple[complex, float], ...]:
+        """Centre and radius of each thread, m."""
+        if self.threads is None:
+            return ()
+        return tuple((place, self.threads.size / 2e3) for place in self.threads.places)
+
+    @property
     def title(self) -> str:
         """With how thick it is."""
         if self.thickness is None:
@@ -367,15 +374,15 @@ def circle(center: complex, radius: float) -> tuple[Edge, ...]:
 def _of_changes(job: Job) -> Iterator[Part]:
     """Counterweights that balancing adds; those of a link may come from several changes."""
     counts: Counter[str] = Counter()
-    motion = move(job.machine, 360) if job.changes else None
     for change in job.changes or ():
         pieces: Iterable[dict[str, Any]] = change.values.get("pieces", ())
         for piece in pieces:
             counts[change.link] += 1
             center = complex(*change.values["center"])
             edges = tuple(_edges_of_piece(piece, center))
-            screwed = motion is not None and needs_threads(piece, center)
-            threads = threads_of(piece, center, motion, change.link) if screwed else None
+            screwed = needs_threads(piece, center)
+            motion = move(job.machine, 360) if screwed else None
+            threads = threads_of(piece, center, motion, change.link) if motion is not None else None
             part = Part(change.link, COUNTERWEIGHT, counts[change.link], piece.get("thickness"),
                         edges, piece.get("density"), threads)  # fmt: skip
             if not edges:

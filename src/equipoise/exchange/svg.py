@@ -25,9 +25,9 @@ def export_bytes(job: Job) -> str:
         group = ET.SubElement(root, "g", id=part.name)
         ET.SubElement(group, "title").text = part.title
         ET.SubElement(group, "path", LINE, d=" ".join(ways))
-        for place in part.threads.places if part.threads is not None else ():
+        for place, radius in part.thread_circles:
             x, y = MARGIN + (MM * place - low).real, below + (high - MM * place).imag
-            circle = {"cx": repr(x), "cy": repr(y), "r": repr(part.threads.size / 2)}
+            circle = {"cx": repr(x), "cy": repr(y), "r": repr(MM * radius)}
             ET.SubElement(group, "circle", {**LINE, **circle})
         below += (high - low).imag + LETTER + MARGIN
         words = {"x": str(MARGIN), "y": repr(below - MARGIN), "font-size": str(LETTER)}
