@@ -148,6 +148,7 @@ def test_a_run_is_cancelled_and_the_page_goes_on(wired: Live) -> None:
     assert wired.machine().links["crank"].mass == 9.0
 
 
+@pytest.mark.exhaustive
 @OVER_A_SOCKET
 def test_drives_that_go_their_own_ways_are_drawn_and_not_dragged(wired: Live) -> None:
     """Poses of such a run are none of the cycle, in which alone something can be moved."""
