@@ -71,7 +71,7 @@ class SupportedPose(DrivesPose):
 
     def _arm(self, link: str) -> Array:
         """Place (K,) of a link's anchor, from the reference point."""
-        return self.rows(p(self.linkage.anchors[link])[0])[-1] - self.support.reference
+        return np.asarray(self.rows(p(self.linkage.anchors[link])[0])[-1] - self.support.reference)
 
     @cached_property
     def _numbers(self) -> list[Array]:
