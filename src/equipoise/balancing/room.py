@@ -424,6 +424,14 @@ def _wheels(motion: Motion, link: str, at: str) -> tuple[list[float], list[Array
     return own, others
 
 
+def pins_on(motion: Motion, link: str) -> list[tuple[complex, float]]:
+    """Place in the axes of a link and radius, m, of each pin on it; assumed where not given."""
+    machine, radii = motion.machine, motion.linkage.pin_radii
+    assumed, joined = CLEARANCE * size_of_links(machine), _joined(machine)
+    points = machine.links[link].points.items()
+    return [(complex(*at), radii.get(name, assumed)) for name, at in points if name in joined]
+
+
 def _pass_over(motion: Motion, link: str, tracks: Sequence[Array]) -> bool:
     """Whether places on another link pass over a link, so that they lie in another plane."""
     line = np.array(

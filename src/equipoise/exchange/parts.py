@@ -9,6 +9,7 @@ from __future__ import annotations
 from cmath import phase, rect
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from functools import cache, partial
 from math import atan, ceil, degrees, log10, pi, sin, tan
 from typing import Any
 
@@ -16,7 +17,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
-from equipoise.exchange.fastening import ScrewThreads, needs_threads, threads_of
+from equipoise.exchange.fastening import STRESS_AREAS, ScrewThreads, needs_threads, threads_of
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, coordinates, decimals, say, to_say
 from equipoise.mechanism.kinematics.motion import move
@@ -136,7 +137,7 @@ class Part:
         return tuple(said)
 
     def _thread_lines(self, threads: ScrewThreads) -> Iterator[str]:
-        """Which threads, where, and what their screws weigh beyond what was drilled out."""
+        """Which threads, where, and what screws without heads weigh beyond what was drilled out."""
         words = {"count": len(threads.places), "size": threads.size}
         if threads.about_axis:
             polar = ((in_mm(1e3 * r), in_mm(degrees(way))) for r, way in threads.about_axis)
@@ -157,10 +158,10 @@ class Part:
         beyond = (MATERIALS["steel"] - self.density) * self.thickness * len(threads.places)
         beyond *= pi / 4 * (1e-3 * threads.size) ** 2
         if abs(beyond) < LIGHT_SCREWS * (self.mass or 0.0):
-            yield say("the threads are filled by steel screws")
+            yield say("the threads are filled by steel screws, whose heads are not counted")
         else:
             yield say(
-                "the threads are filled by steel screws, which add {mass}",
+                "the threads are filled by steel screws, which add {mass} without their heads",
                 mass=workshop_mass(beyond),
             )
 
@@ -374,6 +375,7 @@ def circle(center: complex, radius: float) -> tuple[Edge, ...]:
 def _of_changes(job: Job) -> Iterator[Part]:
     """Counterweights that balancing adds; those of a link may come from several changes."""
     counts: Counter[str] = Counter()
+    motion = cache(partial(move, job.machine, 360))
     for change in job.changes or ():
         pieces: Iterable[dict[str, Any]] = change.values.get("pieces", ())
         for piece in pieces:
@@ -381,15 +383,19 @@ def _of_changes(job: Job) -> Iterator[Part]:
             center = complex(*change.values["center"])
             edges = tuple(_edges_of_piece(piece, center))
             screwed = needs_threads(piece, center)
-            motion = move(job.machine, 360) if screwed else None
-            threads = threads_of(piece, center, motion, change.link) if motion is not None else None
+            threads = threads_of(piece, center, motion(), change.link) if screwed else None
             part = Part(change.link, COUNTERWEIGHT, counts[change.link], piece.get("thickness"),
                         edges, piece.get("density"), threads)  # fmt: skip
             if not edges:
                 job.leave_out(Note("{part}, a point mass without an outline", part=part.name))
                 continue
             if screwed and threads is None:
-                job.leave_out(Note("threads of {part}, which has no room for them", part=part.name))
+                note = Note(
+                    "threads of {part}: no two screws up to M{size} both fit in it and hold it",
+                    part=part.name,
+                    size=max(STRESS_AREAS),
+                )
+                job.leave_out(note)
             yield part
 
 

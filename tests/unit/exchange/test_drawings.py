@@ -22,6 +22,7 @@ from equipoise.exchange.parts import Part, along, in_mm, parts
 from equipoise.exchange.reading.formats import import_machine
 from equipoise.figures import workshop_sheet
 from equipoise.i18n.languages import KNOWN
+from equipoise.mechanism.parts.run_plans import DutyState
 from equipoise.present.findings import Findings
 from support.chosen import few
 from support.findings import findings_of
@@ -222,7 +223,7 @@ def test_sectors_are_screwed_on(name: str, tmp_path: Path) -> None:
     texts = [e.dxf.text for e in on_layer(drawing, "dimensions crank_ counterweight 1")
              if e.dxftype() == "TEXT"]  # fmt: skip
     assert any(t.startswith(f"2 threads M{2 * first.dxf.radius:.0f} ") for t in texts)
-    assert "the threads are filled by steel screws" in texts
+    assert "the threads are filled by steel screws, whose heads are not counted" in texts
     circles = svg(whole, tmp_path / "x.svg").findall("{*}g/{*}circle")
     assert [float(one.get("r", "0")) for one in circles] == [first.dxf.radius] * 2
 
@@ -241,8 +242,30 @@ def test_larger_forces_get_larger_threads() -> None:
     assert known == sorted(known) and len({*known}) > 2
     disc = {"shape": "disc", "mass": 0.5, "place": (0.05, 0.0), "radius": 0.03, "thickness": 0.01}
     motion = eq.move(machine, 36)
-    assert threads_of(disc, 0j, motion, "crank") == ScrewThreads(5, (0.035 + 0j, 0.065 + 0j))
+    # across the link, along which one would be at 35 mm, in the pin at 33.5 mm
+    assert threads_of(disc, 0j, motion, "crank") == ScrewThreads(5, (0.05 - 0.015j, 0.05 + 0.015j))
     assert needs_threads(disc, 0j) and not needs_threads(disc, 0.04 + 0j)
+
+
+def test_threads_bear_what_the_whole_machine_asks_of_them() -> None:
+    """In its fastest state, and only as much as depth and material let them."""
+    piece = {"shape": "disc", "mass": 1.0, "place": (0.05, 0.0), "radius": 0.045,
+             "thickness": 0.02, "density": STEEL}  # fmt: skip
+    machine = eq.load("yamashita-1").with_drive(speed=100.0)
+
+    def size(machine: eq.Machine = machine, **other: object) -> int | None:
+        motion = eq.move(machine, 36)
+        threads = threads_of({**piece, **other}, 1j, motion, "crank")
+        return threads.size if threads else None
+
+    # 1 kg at 50 mm and 100 rad/s: 500 N; two screws M5 hold 1384 N, M8 3.6 kN, M10 5.7 kN
+    assert size() == 5
+    faster = DutyState(share=1.0, speed=200.0)
+    assert size(replace(machine, duty=(faster, DutyState(share=1.0)))) == 10
+    assert size(replace(machine, gravity=(0.0, -600.0))) == 8
+    assert size(thickness=0.003, density=STEEL) == 8
+    assert size(density=2700.0) == 5 and size(thickness=0.005, density=2700.0) == 8
+    assert size(density=11340.0) is None
 
 
 def test_texts_of_drawings_are_in_the_language_asked_for(
