@@ -94,7 +94,7 @@ TITLES = {
     "planting": to_say("Planting"),
     "forces": to_say("Forces on frame and drive"),
     "joints": to_say("Forces in the joints"),
-    "run": to_say("Run on a fixed frame"),
+    "run": to_say("Run"),
     "vibration": to_say("Vibration on the support"),
     "balance": to_say("Balancing: before and after"),
     "tool": to_say("Vibration of the tool"),

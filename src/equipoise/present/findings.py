@@ -114,7 +114,7 @@ class Findings(_ComputedParts):
 
     @part(to_say("run"))
     def run(self) -> Run | DrivesRun | None:
-        """Run on a fixed frame; None where the file has no table ``[run]``."""
+        """Run that the table ``[run]`` of the file asks for; None where there is none."""
         if self.machine.run is None:
             return None
         from equipoise.running.run import run

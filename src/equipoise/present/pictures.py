@@ -326,12 +326,21 @@ def _joints(findings: Findings) -> Iterator[PictureEntry]:
         yield PictureEntry(chart.name, caption, partial(unchanged, chart), detail=True)
 
 
+RUN_CAPTIONS = {
+    "speed": to_say("Speed and torque over the time of the run."),
+    "gauges": to_say("Displacement at the gauges over the time of the run."),
+    "mounts": to_say("Forces in the mounts over the time of the run."),
+}
+"""By the kinds of charts that a run has."""
+
+
 def _run(findings: Findings) -> Iterator[PictureEntry]:
     if findings.run is None:
         return
-    caption = to_say("Speed and torque over the time of the run.")
     for chart in findings.run.charts().values():
-        yield PictureEntry("run", caption, partial(unchanged, chart))
+        kind = chart.name.partition("-")[0]
+        name = "run" if kind == "speed" else f"run-{chart.name}"
+        yield PictureEntry(name, RUN_CAPTIONS[kind], partial(unchanged, chart))
 
 
 def _vibration(findings: Findings) -> Iterator[PictureEntry]:
