@@ -144,6 +144,10 @@ class Figures:
         at_max = abs(self.peak_at - self.max_at) <= abs(self.peak_at - self.min_at)
         return self.max if at_max else self.min
 
+    def is_constant(self, scale: float = 0.0) -> bool:
+        """Whether it varies by rounding alone, beside its peak or a scale in its own unit."""
+        return self.peak_to_peak <= 1e-10 * max(self.peak, scale)
+
 
 def figures(crank_angle: Array, samples: Array, period: float | None = None) -> Figures:
     """Mean, RMS and extremes of samples (N,), as `figures_of_each` takes them."""

@@ -72,7 +72,7 @@ def _plain(analysis: Analysis) -> Table:
         Column(say("mean"), "pressure times speed"),
     )
     title = say("Plain bearings in joints; largest with its crank angle")
-    if states := len(analysis.machine.duty):
+    if (states := len(analysis.machine.duty)) and analysis.motion.is_steady_cycle:
         title = say(
             "Plain bearings in joints, over {count} duty states; largest with its crank angle",
             count=states,

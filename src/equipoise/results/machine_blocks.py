@@ -75,8 +75,7 @@ def smallest(figures: Figures, scale: float = 0.0, dimension: Dimension | None =
 
 
 def _at(figures: Figures, crank_angle: float, scale: float) -> float | None:
-    steady = figures.peak_to_peak <= 1e-10 * max(figures.peak, scale)
-    return None if steady else crank_angle
+    return None if figures.is_constant(scale) else crank_angle
 
 
 def span(motion: Motion, values: Array, scale: float = 0.0) -> Span:

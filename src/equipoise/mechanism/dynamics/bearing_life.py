@@ -108,7 +108,7 @@ def bearing_lives(forces: Forces) -> Mapping[str, BearingLife]:
     crank is not turned evenly, or the crank angles are not those of a whole cycle.
     """
     motion = forces.motion
-    if not motion.whole_cycle or motion.acceleration or not motion.speed:
+    if not motion.is_steady_cycle:
         return {}
     rolling = {
         name: (reaction, item.bearing)

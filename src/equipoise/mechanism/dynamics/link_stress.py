@@ -215,8 +215,7 @@ def link_stresses(forces: Forces) -> Mapping[str, LinkStress]:
     """Figures of links with sections by name, over all duty states of the machine; none where the
     crank is not turned evenly, or the crank angles are not those of a whole cycle.
     """
-    motion = forces.motion
-    if not motion.whole_cycle or motion.acceleration or not motion.speed or not forces.sections:
+    if not forces.motion.is_steady_cycle or not forces.sections:
         return {}
     return {name: _over(forces.working_states, name) for name in forces.sections}
 

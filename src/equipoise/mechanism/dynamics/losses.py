@@ -57,7 +57,7 @@ def losses_of(forces: Forces) -> Losses | None:
     crank angles are not those of a whole cycle.
     """
     motion = forces.motion
-    if not forces.frictions or not motion.whole_cycle or motion.acceleration or not motion.speed:
+    if not forces.frictions or not motion.is_steady_cycle:
         return None
     turn = 2 * pi / abs(motion.speed)
     joints = {

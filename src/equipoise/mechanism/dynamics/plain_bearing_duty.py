@@ -11,9 +11,6 @@ from equipoise.mechanism.dynamics.forces import Forces, WorkingState
 from equipoise.mechanism.kinematics.strokes import figure
 from equipoise.signals import Figures
 
-STEADY = 1e-10
-"""Share of its largest size below which what varies is rounding."""
-
 
 @dataclass(frozen=True)
 class PlainBearingDuty:
@@ -44,9 +41,8 @@ def plain_bearing_duties(forces: Forces) -> Mapping[str, PlainBearingDuty]:
     """Figures of plain bearings by joint: over all duty states of the machine where the crank is
     turned evenly over a whole cycle, else over these forces alone.
     """
-    motion, states = forces.motion, forces.working_states
-    if not motion.whole_cycle or motion.acceleration or not motion.speed:
-        states = (WorkingState(1.0, forces),)
+    steady = forces.motion.is_steady_cycle
+    states = forces.working_states if steady else (WorkingState(1.0, forces),)
     return {name: _over(states, name) for name in forces.plain_bearings}
 
 
@@ -66,4 +62,4 @@ def _over(states: Sequence[WorkingState], name: str) -> PlainBearingDuty:
 
 def _angle_of_largest(figures: Figures) -> float | None:
     """Crank angle of the largest value, rad; None where it is as large everywhere."""
-    return None if figures.peak_to_peak <= STEADY * figures.peak else figures.max_at
+    return None if figures.is_constant() else figures.max_at

@@ -193,6 +193,11 @@ class Motion(Displayed):
         """Mean (...) over the cycle of values (..., N); crank angles have to be of a whole one."""
         return signals.mean(values, self.shares)
 
+    @property
+    def is_steady_cycle(self) -> bool:
+        """Whether it is a whole cycle at a constant speed of the crank, as a duty repeats it."""
+        return self.whole_cycle and not self.acceleration and bool(self.speed)
+
     def figures(self, values: Array) -> Figures:
         """Mean, RMS and extremes of values (N,)."""
         return self.figures_of_each(values[None])[0]
