@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from equipoise.errors import UsageError
@@ -71,12 +70,10 @@ LOW = 260.0
 
 
 def standalone_rows(picture: Chart) -> tuple[str, ...]:
-    """Rows of panels of a high picture that runs across a page, each as SVG of its own.
-
-    The last row stands with the one before where it has fewer panels, which would be wider alone.
-    There are none of drawings, whose scale is that of the whole picture.
+    """Rows of panels of a high picture that runs across a page, each as SVG of its own; none of
+    drawings, which are seen beside each other.
     """
-    from equipoise.figures.layout import HIGH, WIDE, lay_out
+    from equipoise.figures.layout import WIDE, lay_out, lay_out_rows
     from equipoise.figures.vector import svg_of
 
     panels, columns = picture.panels, picture.columns
@@ -85,12 +82,7 @@ def standalone_rows(picture: Chart) -> tuple[str, ...]:
         return ()
     if lay_out(picture, WIDE, headed=False).height <= LOW:
         return ()
-    usual = HIGH[min(-(-len(panels) // columns), max(HIGH))]
-    panels = tuple(replace(panel, height=panel.height or usual) for panel in panels)
-    starts = range(0, len(panels) - columns + 1, columns)
-    ends = (*starts[1:], len(panels))
-    rows = (replace(picture, panels=panels[i:j]) for i, j in zip(starts, ends, strict=True))
-    return tuple(svg_of(lay_out(row, WIDE, headed=False)) for row in rows)
+    return tuple(map(svg_of, lay_out_rows(picture, WIDE)))
 
 
 def plot(result: Any, name: str = "", ax: Axes | None = None) -> Figure:

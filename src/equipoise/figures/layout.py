@@ -6,7 +6,7 @@ else; no number here is the place of a thing, only its distance from the next.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import floor, log10
 from typing import Any
@@ -332,13 +332,29 @@ def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Canvas:
 
     wide : of the sheet, points.  headed : whether the chart's heading stands on it.
     """
+    return _sheet(chart, _cells(chart, wide), wide, headed)
+
+
+def lay_out_rows(chart: Chart, wide: float) -> Iterator[Canvas]:
+    """Rows of panels on sheets of their own, without headings, in the scale of the whole chart.
+
+    The last row stands with the one before where it has fewer panels.
+    """
+    cells, columns = _cells(chart, wide, parted=True), _columns(chart, wide)
+    starts = range(0, max(len(cells) - columns, 0) + 1, columns)
+    for begin, end in zip(starts, (*starts[1:], len(cells)), strict=True):
+        row = replace(chart, panels=chart.panels[begin:end])
+        yield _sheet(row, cells[begin:end], wide, headed=False)
+
+
+def _sheet(chart: Chart, cells: list[Cell], wide: float, headed: bool) -> Canvas:
     sheet = Canvas(wide, 0.0, said(chart.title))
     top = _heading(sheet, chart) if headed else TOP
     keys = [LegendKey(role, name, kind_of(role)) for role, name in chart.keys]
     keys += [key for panel in chart.panels for key in keys_of(panel, chart_level=True)]
     keys = [*dict.fromkeys(keys)]
     top = draw_legend(sheet, keys, EDGE, wide - EDGE, top) + (5 if keys else 2)
-    top = _panels(sheet, chart, top)
+    top = _panels(sheet, cells, _columns(chart, wide), top)
     if chart.foot:
         for line in lines_of(chart.foot, wide - 2 * EDGE, NORMAL):
             sheet.add(Words(wide / 2, top + 11, line, NORMAL, INK, "middle"), 7)
@@ -362,29 +378,49 @@ def _heading(sheet: Canvas, chart: Chart) -> float:
     return top + 5
 
 
-def _panels(sheet: Canvas, chart: Chart, top: float) -> float:
-    columns = min(chart.columns, len(chart.panels))
-    if sheet.width == HALF and not all(panel.equal for panel in chart.panels):
-        columns = 1  # words along the axes need the width
-    rows = [chart.panels[k : k + columns] for k in range(0, len(chart.panels), columns)]
+def _columns(chart: Chart, wide: float) -> int:
+    """Panels beside each other."""
+    if wide == HALF and not all(panel.equal for panel in chart.panels):
+        return 1  # words along the axes need the width
+    return min(chart.columns, len(chart.panels))
+
+
+def _inner(wide: float, columns: int) -> float:
+    """Width of each of some columns."""
+    return (wide - 2 * EDGE - (columns - 1) * GAP) / columns
+
+
+def _cells(chart: Chart, wide: float, parted: bool = False) -> list[Cell]:
+    """Panels with their axes, in one scale.
+
+    parted : whether each row stands alone, so that all axes have numbers.
+    """
+    columns = _columns(chart, wide)
+    rows = -(-len(chart.panels) // columns)
     high, most = HIGH, MOST
-    if sheet.width == HALF:
-        high, most = HIGH_OF_HALF, min(MOST_OF_HALF / len(rows), ONE_OF_HALF)
-    usual = high[min(len(rows), max(high))]
-    highest = usual if sheet.width == HALF else np.inf
+    if wide == HALF:
+        high, most = HIGH_OF_HALF, min(MOST_OF_HALF / rows, ONE_OF_HALF)
+    usual = high[min(rows, max(high))]
+    highest = usual if wide == HALF else np.inf
     cells = [cell_of(panel, min(panel.height or usual, highest)) for panel in chart.panels]
     share(cells, columns)
     for cell in cells:
         make_room(cell, OVER)
-    inner = (sheet.width - 2 * EDGE - (columns - 1) * GAP) / columns
+    inner = _inner(wide, columns)
     for number, cell in enumerate(cells):
-        later = cells[number + columns :: columns]
-        cell.numbered = not (chart.stacked and any(_same_x(cell, item) for item in later[:1]))
+        later = cells[number + columns :: columns] if chart.stacked and not parted else []
+        cell.numbered = not any(_same_x(cell, item) for item in later[:1])
     _widths(cells, columns, inner, most)
     if cells[0].panel.equal:  # names beside the axes are as long as these are high then
         _widths(cells, columns, inner, most)
     for cell in cells:
         _above(cell, inner - cell.left - cell.right)
+    return cells
+
+
+def _panels(sheet: Canvas, cells: list[Cell], columns: int, top: float) -> float:
+    """Draw cells below a place, in so many columns; where they end."""
+    inner = _inner(sheet.width, columns)
     for number in range(0, len(cells), columns):
         row = cells[number : number + columns]
         above = max(cell.above for cell in row)
