@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError
+from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.present.composition import build
 from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.pictures import SECTIONS, LazyPicture, each, pictures
@@ -88,6 +90,18 @@ def test_pictures_have_a_place_a_caption_and_a_name_of_their_own(name: str, some
         assert picture.caption.endswith(".") and picture.caption[0].isupper()
     names = [picture.name for picture in every]
     assert len(names) == len({*names}) and some <= {*names}
+
+
+def test_a_run_on_a_support_has_pictures_of_gauges_and_mounts() -> None:
+    """Each with a name and a caption of its own, below a heading that is true of it."""
+    machine = eq.load("yamashita-rig")
+    found = find(replace(machine, run=RunPlan(duration=0.02, speed=0.0, support=True)))
+    assert isinstance(found, Findings)
+    shown = [*each(found, sections=("run",))]
+    assert [picture.name for picture in shown] == ["run", "run-gauges", "run-mounts"]
+    assert len({picture.caption for picture in shown}) == 3
+    (section,) = [one for one in build(found).sections if one.name == "run"]
+    assert section.title == "Run"
 
 
 def test_a_report_has_the_run_that_the_file_asks_for() -> None:

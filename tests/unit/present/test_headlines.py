@@ -313,6 +313,10 @@ def test_rows_of_a_high_picture_are_drawn_like_the_whole() -> None:
         assert titles and len(block.rows) > 1, block.name
         each_row = [title for svg in block.rows for title in titles if f">{title}</text>" in svg]
         assert sorted(each_row) == sorted(titles), block.name
+        # in the scale of the whole, beside which some are drawn larger
+        larger = re.compile(r">(drawn [0-9.]+ times as large)<")
+        each_row = [text for svg in block.rows for text in larger.findall(svg)]
+        assert sorted(each_row) == sorted(larger.findall(block.svg)), block.name
 
 
 def test_no_remark_on_the_appendix_begins_a_page() -> None:
