@@ -39,7 +39,7 @@ def block_messages(blocks: Iterable[Block | ReportSection]) -> Iterator[Values]:
                 omitted = block.omitted if place == len(block.notes) else 0
                 yield _text(with_omitted(noted(note), omitted), False)
         else:
-            raise TypeError(f"a block of the kind {block.kind} has no message")
+            raise TypeError(block.kind)
 
 
 def _text(text: str, emphasized: bool) -> Values:
