@@ -22,9 +22,16 @@ from equipoise.running.drives_equation import DriveAngles, DrivesEquation, Drive
 from equipoise.running.drives_linkage import References, pose_of
 from equipoise.running.mount_contacts import MountContacts
 from equipoise.running.sources import LOADS, plus
-from equipoise.running.support_pose import SupportedPose, SupportInertia
+from equipoise.running.support_pose import SupportedPose
 from equipoise.signals import Array
-from equipoise.vibration.body import PITCH, MountContact, Rest, SupportBody, contacts_of
+from equipoise.vibration.body import (
+    PITCH,
+    MountContact,
+    PlanarInertia,
+    Rest,
+    SupportBody,
+    contacts_of,
+)
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.support_motion import SupportMotion
 
@@ -91,16 +98,9 @@ class SupportedEquation(DrivesEquation):
         return Linear.of(self.machine, "moment").rest
 
     @cached_property
-    def support(self) -> SupportInertia:
+    def support(self) -> PlanarInertia:
         """The support alone."""
-        matrix = self.body.mass
-        return SupportInertia(
-            float(matrix[0, 0]),
-            complex(matrix[1, 5], -matrix[0, 5]),
-            float(matrix[5, 5]),
-            complex(*self.body.reference[:2]),
-            self.body.free_in_plane,
-        )
+        return self.body.in_plane
 
     @property
     def coordinates(self) -> int:
@@ -194,12 +194,13 @@ class SupportedEquation(DrivesEquation):
     def with_rotors(self, inertia: Array) -> Array:
         """Inertia (N + D, N + D, K) with that of motors, which turn on the support."""
         whole, drives = np.array(inertia), len(self.drives)
+        whole[:drives, :drives] = super().with_rotors(whole[:drives, :drives])
+        if PITCH not in self.support.free:
+            return whole
+        pitch = drives + self.support.free.index(PITCH)
         for k, drive in enumerate(self.drives):
-            if drive.motor is None:
-                continue
-            whole[k, k] += drive.motor.ratio**2 * drive.motor.inertia
-            if PITCH in self.support.free:
-                at = drives + self.support.free.index(PITCH)
-                whole[at, k] += drive.motor.ratio * drive.motor.inertia
-                whole[k, at] += drive.motor.ratio * drive.motor.inertia
+            if drive.motor is not None:
+                both = drive.motor.ratio * drive.motor.inertia
+                whole[pitch, k] += both
+                whole[k, pitch] += both
         return whole

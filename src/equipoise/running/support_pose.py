@@ -13,7 +13,6 @@ are further coordinates beside the angles of the drives, and the support itself 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -23,21 +22,7 @@ from equipoise.mechanism.dynamics.friction import Demands
 from equipoise.mechanism.formulas import kernels
 from equipoise.running.drives_linkage import DrivesPose
 from equipoise.signals import Array
-from equipoise.vibration.body import PITCH
-
-
-class SupportInertia(NamedTuple):
-    """The support alone, seen from its reference point.
-
-    mass : kg.  first : first moment, complex, kg m.  inertia : kg m2.  reference : the point, m,
-    complex.  free : which of surge, heave and pitch it can move in.
-    """
-
-    mass: float
-    first: complex
-    inertia: float
-    reference: complex
-    free: tuple[int, ...]
+from equipoise.vibration.body import PITCH, PlanarInertia
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +32,7 @@ class SupportedPose(DrivesPose):
     place, rate : displacements and velocities (3, K) of the support along surge, heave and pitch.
     """
 
-    support: SupportInertia
+    support: PlanarInertia
     place: Array
     rate: Array
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,20 @@ MISSING = Note(
 ).about("the-machine-stands-on-solid-ground")
 LOOSE = 1e-9
 """Share of a load that may be left over by mounts that carry it."""
+
+
+class PlanarInertia(NamedTuple):
+    """A support alone in the plane, seen from its reference point.
+
+    mass : kg.  first : first moment, complex, kg m.  inertia : kg m2.  reference : the point, m,
+    complex.  free : which of surge, heave and pitch it can move in.
+    """
+
+    mass: float
+    first: complex
+    inertia: float
+    reference: complex
+    free: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +98,18 @@ class SupportBody:
         """Mass matrix of the support alone."""
         arm = np.array(self.support.center_of_mass) - self.reference
         return rigid_mass(self.support.mass, arm, self._inertia(arm))
+
+    @property
+    def in_plane(self) -> PlanarInertia:
+        """What of it moves in the plane of the drawing, of a planar support."""
+        matrix = self.mass
+        return PlanarInertia(
+            float(matrix[0, 0]),
+            complex(matrix[1, 5], -matrix[0, 5]),
+            float(matrix[5, 5]),
+            complex(*self.reference[:2]),
+            self.free_in_plane,
+        )
 
     def _inertia(self, arm: Array) -> Array:
         """Inertia tensor (3, 3) about the centre of mass, which lies at `arm` (3,)."""

@@ -78,11 +78,7 @@ class Coupled:
         cls, body: SupportBody, rest: Rest, speed: float, torque: Torque | None = None
     ) -> Coupled:
         """On the support of the model."""
-        matrix = body.mass
-        first, reference = complex(matrix[1, 5], -matrix[0, 5]), complex(*body.reference[:2])
-        sums = float(matrix[0, 0]), first, float(matrix[5, 5])
-        contacts = contacts_of(body, rest)
-        return cls(body.machine, speed, *sums, reference, body.free_in_plane, contacts, torque)
+        return cls(body.machine, speed, *body.in_plane, contacts_of(body, rest), torque)
 
     @classmethod
     def on_ground(cls, machine: Machine, speed: float, torque: Torque) -> Coupled:
