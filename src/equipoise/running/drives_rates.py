@@ -26,8 +26,8 @@ BRAKE = "brake"
 class DrivesReadings(NamedTuple):
     """What else is known in K states.
 
-    torques : of all drives (N, K), N m.  margins : of dyads (D, K).  joint_rates : (J, K) of joints
-    with friction, rad/s or m/s.
+    torques : of all drives (N, K), N m, and forces of strokes, N.  margins : (D, K) as of
+    `DrivesEquation.margins`.  joint_rates : (J, K) of joints with friction, rad/s or m/s.
     """
 
     torques: Array
@@ -67,7 +67,7 @@ class DrivesRates:
 
     @property
     def count(self) -> int:
-        """How many drives are unknown."""
+        """How many unknowns there are."""
         return len(self.equation.unknowns)
 
     def where(self, time: Array, states: Array) -> DriveAngles:
@@ -96,8 +96,9 @@ class DrivesRates:
 
     def others(self, rows: Array) -> DrivesReadings:
         """By the rows of `NodeValues.others` (O, K)."""
-        drives, dyads = len(self.drivers), len(self.equation.dead_positions)
-        return DrivesReadings(rows[:drives], rows[drives : drives + dyads], rows[drives + dyads :])
+        drives = len(self.drivers)
+        before = drives + len(self.equation.dead_positions)
+        return DrivesReadings(rows[:drives], rows[drives:before], rows[before:])
 
     def at(self, time: Array, states: Array, near: References) -> NodeValues | None:
         """Rates in K states; None where the machine cannot be, or does not obey the laws."""
