@@ -30,6 +30,10 @@ EVENTS = {
     "turns": to_say("end of the run"),
     "time": to_say("end of the run"),
 }
+NO_MOTOR = to_say(
+    "The machine has no motor: it moves from its initial speed under weight, springs and loads; "
+    "add a table [drive.motor] to drive it."
+)
 MOST_EVENTS = 20
 SETTLED = 1e-3
 """Of the kinetic energy: what a drive gives in a cycle beyond it speeds the machine up."""
@@ -46,12 +50,7 @@ def run_headline(run: Run, alone: bool = False) -> Iterator[Block]:
     """
     yield Text(verdict(run), broken_if(run.end.kind == "stall" or run.driven_back is not None))
     if run.machine.drive.motor is None:
-        yield Text(
-            say(
-                "The machine has no motor: it moves from its initial speed under weight, springs "
-                "and loads; add a table [drive.motor] to drive it."
-            )
-        )
+        yield Text(say(NO_MOTOR))
     if remark := _other_speed(run):
         yield Text(remark)
     if run.flywheel is not None:

@@ -12,11 +12,12 @@ from equipoise.i18n import say, to_say
 from equipoise.quantities import PER_RPM, number
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
 from equipoise.running.blocks import EVENTS as OF_A_RUN
-from equipoise.running.blocks import MOST_EVENTS, losses_table, lossiest
+from equipoise.running.blocks import MOST_EVENTS, NO_MOTOR, losses_table, lossiest
 from equipoise.running.drives_run import FREE, GIVEN, MOTOR
 from equipoise.running.friction import FRICTION
 from equipoise.running.support_equation import MOUNTS
 from equipoise.vibration.blocks import PARTS, extreme_labels, support_rows
+from equipoise.vibration.headline import readings_in_time
 
 if TYPE_CHECKING:
     from equipoise.running.drives_integration import DriveEvent
@@ -50,13 +51,17 @@ OTHER_END = to_say("The run ends after {time} s.")
 
 
 def run_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
-    """How the run ends; alone also each drive in its last cycle.
+    """How the run ends; alone also each drive in its last cycle, and what gauges read.
 
     alone : whether nothing follows, as on a terminal.
     """
     yield Text(verdict(run), broken_if(run.end.kind in ("stall", "dead", "lever")))
+    if run.machine.has_crank and run.machine.drive.motor is None:
+        yield Text(say(NO_MOTOR))
     if alone and (lines := (*_speeds(run), *lossiest(run))):
         yield Facts(say("Last cycle"), lines)
+    if alone and run.support is not None:
+        yield from readings_in_time(run.support)
 
 
 def verdict(run: DrivesRun) -> str:

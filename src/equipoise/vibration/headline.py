@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import said, say, to_say
 from equipoise.quantities import PER_RPM, brief, number
@@ -18,14 +20,16 @@ from equipoise.results.rotors import rotor_sentence
 from equipoise.results.yardsticks import assess, sentence, verdict
 from equipoise.vibration.forced import excitation_model_of, readings_of
 from equipoise.vibration.linear import Linear, around, resonance_note, resonances
-from equipoise.vibration.response import MODELS
+from equipoise.vibration.response import MODELS, members_of
 
 if TYPE_CHECKING:
     from equipoise.vibration.response import DriveSignals, Response
+    from equipoise.vibration.support_motion import SupportMotion
     from equipoise.vibration.sweep import Sweep
 
 MOST_NOTES, MOST_GAUGES, MOST_LOUD = 3, 6, 3
 """Notes, gauges and resonances that stand first; the others follow with all tables."""
+READINGS = to_say("What the gauges read, peak to peak")
 
 
 def analysis_headline(analysis: Analysis, alone: bool = False) -> Iterator[Block]:
@@ -63,7 +67,7 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
     yield Text(say("Model {model}: {what}", model=response.model, what=say(MODELS[response.model])))
     if response.gauges:
         worst = "" if first is None else first.item
-        yield Facts(say("What the gauges read, peak to peak"), tuple(_readings(response, worst)))
+        yield Facts(say(READINGS), tuple(_readings(response, worst)))
     yield from map(Text, _resonances(response))
     if response.notes:
         yield Notes(response.notes[:MOST_NOTES])
@@ -98,9 +102,21 @@ def _readings(response: Response, worst: str) -> Iterator[str]:
 
     for name in sorted(response.gauges, key=place)[:MOST_GAUGES]:
         gauge = response.gauges[name]
-        size = float(gauge.displacement.peak_to_peak)
-        unit = shown_in("rad" if gauge.rotation else "m", [size])
-        yield say("{gauge}: {size}", gauge=name, size=unit.with_unit(unit.text(size, digits=3)))
+        yield _reading(name, float(gauge.displacement.peak_to_peak), gauge.rotation)
+
+
+def readings_in_time(motion: SupportMotion) -> Iterator[Block]:
+    """What gauges read of a motion in time, where there are any."""
+    turning = members_of("gauges")(motion.body.machine)
+    sizes = {name: float(np.ptp(values)) for name, values in motion.gauges.items()}
+    if lines := [_reading(name, size, turning[name]) for name, size in sizes.items()]:
+        yield Facts(say(READINGS), tuple(lines[:MOST_GAUGES]))
+
+
+def _reading(name: str, size: float, rotation: bool) -> str:
+    """What a gauge reads, peak to peak, m or rad."""
+    unit = shown_in("rad" if rotation else "m", [size])
+    return say("{gauge}: {size}", gauge=name, size=unit.with_unit(unit.text(size, digits=3)))
 
 
 def _size(value: float) -> float:
