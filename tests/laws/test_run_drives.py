@@ -210,6 +210,13 @@ def test_a_flywheel_is_as_inertia_of_its_link() -> None:
     assert ends[0] == pytest.approx(ends[1], rel=1e-9)
 
 
+def test_strokes_alone_are_refused_without_advice_that_cannot_be_followed() -> None:
+    """Neither a motor nor `free` goes with a stroke."""
+    with pytest.raises(UsageError, match=r"given stroke.*`equipoise analyze`") as refused:
+        eq.run(eq.load("hydraulic-loader"), 1.0)
+    assert "motor" not in str(refused.value)
+
+
 def test_turns_of_a_crank_that_stands_are_refused() -> None:
     machine = cranks(eq.Drive("left", 0.0), FurtherDrive("right", motor=Motor(torque=2.0)))
     for given in ({"turns": 2.0}, {"duration": 1.0, "off_turns": 1.0}):

@@ -17,7 +17,7 @@ from equipoise.mechanism.parts.machine import FurtherDrive, Row
 from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.mechanism.parts.support import Mount, Support
 from equipoise.mechanism.parts.timed_loads import TimedLoad
-from equipoise.running.drives_blocks import run_blocks
+from equipoise.running.drives_blocks import run_blocks, run_headline
 from equipoise.running.drives_run import DrivesRun
 from equipoise.running.support_equation import SupportedEquation
 
@@ -122,6 +122,17 @@ def test_a_run_on_its_support_tells_gauges_and_mounts() -> None:
     assert "mounts" in [row[0] for row in tables["Energy from the start to the end"].rows]
 
 
+def test_its_summary_has_what_gauges_read() -> None:
+    run = on_support(eq.load("sieve"), "0.1 s")
+    assert run.support is not None
+    (facts,) = (block for block in run_headline(run, alone=True) if hasattr(block, "items"))
+    texts = [block.text for block in run_headline(run) if hasattr(block, "text")]
+    assert any("no motor" in text for text in texts)
+    assert [line.partition(":")[0] for line in facts.items] == [*run.support.gauges]
+    size = 1e3 * float(np.ptp(run.support.gauges["stand"]))
+    assert facts.items[0] == f"stand: {size:.3g} mm"
+
+
 def test_the_file_says_whether_the_support_moves() -> None:
     machine = eq.load("balance-rig")
     planned = replace(machine, run=RunPlan(duration=0.1, support=True))
@@ -146,6 +157,14 @@ def test_a_crank_without_motor_coasts_on_its_support() -> None:
     assert speed[0] == pytest.approx(machine.drive.speed)
     assert np.ptp(speed) > 0.01 * speed[0]
     assert run.drives["crank"].moved_by == "free"
+
+
+def test_turns_of_a_crank_that_starts_beside_the_speed_0_of_the_file() -> None:
+    machine = eq.load("balance-rig")
+    machine = replace(machine, drive=replace(machine.drive, motor=None, speed=0.0))
+    run = on_support(machine, turns=0.1, speed="30 rpm")
+    assert run.end.kind == "turns"
+    assert abs(run.turned) == pytest.approx(0.1, abs=1e-9)
 
 
 def test_loads_between_links_and_frame_do_not_push_the_support() -> None:
@@ -190,6 +209,9 @@ def test_what_a_run_on_a_support_refuses(change: Any, says: str) -> None:
 def test_other_commands_name_the_run_on_a_support() -> None:
     with pytest.raises(EquipoiseError, match="run --support"):
         eq.simulate(wheels(), "1 s")
+    pushed = replace(eq.load("hydraulic-loader"), support=wheels().support)
+    with pytest.raises(EquipoiseError, match=r"not strokes.* `equipoise respond`"):
+        eq.simulate(pushed, "1 s")
     motors = eq.load("two-motor-mixer")
     for command in (eq.respond, lambda machine, **given: eq.simulate(machine, 1.0, **given)):
         with pytest.raises(EquipoiseError, match="the speed follows from the motor of one crank"):

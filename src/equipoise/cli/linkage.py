@@ -337,7 +337,7 @@ def run(
         Also size a flywheel for this speed fluctuation (highest minus lowest, over the mean), such
         as "2 %".
     support
-        Also follow the support, from rest in the drawn position; without it the frame is fixed.
+        Also follow the support, from rest in the drawn position; else the frame is fixed.
     motor
         Motor on the crank instead of that of the file, by the keys of [drive.motor], a comma
         between them.

@@ -32,6 +32,15 @@ from equipoise.running.strokes import Strokes, solved
 from equipoise.signals import Array
 from equipoise.vibration.support_motion import SupportMotion
 
+NO_FREE_DRIVE = Note(
+    "every drive follows a given motion, so that there is nothing to integrate; give one of them a "
+    "motor, or `free = true`"
+)
+STROKES_ALONE = Note(
+    "every drive follows a given stroke, so that there is nothing to integrate; "
+    "`equipoise analyze` computes its motion and forces"
+)
+
 
 class DriveAngles(NamedTuple):
     """Angles of all drives (N, K), rad, and their rates.
@@ -89,15 +98,8 @@ class DrivesEquation:
         if missing := massless(self.machine):
             raise MassError(missing)
         if not self.unknowns:
-            raise UsageError(
-                at_place(
-                    "drive",
-                    Note(
-                        "every drive follows a given motion, so that there is nothing to "
-                        "integrate; give one of them a motor, or `free = true`"
-                    ),
-                )
-            )
+            strokes_alone = all(drive.pushes for drive in self.drives)
+            raise UsageError(at_place("drive", STROKES_ALONE if strokes_alone else NO_FREE_DRIVE))
         if reason := next(_lacking(self.machine), None):
             raise UsageError(at_place(*reason))
 
@@ -255,7 +257,8 @@ class DrivesEquation:
         others = [k for k in range(len(self.drives)) if k not in pushed]
         _, first, second = strokes.commanded(where.crank_angle)
         angles = strokes.angles(where.crank_angle, where.angles, near)
-        speeds, following, bends, ways = map(np.array, where[2:6])
+        parts = where.speeds, where.following, where.bends, where.ways
+        speeds, following, bends, ways = (part.copy() for part in parts)
         speeds[pushed] = 0.0
         pose = pose_of(self.linkage, where.crank_angle, angles, speeds, near)
         lengths, slopes, _ = strokes.lengths(pose)

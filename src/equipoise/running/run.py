@@ -354,9 +354,9 @@ def run(
             _refuse_flywheel(machine)
         limits = _limits_of_drives(machine, limits)
         start = _start(machine.drive.speed, speed, angle)
+        equation = (SupportedEquation if on_support else DrivesEquation)(machine, start[1])
         starts = _start_of_drives(machine, start, _turns_counted(limits, progress), speed is None)
-        equation = SupportedEquation if on_support else DrivesEquation
-        return run_drives(equation(machine, start[1]), limits, starts)
+        return run_drives(equation, limits, starts)
     whole_turns = _turns_counted(limits, progress)
     first = 0.0 if machine.drive.motor is not None else machine.drive.speed
     start = _start(first, speed, angle)
@@ -426,7 +426,7 @@ def _limits_of_drives(machine: Machine, limits: Limits) -> Limits:
         time = 2 * pi * TURNS_OF_DRIVES / (pace or 1.0)
         return replace(limits, time=time, turns=TURNS_OF_DRIVES)
     counted = limits.turns < inf or limits.off_turns < inf
-    if counted and not (pace or machine.drive.moves_freely):
+    if counted and not (pace or machine.drive.moves_freely or machine.has_crank):
         raise UsageError(
             Note("turns are those of the crank, which has the speed 0; give times instead")
         )

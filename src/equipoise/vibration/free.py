@@ -221,6 +221,13 @@ def simulate(
     ModelError, UsageError, ResponseError.
     """
     duration = in_si(duration, "time", "duration")
+    if machine.support is not None and machine.pushers:
+        raise UsageError(
+            Note(
+                "`simulate` follows one crank that turns, not strokes; compute their vibration "
+                "with `equipoise respond`"
+            )
+        )
     if machine.support is not None and not machine.has_crank:
         raise UsageError(
             Note(
