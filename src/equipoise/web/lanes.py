@@ -95,14 +95,15 @@ class PageWork:
     def do(self, compute: Callable[[], Answer]) -> Answer:
         """Compute in this thread; `EndedError` as soon as `end` is called."""
         thread = get_ident()
-        with self._lock:
-            if self._ended:
-                raise EndedError
-            self._threads.add(thread)
         try:
-            return compute()
-        finally:
+            self._enter(thread)
+            try:
+                return compute()
+            finally:
+                self._leave(thread)
+        except EndedError:  # perhaps before this thread was left
             self._leave(thread)
+            raise
 
     def timed(self, compute: Callable[[], Answer]) -> Answer:
         """Compute and remember how long it took."""
@@ -141,15 +142,14 @@ class PageWork:
                 again.daemon = True
                 again.start()
 
+    def _enter(self, thread: int) -> None:
+        with self._lock:
+            if self._ended:
+                raise EndedError
+            self._threads.add(thread)
+
     def _leave(self, thread: int) -> None:
         """Let nobody raise anything in this thread any more."""
-        try:
-            self._forget(thread)
-        except EndedError:  # raised just before
-            self._forget(thread)
-            raise
-
-    def _forget(self, thread: int) -> None:
         with self._lock:
             self._threads.discard(thread)
             _raise_in(thread, None)
