@@ -168,6 +168,8 @@ class Foreground:
         """Give up what is computed in the background, which has been ended from outside."""
         running, self._running = self._running, deque()
         self.tasks.clear()
+        if any(task.message is None for task, _ in running):  # which is wanted as before
+            self.desk.session.more_told = None, None
         self._cancelled += [task.message for task, _ in running if task.message is not None]
 
     # -- one step ----------------------------------------------------------------------------------

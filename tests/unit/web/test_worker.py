@@ -130,6 +130,18 @@ def test_what_takes_long_can_be_cancelled(page: Foreground, what: str) -> None:
     assert kinds(asked(page, "edit", label="mass", edits=[MASS]))[0] == "state"
 
 
+def test_what_follows_from_a_design_comes_after_a_cancel_all_the_same(page: Foreground) -> None:
+    """Where it was computed in the worker that has been ended."""
+    asked(page, "edit", label="mass", edits=[MASS])
+    page.rest()
+    assert len(page.tasks) == 1
+    asked(page, "balance")
+    page.cancel()
+    texts(page)
+    page.rest()
+    assert {"response", "strokes"} <= {*kinds(done_beside(page))}
+
+
 def test_downloads_come_from_beside(page: Foreground) -> None:
     assert asked(page, "download", kind="csv") == []
     (file, *_) = [one for one in done_beside(page) if one["type"] == "file"]
