@@ -57,8 +57,9 @@ export function languages(): Record<string, string> {
 
 /** What a chart shows, and what to look for in it. */
 export function explained(chart: string): string {
-  const kind = chart.split("-")[0] ?? "";
-  return own.explained[chart] ?? told.explained[chart] ?? told.explained[kind] ?? "";
+  const [kind = ""] = chart.split(/-|\.\d/);
+  const text = (name: string) => own.explained[name] ?? told.explained[name];
+  return text(chart) ?? text(kind) ?? "";
 }
 
 /** Speak of a machine in words that fit it from now on. */

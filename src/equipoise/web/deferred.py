@@ -293,10 +293,7 @@ def _along_links(analysis: Analysis, block: FloatBlock) -> Iterator[Values]:
         from equipoise.web.result_blocks import stacked_chart
 
         for name in analysis.sections:
-            chooser, labels = (
-                say("Along {link}", link=name),
-                [f"{name}: {say(what)}" for what in ALONG],
-            )
+            chooser, labels = say("Along {link}", link=name), [f"{name}: {say(w)}" for w in ALONG]
             yield stacked_chart(along_link(analysis, name), labels, chooser, block)
 
 

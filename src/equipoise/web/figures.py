@@ -90,12 +90,21 @@ CHARTS = {
         "Speed of each drive from the start of the run. Look for the time until it rises no more, "
         "and for how far it swings in a turn, which a flywheel makes smaller."
     ),
-    "run.speed.1": to_say(
-        "Torque of each drive from the start of the run. What it gives at first and not later "
-        "speeds the machine up; its peak is what shaft and gears have to bear."
+    "run.speed": to_say(
+        "Torque or force of each drive from the start of the run. What it gives at first and not "
+        "later speeds the machine up; its peak is what shaft, gears or cylinder have to bear."
+    ),
+    "run.gauges": to_say(
+        "What a gauge reads from the start of the run. Look for its peak while the machine passes "
+        "resonances on its way to its speed, and for how long that lasts."
+    ),
+    "run.mounts": to_say(
+        "Force or torque of a mount on the support from the start of the run. Its peak is what "
+        "the mount and its fastening have to bear."
     ),
 }
-"""Name of a chart, or what stands before the first hyphen of it -> what it shows, what to look for.
+"""Name of a chart, or what stands in it before the first hyphen or number -> what it shows, what to
+look for.
 """
 
 

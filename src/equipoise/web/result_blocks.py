@@ -132,7 +132,8 @@ def _panel_chart(
     """A chart; `shared` are the values of its x axis that are sent, and their places."""
     x, kept = shared
     block.add(f"{name}.x", x)
-    choice = _panel_choice(name, panel, capital(panel.y.label), block, kept)
+    label = panel.title or capital(panel.y.label)
+    choice = _panel_choice(name, panel, label, block, kept)
     return chart(name, [choice], x={"array": f"{name}.x", "at": None, **_unit(panel.x)})
 
 

@@ -12,6 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.i18n import catalogue
+from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.schema.models import text_of
 from equipoise.web import documents as played_module
 from equipoise.web import interactive as interactive_module
@@ -41,6 +42,18 @@ def charts_of(session: Session) -> dict[str, list[str]]:
     return {chart["name"]: [one["name"] for one in chart["choices"]] for chart in charts}
 
 
+def explanation_of(chart: str) -> str:
+    """Name of the explanation of a chart, as a page finds it."""
+    return chart if chart in CHARTS else re.split(r"-|\.\d", chart)[0]
+
+
+def running_on_its_support() -> Session:
+    machine = replace(eq.load("balance-rig"), run=RunPlan(duration=0.1, support=True))
+    session = Session()
+    ask(session, "open", seq=1, name="rig.toml", text=eq.dumps(machine))
+    return session
+
+
 EXPLAINED = ["yamashita-rig", "four-row-transplanter", "stephenson-six-bar", "cutter-bar"]
 
 
@@ -49,7 +62,7 @@ EXPLAINED = ["yamashita-rig", "four-row-transplanter", "stephenson-six-bar", "cu
 def test_every_chart_is_explained_and_can_be_kept(name: str) -> None:
     session, _ = opened(name)
     charts = charts_of(session) | {"polar": [""], "path": [""], "output": ["links.crank.angle"]}
-    assert charts.keys() <= CHARTS.keys()
+    assert {*map(explanation_of, charts)} <= CHARTS.keys()
     if name == "stephenson-six-bar":
         del charts["output"]
     for chart, choices in charts.items():
@@ -61,14 +74,26 @@ def test_every_chart_is_explained_and_can_be_kept(name: str) -> None:
 # Charts are explained and kept: the test above.
 @pytest.mark.exhaustive
 def test_every_explanation_is_of_a_chart() -> None:
-    found = {"polar", "path", "output"}
-    for name in titles():
-        if found != CHARTS.keys() - {"stress"}:
-            found |= charts_of(opened(name)[0]).keys()
     session = Session()
     ask(session, "open", seq=1, name="engine.toml", text=eq.dumps(engine()))
-    found |= {name.partition("-")[0] for name in charts_of(session)}  # of each link its own
+    charts = charts_of(session) | charts_of(running_on_its_support())
+    found = {"polar", "path", "output", *map(explanation_of, charts)}
+    for name in titles():
+        if found != CHARTS.keys():
+            found |= {*map(explanation_of, charts_of(opened(name)[0]))}
     assert found == CHARTS.keys()
+
+
+def test_gauges_and_mounts_of_a_run_are_named_and_explained() -> None:
+    session = running_on_its_support()
+    _, told = ask(session, "run", seq=2)
+    charts = {chart["name"]: chart["choices"][0]["label"] for chart in told.content["charts"]}
+    assert {*map(explanation_of, charts)} <= CHARTS.keys()
+    of_support = ["run.gauges.0", "run.mounts.0", "run.mounts.1"]
+    assert [name for name in charts if name not in ("run.speed.0", "run.speed.1")] == of_support
+    for name, what in zip(of_support, ("gauge", "spring", "bearing"), strict=True):
+        assert charts[name].startswith(f"{what}: ")
+        kept(session, kind="chart", chart=name)
 
 
 def test_what_cannot_be_drawn_is_refused() -> None:
