@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import socket
 import struct
 import threading
@@ -493,7 +494,8 @@ def test_work_ends_with_its_page_and_leaves_no_word(
             ended.set()
 
     monkeypatch.setattr(balanced_module, "balanced", without_end)
-    with here.page() as page:
+    # whose own client may write that it lost its socket
+    with here.page(logger=logging.Logger("client", logging.CRITICAL)) as page:
         hear(page)
         assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
         assert begun.wait(300)
