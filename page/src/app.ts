@@ -75,7 +75,7 @@ export class App {
   );
   private readonly picker = picker((files) => void this.read(files));
   private readonly gallery = new Gallery({
-    wanted: () => this.talk.ask({ type: "gallery" }),
+    wanted: () => this.talk.ask({ type: "gallery" }, (refusal) => refusal !== null && this.gallery.forget()),
     stores: () => this.talk.ask({ type: "stores" }),
     store: (name) => void this.open({ type: "study", store: name }, name),
     begin: () => this.anew(),

@@ -98,6 +98,12 @@ export class Gallery {
     this.still.remove();
   }
 
+  /** They do not come: they are asked for again when it is shown again. */
+  forget(): void {
+    this.asked = false;
+    this.kinds.replaceChildren();
+  }
+
   add(one: Pictured, numbers: Numbers): void {
     const card = h(
       "button",
