@@ -170,13 +170,17 @@ class Problem:
 
     def cost_at(self, numbers: list[Array]) -> float:
         """Cost by the numbers of the parts, as the program has it."""
+        return self.plan.combined(self._scaled_values_at(numbers, self.plan.objectives))
+
+    def _scaled_values_at(
+        self, numbers: list[Array], objectives: Sequence[Objective]
+    ) -> list[float]:
+        """Values of objectives by the numbers of the parts, over their scales, as the program has
+        them.
+        """
         x = np.concatenate(numbers)
-        each = (
-            (objective.measure, self.signals[objective.name]) for objective in self.plan.objectives
-        )
-        return self.plan.combined(
-            [max(measured(s.at(x), how, s.sampling) for s in signals) for how, signals in each]
-        )
+        each = ((objective.measure, self.signals[objective.name]) for objective in objectives)
+        return [max(measured(s.at(x), how, s.sampling) for s in signals) for how, signals in each]
 
     def friction_change(self, numbers: list[Array], machine: Machine) -> float:
         """By how much objectives and limits of a machine change at most, over their scales, from
@@ -185,13 +189,10 @@ class Problem:
         numbers : of the parts, which make the machine.
         """
         asked = [objective for objective in self.asked if objective.output in self.rubs]
-        x, own = np.concatenate(numbers), self.values_of(machine, asked)
+        own, known = self.values_of(machine, asked), self._scaled_values_at(numbers, asked)
         changes = [
-            abs(
-                value / self.scale(item)
-                - max(measured(s.at(x), item.measure, s.sampling) for s in self.signals[item.name])
-            )
-            for item, value in zip(asked, own, strict=True)
+            abs(value / self.scale(item) - assumed)
+            for item, value, assumed in zip(asked, own, known, strict=True)
         ]
         return max(changes, default=0.0)
 
