@@ -70,9 +70,9 @@ CHARTS = {
         "near zero and turns round, a joint with play knocks."
     ),
     "stress": to_say(
-        "What a link bears along its length, at the crank angle at which its stress is largest; "
-        "the line is where. Look at which of tension and bending makes the stress, and whether a "
-        "notch or a hole could stand elsewhere."
+        "What a link bears along its length at the moment of its largest stress; the line is the "
+        "place of it. Look at whether tension or bending makes the stress, and whether a notch or "
+        "a hole could stand elsewhere."
     ),
     "output": to_say(
         "Any figure that the machine has over the crank angle, such as velocities, transmission "
