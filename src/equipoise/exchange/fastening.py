@@ -63,7 +63,7 @@ def threads_of(
 ) -> ScrewThreads | None:
     """The smallest threads whose screws hold a piece by friction; None where none fit and hold."""
     force, depth = SAFETY * _largest_force(piece, motion, link), piece["thickness"] or 0.0
-    engagement = ENGAGEMENT.get(material_of(piece.get("density")), DEEP_ENGAGEMENT)
+    engagement = ENGAGEMENT.get(material_of(piece.get("density", 0.0)), DEEP_ENGAGEMENT)
     pins = pins_on(motion, link)
     for size, area in STRESS_AREAS.items():
         share = min(1.0, depth / (engagement * MM * size))

@@ -124,7 +124,7 @@ def build(
     """Everything that a report tells, in a language.
 
     command : that makes it again.
-    together : whether a second process may help; see `drawing.drawings`.
+    parallel : whether a second process may help; see `pictures.drawings`.
 
     Raises
     ------
