@@ -96,6 +96,17 @@ def test_cycles_of_a_crank_of_constant_speed(speed: float) -> None:
     assert found.drives["right"].speed[-1] == pytest.approx(speed)
 
 
+@pytest.mark.parametrize(
+    "given", [{"turns": 2.0}, {"duration": 0.5}, {"duration": 0.5, "turns": 2}]
+)
+def test_a_run_ends_where_a_cycle_of_constant_speed_begins(given: dict[str, float]) -> None:
+    """Both happen at once."""
+    machine = cranks(eq.Drive("left", 8 * pi), FurtherDrive("right", free=True))
+    found = eq.run(machine, **given)
+    assert found.time[-1] == pytest.approx(0.5, rel=1e-12)
+    np.testing.assert_allclose(found.cycle_begins, [0.0, 0.25, 0.5], atol=1e-12)
+
+
 def test_a_crank_that_stands_still_beside_a_free_one() -> None:
     machine = cranks(eq.Drive("left", 0.0), FurtherDrive("right", motor=Motor(torque=2.0)))
     found = eq.run(machine, 0.5)

@@ -168,7 +168,9 @@ class DrivesIntegration:
         for _ in range(MOST_SPANS):
             self.rates.since = time
             self._observe(time, state)
-            until, last = min((moment, kind) for kind, moment in self._times() if moment > time)
+            moments = [(moment, kind) for kind, moment in self._times() if moment > time]
+            until = min(moments)[0]
+            due = sorted(kind for moment, kind in moments if moment - until <= ROUNDING * until)
             span = self._span((time, until), (state, gained), before)
             place, watch = self._first_in(span)
             at = np.array([place])
@@ -180,8 +182,11 @@ class DrivesIntegration:
             self.on_turns(abs(self._crank_angle(time, state) - self.start) / (2 * pi))
             before = span, place
             if watch is None and ended:
-                watch = DriveWatch(last, "", lambda _: np.zeros(0))
-            if watch is not None and watch.kind == "settled":
+                for kind in due:
+                    if goes_on:
+                        due_now = DriveWatch(kind, "", lambda _: np.zeros(0))
+                        goes_on, state = self._happens(due_now, time, state, gained)
+            elif watch is not None and watch.kind == "settled":
                 self._settle(self.rates.rubbing.index(watch.of), before)
             elif watch is not None and watch.kind == "contact":
                 self._touch(watch.of, before)
