@@ -308,4 +308,4 @@ def test_motor_as_curve_on_its_support_starts_and_is_switched_off() -> None:
     assert [event.kind for event in run.events][-2:] == ["off", "time"]
     assert run.energy_error < BALANCE
     late = run.time > 0.2
-    assert not np.any(run.drives["left crank"].torque[late])
+    assert not np.any(run.drives["left crank"].effort[late])
