@@ -196,14 +196,15 @@ class Problem:
         ]
         return max(changes, default=0.0)
 
-    def keeps_limits_with_friction(self, machine: Machine) -> bool:
-        """Whether a machine keeps the limits of what its friction changes."""
+    def limits_passed_with_friction(self, machine: Machine) -> list[str]:
+        """Names of the limits that a machine does not keep, of those that its friction changes."""
         limits = [limit for limit in self.plan.limits if limit.objective.output in self.rubs]
         values = self.values_of(machine, [limit.objective for limit in limits])
-        return all(
-            value - limit.most(self.before[limit.name]) <= KEPT * self.scale(limit.objective)
+        return [
+            limit.name
             for limit, value in zip(limits, values, strict=True)
-        )
+            if value - limit.most(self.before[limit.name]) > KEPT * self.scale(limit.objective)
+        ]
 
     def scale(self, objective: Objective) -> float:
         """What an objective or limit is told over: its value before, or where that is nothing but

@@ -120,9 +120,18 @@ def solve_problem(
 def _with_its_friction(problem: Problem, progress: Progress | None, above: float = inf) -> Solution:
     """The best numbers with the friction of their own forces."""
     try:
-        return _settled(problem, progress, above)
+        solution = _settled(problem, progress, above)
     except LimitsClashError as error:
-        kept = _nearest_to_limits(problem, error)
+        kept = _nearest_to_limits(problem, error.limits)
+        if kept is None:
+            raise
+    else:
+        if solution.settled:
+            return solution
+        passed = problem.limits_passed_with_friction(solution.machine)
+        kept = _nearest_to_limits(problem, passed)
+        if kept is None:
+            return solution
     try:
         solution = _settled(problem.linearized_at(kept), progress, above)
         if solution.settled:
@@ -153,11 +162,12 @@ def _within_limits(problem: Problem, kept: list[Array], progress: Progress | Non
     """Good numbers with the friction of their own forces, where limits leave so little room that
     they cannot be kept with that of other numbers; the gap tells how much better others may be.
 
-    kept : numbers that keep the limits with their own friction.
+    kept : numbers that come nearest to the limits with their own friction; where they pass them
+        because that has not settled, the result has not settled either.
 
     Raises
     ------
-    LimitsClashError : they do not.
+    LimitsClashError : the limits cannot be kept with the friction of these numbers.
     """
     for _ in range(ROUNDS):
         linearized = problem.linearized_at(kept)
@@ -169,24 +179,37 @@ def _within_limits(problem: Problem, kept: list[Array], progress: Progress | Non
             break
         kept = better.numbers
     linearized = problem.linearized_at(kept)
-    proved = _solve_once(linearized, progress)
-    return replace(proved, numbers=kept, machine=linearized.close.machine)
+    proved, machine = _solve_once(linearized, progress), linearized.close.machine
+    if problem.limits_passed_with_friction(machine):
+        return proved
+    best = replace(proved.best, value=problem.cost_of(machine))  # and not that of other numbers
+    return replace(proved, best=best, numbers=kept, machine=machine)
 
 
-def _nearest_to_limits(problem: Problem, error: LimitsClashError) -> list[Array]:
+def _limit_to_lower(problem: Problem, clash: Sequence[str]) -> Limit | None:
+    """Of limits that clash, the first that depends on friction, or else the first; None where only
+    the added mass is limited.
+    """
+    clashing = (limit for limit in problem.plan.limits if limit.name in clash)
+    rubs = problem.rubs
+    return min(clashing, key=lambda limit: limit.objective.output not in rubs, default=None)
+
+
+def _nearest_to_limits(problem: Problem, clash: Sequence[str]) -> list[Array] | None:
     """Numbers at which the first of the clashing outputs that depend on friction is least, with
-    its own friction.
+    its own friction; None where friction has no part in it.
 
     With that of another machine a limit may look as if it could not be met, or by how much.
 
     Raises
     ------
-    LimitsClashError : the other limits cannot be met either, or friction has no part in it.
+    LimitsClashError : the other limits cannot be met either.
     """
-    clashing = (limit for limit in problem.plan.limits if limit.name in error.limits)
-    limit = next((item for item in clashing if item.objective.output in problem.rubs), None)
-    if limit is None or not problem.moves(limit.objective):
-        raise error
+    limit = _limit_to_lower(problem, clash)
+    if limit is None or limit.objective.output not in problem.rubs:
+        return None
+    if not problem.moves(limit.objective):
+        return None
     others = tuple(other for other in problem.plan.limits if other != limit)
     plan = replace(problem.plan, objectives=(limit.objective,), limits=others)
     first = replace(problem, plan=plan, counts=problem.before, known=problem.effects)
@@ -225,7 +248,8 @@ def _on_the_way(
             [(1 - share) * item + share * two for item, two in pairs]
         )
         machine = problem.machine_with(numbers)
-        if problem.cost_of(machine) < cost - STILL and problem.keeps_limits_with_friction(machine):
+        cheaper = problem.cost_of(machine) < cost - STILL
+        if cheaper and not problem.limits_passed_with_friction(machine):
             return replace(towards, numbers=numbers, machine=machine)
     return None
 
@@ -395,8 +419,10 @@ def _limit_in_words(problem: Problem, name: str) -> Note | str:
 
 
 def _way_out(problem: Problem, clash: list[str]) -> Note:
-    """How small the first of the clashing outputs can become while the others are kept."""
-    limit = next((limit for limit in problem.plan.limits if limit.name in clash), None)
+    """How small one of the clashing outputs can become while the others are kept: one that depends
+    on friction, as that of the best machine found is the one with which it is least.
+    """
+    limit = _limit_to_lower(problem, clash)
     if limit is None:
         return Note("allow more of it") if len(clash) == 1 else Note("allow more of one of them")
     plan = problem.plan

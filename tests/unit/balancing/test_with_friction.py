@@ -32,6 +32,7 @@ RUBBING = replace(
 )
 BOX = (-0.02, 0.02)
 ROD = CenterMove("rod", x=(0.0, 0.05), y=(-0.01, 0.01))
+CRANK = CenterMove("crank", x=BOX, y=BOX)
 SECTOR = Weight("sector", radius=0.034, thickness=0.012, density=7850.0)
 
 
@@ -39,7 +40,7 @@ SECTOR = Weight("sector", radius=0.034, thickness=0.012, density=7850.0)
 def test_no_place_nearby_is_better(measure: Literal["rms", "peak"]) -> None:
     """Of centres of mass about that of the result, each with the friction that it has itself."""
     objective = Objective("joints.A", measure)
-    plan = Balance(moves=(CenterMove("crank", x=BOX, y=BOX),), objectives=(objective,))
+    plan = Balance(moves=(CRANK,), objectives=(objective,))
 
     def value_at(place: complex) -> float:
         moved = RUBBING.with_link("crank", center_of_mass=(place.real, place.imag))
@@ -85,7 +86,7 @@ def test_only_the_last_round_is_proved(monkeypatch: pytest.MonkeyPatch) -> None:
         return solve(self)
 
     plan = Balance(
-        moves=(CenterMove("crank", x=BOX, y=BOX), CenterMove("rod", x=(-0.02, 0.06), y=BOX)),
+        moves=(CRANK, CenterMove("rod", x=(-0.02, 0.06), y=BOX)),
         objectives=(Objective("drive_torque"),),
         limits=(Limit(Objective("joints.A", "peak"), ratio=0.95),),
     )
@@ -114,6 +115,39 @@ def test_what_can_be_reached_with_friction_is_not_refused(machine: eq.Machine) -
     with pytest.raises(UsageError, match="with the friction of the best machine found") as error:
         eq.balance(machine, beyond)
     assert f"can become {reached:.4g} N at the least" in str(error.value)
+
+
+def test_a_limit_is_kept_though_friction_does_not_settle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And the value by which such results are compared is the cost of their own numbers."""
+    limited = Objective("joints.B", "peak")
+    plan = Balance(
+        moves=(ROD, CRANK),
+        objectives=(Objective("shaking_force"),),
+        limits=(Limit(limited, ratio=1.0),),
+    )
+    problem = Problem.of(RUBBING, plan)
+    best = solution.solve_problem(problem)
+    monkeypatch.setattr(solution, "ROUNDS", 0)
+    first = solution._settled(problem, None, np.inf)
+    assert not first.settled
+    assert problem.limits_passed_with_friction(first.machine) == [limited.name]
+    kept = solution.solve_problem(problem)
+    assert problem.limits_passed_with_friction(kept.machine) == []
+    assert kept.best.value == pytest.approx(problem.cost_of(kept.machine), rel=1e-9)
+    assert kept.best.value > best.best.value
+
+
+def test_the_limit_that_friction_changes_is_said_to_be_too_low() -> None:
+    """Of a clash with one before it that no friction changes."""
+    force, joint = Objective("shaking_force"), Objective("joints.A", "peak")
+    plan = Balance(moves=(CRANK,), objectives=(joint,), limits=(Limit(force, ratio=0.5),))
+    reached = eq.balance(RUBBING, plan).objectives[joint.name][1]
+    plan = replace(plan, objectives=(Objective("drive_torque"),))
+    plan = replace(plan, limits=(*plan.limits, Limit(joint, at_most=0.99 * reached)))
+    with pytest.raises(UsageError, match="with the friction of the best machine found") as error:
+        eq.balance(RUBBING, plan)
+    assert "these limits clash: rms of shaking_force" in str(error.value)
+    assert f"peak of joints.A can become {reached:.4g} N at the least" in str(error.value)
 
 
 def test_limits_that_clash_apart_from_friction_are_refused_without_a_word_of_it() -> None:
@@ -146,7 +180,7 @@ def test_a_limit_alone_may_depend_on_friction() -> None:
     """So that the cost is the same with any friction, from which nothing is to be concluded."""
     limited = Objective("joints.A", "peak")
     plan = Balance(
-        moves=(CenterMove("crank", x=BOX, y=BOX),),
+        moves=(CRANK,),
         objectives=(Objective("shaking_force"),),
         limits=(Limit(limited, ratio=0.93),),
     )
