@@ -27,7 +27,7 @@ from equipoise.running.drivers import Driver
 from equipoise.running.drives_friction import DrivesFriction, FrictionOf
 from equipoise.running.drives_linkage import DrivesPose, References, pose_of, references_at
 from equipoise.running.mount_contacts import MountContacts
-from equipoise.running.sources import AppliedSource, plus, sources_of
+from equipoise.running.sources import AppliedSource, SourceInputs, plus, sources_of
 from equipoise.running.strokes import Strokes, solved
 from equipoise.signals import Array
 from equipoise.vibration.support_motion import SupportMotion
@@ -337,16 +337,21 @@ class DrivesEquation:
         """
         where = self.with_strokes(time, where, near)
         pose = self.pose(where.crank_angle, where.angles, where.speeds, near)
-        pace = self._pace(time, where.speeds[self.free])
-        factors = self.factors_at(time, since)
-        acting = [source.demands(pose.moving, pace, factors) for source in self.sources]
-        forces = np.zeros((len(acting), len(self.drives), pose.count))
-        for k, demands in enumerate(acting):
-            forces[k] = pose.generalized(demands)
+        crank_speed = self._pace(time, where.speeds[self.free])
+        inputs = SourceInputs(crank_speed, self.factors_at(time, since), pose.gravity)
+        acting = [source.demands(pose.moving, inputs) for source in self.sources]
+        forces = np.zeros((len(self.acting), self.coordinates, pose.count))
+        for k, (source, demands) in enumerate(zip(self.sources, acting, strict=True)):
+            forces[k] = pose.exerted(source, inputs, demands)
+        forces[len(acting) :] = self.mount_forces(where)
         rubbing = None
         if self.friction is not None:
             rubbing = self.friction.of(pose, plus(pose.turning, *acting))
         return DriveState(pose, where, self.with_rotors(pose.inertia), forces, rubbing)
+
+    def mount_forces(self, where: DriveAngles) -> Array:
+        """Generalized forces (0, N, K) of mounts of the support: none on a fixed frame."""
+        return np.zeros((0, *where.angles.shape))
 
     def pose(self, crank: Array, angles: Array, speeds: Array, near: References) -> DrivesPose:
         """The linkage as of `pose_of`."""

@@ -27,6 +27,7 @@ from equipoise.mechanism.dynamics.forces import inertia_moved
 from equipoise.mechanism.dynamics.friction import Demands
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.running.sources import AppliedSource, SourceInputs
 from equipoise.signals import Array
 
 References = Mapping[str, Array]
@@ -172,6 +173,18 @@ class DrivesPose:
             anchor, turn = self._ways(link)
             total -= kernels.dot(anchor, force) + turn * moment
         return total
+
+    @property
+    def gravity(self) -> Array | complex:
+        """m/s2, complex, in axes of the frame."""
+        return complex(*self.linkage.machine.gravity)
+
+    def exerted(self, source: AppliedSource, inputs: SourceInputs, demands: Demands) -> Array:
+        """Generalized force (N, K), N m, of a source.
+
+        demands : as of `AppliedSource.demands`.
+        """
+        return self.generalized(demands)
 
     def margins(self, names: Sequence[str]) -> Array:
         """Values (D, K) of the state."""

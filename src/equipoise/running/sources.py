@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,16 +17,22 @@ from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.steps import u
 from equipoise.mechanism.checks import FRAME
-from equipoise.mechanism.dynamics.applied_loads import against_soil, given_loads, spring_demands
+from equipoise.mechanism.dynamics.applied_loads import (
+    against_soil,
+    given_loads,
+    loads_from_outside,
+    soil_loads,
+    spring_demands,
+)
 from equipoise.mechanism.dynamics.forces import weight_demands
 from equipoise.mechanism.dynamics.friction import Demands
 from equipoise.mechanism.dynamics.rated_elements import rated_torque, rated_ways
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.dynamics.reduced import generalized_force
 from equipoise.mechanism.dynamics.shares import ELEMENTS
-from equipoise.mechanism.formulas.kernels import dot
+from equipoise.mechanism.formulas.kernels import dot, weight_demand
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.tip import surface_of, tip_link
+from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
@@ -86,39 +92,82 @@ LOADS = "loads"
 """In the works of a run: loads over the crank angle."""
 
 
+class SourceInputs(NamedTuple):
+    """What sources depend on in K states beside the motion of links.
+
+    crank_speed : (K,), rad/s, at which the machine drives over ground.
+    factors : of each load over time (K,).
+    gravity : m/s2, complex, in axes of the frame, (K,) where it tilts.
+    """
+
+    crank_speed: Array
+    factors: Factors
+    gravity: Array | complex
+
+
 class AppliedSource(Source):
     """A source that acts on links whatever presses in joints."""
 
     @abstractmethod
-    def demands(self, motion: Motion, pace: Array, factors: Factors) -> Demands:
+    def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
         """What would hold it, by link, in a motion whose crank speed is 1, so that its derivatives
         by the crank angle are those by time.
-
-        pace : speed (K,) of the crank, rad/s, by which soil passes.
         """
+
+    def from_outside(self, motion: Motion, inputs: SourceInputs, demands: Demands) -> Demands:
+        """What of it no body of the machine bears the opposite of, so that it moves a support, too:
+        nothing where not said otherwise.
+
+        demands : all of it, as of `demands`.
+        """
+        return {}
 
 
 @dataclass(frozen=True)
 class ByAngle(AppliedSource):
     """A source that depends on places alone.
 
-    of : what would hold it.
+    of : what would hold it.  outside : that part of it whose opposite no body of the machine bears.
     """
 
     key: str
     label: str
     of: Callable[[Motion], Demands]
     conserves: bool = False
+    outside: Callable[[Motion], Demands] = lambda motion: {}
 
     def columns(self, motions: Motions) -> list[Array]:
         return [np.asarray(sum(generalized_force(motion, self.of(motion)) for motion in motions))]
 
-    def demands(self, motion: Motion, pace: Array, factors: Factors) -> Demands:
+    def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
         return self.of(motion)
+
+    def from_outside(self, motion: Motion, inputs: SourceInputs, demands: Demands) -> Demands:
+        return self.outside(motion)
 
     def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
         torque: Array = columns[0]
         return torque
+
+
+@dataclass(frozen=True)
+class OfWeight(ByAngle):
+    """Weight of the links, and of a frame that moves.
+
+    frame : mass, kg, and first moment about its reference point, kg m, complex.
+    """
+
+    key: str = "weight"
+    label: str = to_say("weight")
+    of: Callable[[Motion], Demands] = weight_demands
+    conserves: bool = True
+    frame: tuple[float, complex] = (0.0, 0j)
+
+    def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
+        return weight_demands(motion, inputs.gravity)
+
+    def from_outside(self, motion: Motion, inputs: SourceInputs, demands: Demands) -> Demands:
+        return {**demands, FRAME: weight_demand(1.0, *self.frame, inputs.gravity)}
 
 
 @dataclass(frozen=True)
@@ -141,15 +190,11 @@ class OfSoil(AppliedSource):
             return np.zeros_like(speed)
         return np.asarray(np.sum(dot(self.forces(columns, speed), x + 1j * y), axis=0))
 
-    def demands(self, motion: Motion, pace: Array, factors: Factors) -> Demands:
-        assert self.planting.soil is not None
-        forward, acting = self.planting.forward(pace), []
-        for arm in self.planting.every_arm:
-            tip = motion.point(arm.tip)
-            over_ground = tip.velocity + forward
-            force = against_soil(self.planting.soil, self.surface - tip.y, over_ground)
-            acting.append((tip_link(motion.machine, arm.tip), arm.tip, force, 0.0))
-        return demands_of(motion, acting)
+    def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
+        return demands_of(motion, soil_loads(motion, inputs.crank_speed))
+
+    def from_outside(self, motion: Motion, inputs: SourceInputs, demands: Demands) -> Demands:
+        return demands
 
     def forces(self, columns: Array, speed: Array) -> Array:
         """Force (A, ...) on each tip of each row, N, complex."""
@@ -161,6 +206,10 @@ class OfSoil(AppliedSource):
 
 def _of_loads(motion: Motion) -> Demands:
     return demands_of(motion, given_loads(motion))
+
+
+def _loads_outside(motion: Motion) -> Demands:
+    return demands_of(motion, loads_from_outside(motion))
 
 
 def _of_springs(motion: Motion) -> Demands:
@@ -193,7 +242,7 @@ class OfRatedElements(AppliedSource):
     def sliding_torque(self, columns: Array, speed: Array, sense: float, factors: Factors) -> Array:
         return rated_torque(self._each, columns, speed, sense)
 
-    def demands(self, motion: Motion, pace: Array, factors: Factors) -> Demands:
+    def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
         return spring_demands(motion, rated=True, cause=self._each[0].cause)
 
     @property
@@ -222,10 +271,10 @@ class OfTimedLoads(AppliedSource):
         shares = (factor * column for factor, column in zip(each, columns, strict=False))
         return np.asarray(sum(shares, np.zeros(np.shape(speed))))
 
-    def demands(self, motion: Motion, pace: Array, factors: Factors) -> Demands:
+    def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
         parts = (
             {link: (factor * force, factor * moment) for link, (force, moment) in unit.items()}
-            for factor, unit in zip(factors, timed_units(motion), strict=True)
+            for factor, unit in zip(inputs.factors, timed_units(motion), strict=True)
         )
         return plus(*parts)
 
@@ -258,10 +307,15 @@ def plus(*demands: Mapping[str, Demand]) -> dict[str, Any]:
     return total
 
 
-def sources_of(machine: Machine) -> Iterator[AppliedSource]:
-    """Everything but drives, brakes and friction in joints."""
+def sources_of(
+    machine: Machine, frame: tuple[float, complex] = (0.0, 0j)
+) -> Iterator[AppliedSource]:
+    """Everything but drives, brakes and friction in joints.
+
+    frame : as of `OfWeight`.
+    """
     if any(machine.gravity):
-        yield ByAngle("weight", to_say("weight"), weight_demands, conserves=True)
+        yield OfWeight(frame=frame)
     stiff = [element for *_, element in machine.force_elements if not element.rated]
     if stiff or any(coupling.preload for coupling in machine.couplings):
         yield ByAngle("springs", to_say("springs"), _of_springs, conserves=True)
@@ -270,7 +324,7 @@ def sources_of(machine: Machine) -> Iterator[AppliedSource]:
         if own := tuple(item for item in rated if item[2].cause == cause):
             yield OfRatedElements(own, f"{cause}s", CAUSES[cause])
     if machine.loads:
-        yield ByAngle(LOADS, to_say("loads"), _of_loads)
+        yield ByAngle(LOADS, to_say("loads"), _of_loads, outside=_loads_outside)
     if machine.timed_loads:
         yield OfTimedLoads(machine.timed_loads)
     planting = machine.planting

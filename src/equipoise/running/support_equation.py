@@ -15,13 +15,11 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import size_of_bodies
-from equipoise.mechanism.dynamics.applied_loads import loads_from_outside
-from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.parts.support import PLANAR
-from equipoise.running.drives_equation import DriveAngles, DrivesEquation, DriveState
+from equipoise.running.drives_equation import DriveAngles, DrivesEquation
 from equipoise.running.drives_linkage import References, pose_of
 from equipoise.running.mount_contacts import MountContacts
-from equipoise.running.sources import LOADS, plus
+from equipoise.running.sources import AppliedSource, sources_of
 from equipoise.running.support_pose import SupportedPose
 from equipoise.signals import Array
 from equipoise.vibration.body import (
@@ -114,6 +112,11 @@ class SupportedEquation(DrivesEquation):
         free = (k for k, drive in enumerate(self.drives) if drive.moves_freely or single)
         return (*free, *range(count, self.coordinates))
 
+    @cached_property
+    def sources(self) -> tuple[AppliedSource, ...]:
+        """What acts beside the drives, mounts and friction in joints."""
+        return tuple(sources_of(self.machine, self.support[:2]))
+
     @property
     def acting(self) -> tuple[str, ...]:
         """Keys of what acts beside the drives and friction in joints."""
@@ -165,31 +168,12 @@ class SupportedEquation(DrivesEquation):
             self.linkage, own.along, self.support, *self.place_and_rate(angles, speeds)
         )
 
-    def at(self, time: Array, since: float, where: DriveAngles, near: References) -> DriveState:
-        """What acts in K states, as of `DrivesEquation.at`."""
-        pose = self.pose(where.crank_angle, where.angles, where.speeds, near)
-        pace, factors = self._pace(time, where.speeds[self.free]), self.factors_at(time, since)
-        acting = {source.key: source.demands(pose.moving, pace, factors) for source in self.sources}
-        if "weight" in acting:
-            acting["weight"] = pose.weights
-        forces = [pose.generalized(demands) for demands in acting.values()]
-        for k, key in enumerate(acting):
-            if key == "weight":
-                forces[k] += pose.on_support(pose.weights) + pose.support_weight
-            elif key == LOADS:
-                outside = demands_of(pose.moving, loads_from_outside(pose.moving))
-                forces[k] += pose.on_support(outside)
-            elif key == "soil":
-                forces[k] += pose.on_support(acting[key])
-        mounted = np.zeros((self.coordinates, pose.count))
-        wrench = self.mounts.wrench(pose.place, pose.rate)
-        mounted[len(self.drives) :] = wrench[[*self.support.free]]
-        rubbing = None
-        if self.friction is not None:
-            rubbing = self.friction.of(pose, plus(pose.turning, *acting.values()))
-        return DriveState(
-            pose, where, self.with_rotors(pose.inertia), np.array([*forces, mounted]), rubbing
-        )
+    def mount_forces(self, where: DriveAngles) -> Array:
+        """Generalized force (1, N + D, K) of all mounts."""
+        forces = np.zeros((1, *where.angles.shape))
+        wrench = self.mounts.wrench(*self.place_and_rate(where.angles, where.speeds))
+        forces[0, len(self.drives) :] = wrench[[*self.support.free]]
+        return forces
 
     def with_rotors(self, inertia: Array) -> Array:
         """Inertia (N + D, N + D, K) with that of motors, which turn on the support."""

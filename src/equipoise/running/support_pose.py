@@ -18,9 +18,11 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.steps import p
+from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.friction import Demands
 from equipoise.mechanism.formulas import kernels
 from equipoise.running.drives_linkage import DrivesPose
+from equipoise.running.sources import AppliedSource, SourceInputs
 from equipoise.signals import Array
 from equipoise.vibration.body import PITCH, PlanarInertia
 
@@ -54,9 +56,11 @@ class SupportedPose(DrivesPose):
         """Velocity (K,) of a point at a place with a unit of speed along surge, heave or pitch."""
         return np.asarray((self._back, 1j * self._back, 1j * rho + 0 * self._back)[coordinate])
 
-    def _arm(self, link: str) -> Array:
-        """Place (K,) of a link's anchor, from the reference point."""
-        return np.asarray(self.rows(p(self.linkage.anchors[link])[0])[-1] - self.support.reference)
+    def _arm(self, body: str) -> Array:
+        """Place (K,) of a link's anchor, from the reference point, which is the frame's own."""
+        if body == FRAME:
+            return np.zeros(self.count)
+        return np.asarray(self.rows(p(self.linkage.anchors[body])[0])[-1] - self.support.reference)
 
     @cached_property
     def _numbers(self) -> list[Array]:
@@ -113,36 +117,13 @@ class SupportedPose(DrivesPose):
         total[: self._drives] = super().generalized(demands)
         return total
 
-    def on_support(self, demands: Demands) -> Array:
-        """Generalized force (N + D, K) on the support alone, of what demands (K,) on links hold
-        that comes from outside.
-        """
-        total = np.zeros((self._drives + len(self.support.free), self.count))
-        for link, (force, moment) in demands.items():
-            self._add_on_support(total, self._arm(link), force, moment)
+    def exerted(self, source: AppliedSource, inputs: SourceInputs, demands: Demands) -> Array:
+        """Generalized force (N + D, K) of a source: on the support, of what comes from outside."""
+        total = self.generalized(demands)
+        outside = source.from_outside(self.moving, inputs, demands)
+        for body, (force, moment) in outside.items():
+            rho = self._arm(body)
+            for k, coordinate in enumerate(self.support.free, self._drives):
+                total[k] -= kernels.dot(self._way(coordinate, rho), force)
+                total[k] -= moment if coordinate == PITCH else 0.0
         return total
-
-    @cached_property
-    def weights(self) -> Demands:
-        """What holds the weight of the links."""
-        state = self.moving.state
-        return {
-            link: kernels.weight_demand(state[f"u({link})"], *own[:2], self.gravity)
-            for link, own in self._inertial.items()
-        }
-
-    @cached_property
-    def support_weight(self) -> Array:
-        """Generalized force (N + D, K) of the support's own weight."""
-        total = np.zeros((self._drives + len(self.support.free), self.count))
-        demand = kernels.weight_demand(1.0, self.support.mass, self.support.first, self.gravity)
-        self._add_on_support(total, 0.0, *demand)
-        return total
-
-    def _add_on_support(
-        self, total: Array, rho: Array | float, force: Array, moment: Array | float
-    ) -> None:
-        """Add to a generalized force what a demand on a body with its anchor at a place holds."""
-        for k, coordinate in enumerate(self.support.free, self._drives):
-            total[k] -= kernels.dot(self._way(coordinate, rho), force)
-            total[k] -= moment if coordinate == PITCH else 0.0

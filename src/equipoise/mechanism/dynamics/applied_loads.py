@@ -120,12 +120,16 @@ def given_loads(motion: Motion) -> Iterator[Acting]:
     return _acting(motion, lambda load: True)
 
 
-def soil_loads(motion: Motion) -> Iterator[Acting]:
-    """Link, point, force and torque of the soil on each tip."""
+def soil_loads(motion: Motion, crank_speed: Array | None = None) -> Iterator[Acting]:
+    """Link, point, force and torque of the soil on each tip.
+
+    crank_speed : as of `soil_force`.
+    """
     machine = motion.machine
     if machine.planting is not None and machine.planting.soil is not None:
         for arm in machine.planting.every_arm:
-            yield tip_link(machine, arm.tip), arm.tip, soil_force(motion, arm.tip), 0.0
+            force = soil_force(motion, arm.tip, crank_speed)
+            yield tip_link(machine, arm.tip), arm.tip, force, 0.0
 
 
 def _acting(motion: Motion, counts: Callable[[Load], bool]) -> Iterator[Acting]:
@@ -136,10 +140,12 @@ def _acting(motion: Motion, counts: Callable[[Load], bool]) -> Iterator[Acting]:
             yield load.reaction_link, load.point, -force, -torque
 
 
-def soil_force(motion: Motion, tip: str | None = None) -> Array:
+def soil_force(motion: Motion, tip: str | None = None, crank_speed: Array | None = None) -> Array:
     """Force of the soil on a tip (N,), N, complex; 0 above the surface.
 
     tip : of any arm; of the first where not given.
+    crank_speed : (N,), rad/s, at which the machine drives over ground; that of the motion if not
+        given.
 
     Raises
     ------
@@ -151,7 +157,8 @@ def soil_force(motion: Motion, tip: str | None = None) -> Array:
         return np.zeros(len(motion.crank_angle), complex)
     point = motion.point(tip or planting.tip)
     depth = surface_of(motion.machine) - point.y
-    over_ground = point.velocity + planting.forward(motion.speed)
+    speed = motion.speed if crank_speed is None else crank_speed
+    over_ground = point.velocity + planting.forward(speed)
     return np.asarray(against_soil(planting.soil, depth, over_ground))
 
 

@@ -322,9 +322,13 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
     return Forces(motion, pole, inertia, weight_demands(motion), *applied)
 
 
-def weight_demands(motion: Motion) -> dict[str, Demand]:
-    """What holds the weight of each link."""
-    machine, gravity = motion.machine, complex(*motion.machine.gravity)
+def weight_demands(motion: Motion, gravity: Array | complex | None = None) -> dict[str, Demand]:
+    """What holds the weight of each link.
+
+    gravity : m/s2, complex, in axes of the frame (N,) that tilts; that of the file if not given.
+    """
+    machine = motion.machine
+    gravity = complex(*machine.gravity) if gravity is None else gravity
     return {
         link: kernels.weight_demand(
             motion.state[f"u({link})"],
