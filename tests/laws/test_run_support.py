@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import EquipoiseError
+from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.figures.running import drives_charts
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import FurtherDrive, Row
@@ -20,6 +20,7 @@ from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.running.drives_blocks import run_blocks, run_headline
 from equipoise.running.drives_run import DrivesRun
 from equipoise.running.support_equation import SupportedEquation
+from support.refusals import refused
 
 ROTOR, OWN, STIFF = 0.02, 0.5, 30.0
 SPRING = {"spring": Mount(axis="pitch", torsional_stiffness=STIFF, preload=0.0)}
@@ -185,25 +186,25 @@ SPATIAL = {"pivot": None, "pivot_inertia": None, "inertia": (1.0, 1.0, 1.0),
 
 
 @pytest.mark.parametrize(
-    ("change", "says"),
+    ("change", "values"),
     [
-        (
-            lambda m: replace(m, support=None, balance=None),
-            "support: the machine stands on solid ground",
-        ),
-        (lambda m: replace(m, rows=ROWS), "rows: a run with its support computes one row"),
+        (lambda m: replace(m, rows=ROWS), {"place": "rows"}),
         (
             lambda m: replace(m, support=replace(m.support, **SPATIAL)),
-            "support.freedoms: a run with its support is for motion in the plane of the drawing; "
-            "leave out roll",
+            {"place": "support.freedoms", "names": "roll"},
         ),
+        (lambda m: replace(eq.load("hydraulic-loader"), support=m.support), {"place": "support"}),
     ],
+    ids=["rows", "spatial", "strokes"],
 )
-def test_what_a_run_on_a_support_refuses(change: Any, says: str) -> None:
-    machine = eq.load("balance-rig")
-    with pytest.raises(EquipoiseError) as refused:
-        on_support(change(machine), "1 s")
-    assert says in str(refused.value)
+def test_what_a_run_on_a_support_refuses(change: Any, values: dict[str, str]) -> None:
+    with refused(UsageError, **values):
+        on_support(change(eq.load("balance-rig")), "1 s")
+
+
+def test_a_run_with_a_support_that_is_not_there_is_refused() -> None:
+    with refused(ModelError, "support"):
+        on_support(replace(eq.load("balance-rig"), support=None, balance=None), "1 s")
 
 
 def test_other_commands_name_the_run_on_a_support() -> None:
