@@ -24,8 +24,8 @@ def findings_of(name: str) -> Findings | ToolFindings:
 
 @cache
 def report_of(name: str, language: str = "en") -> ReportDocument:
-    """What stands in the report of a model at its own speed."""
-    return build(findings_of(name), language)
+    """What stands in the report of a model at its own speed, as page and as PDF."""
+    return build(findings_of(name), language, by_rows=True)
 
 
 @cache

@@ -280,15 +280,14 @@ def report(
     """
     paths = _paths(file, out, pdf)
     rate = None if speed is None else quantity("--speed", speed, "angular speed")
-    from equipoise.present.composition import build, check, kind_of, write_document
+    from equipoise.present.composition import check, kind_of, write_document
     from equipoise.present.findings import find
     from equipoise.present.pages import boxed_in_pdf
 
     check(paths, language)
 
     result = find(file, speed=rate)
-    document = build(result, language, _command(file, language, speed), parallel=True)
-    write_document(document, paths)
+    document = write_document(result, paths, language, _command(file, language, speed))
 
     def lines() -> Iterator[str]:
         for path in paths:

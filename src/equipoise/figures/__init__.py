@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from equipoise.errors import UsageError
 from equipoise.results.charts import Chart
@@ -56,33 +56,36 @@ def is_wide(picture: Chart) -> bool:
     return drawings or picture.columns > 2 or len(panels) > MOST_OF_HALF
 
 
-def standalone_svg(picture: Chart) -> tuple[str, bool]:
-    """The picture as SVG for a page that tells its heading beside it; whether it is a wide one."""
-    from equipoise.figures.layout import HALF, WIDE, lay_out
-    from equipoise.figures.vector import svg_of
-
-    wide = is_wide(picture)
-    return svg_of(lay_out(picture, WIDE if wide else HALF, headed=False)), wide
-
-
 LOW = 260.0
 """Height of a picture that need not be parted, points: a third of a page."""
 
 
-def standalone_rows(picture: Chart) -> tuple[str, ...]:
-    """Rows of panels of a high picture that runs across a page, each as SVG of its own; none of
-    drawings, which are seen beside each other.
+class StandaloneSvg(NamedTuple):
+    """A picture as SVG for a page that has its heading beside it.
+
+    wide : whether it runs across the page.  rows : of its panels, each as SVG of its own.
     """
-    from equipoise.figures.layout import WIDE, lay_out, lay_out_rows
+
+    svg: str
+    wide: bool
+    rows: tuple[str, ...] = ()
+
+
+def standalone_svg(picture: Chart, by_rows: bool = False) -> StandaloneSvg:
+    """A picture without its heading.
+
+    by_rows : whether a high one that runs across a page is drawn by rows of its panels, too; those
+        of drawings are seen beside each other, and are not parted.
+    """
+    from equipoise.figures.layout import HALF, WIDE, lay_out, lay_out_rows
     from equipoise.figures.vector import svg_of
 
-    panels, columns = picture.panels, picture.columns
-    drawings = any(panel.equal and panel.y.label for panel in panels)
-    if drawings or not is_wide(picture) or len(panels) < 2 * columns:
-        return ()
-    if lay_out(picture, WIDE, headed=False).height <= LOW:
-        return ()
-    return tuple(map(svg_of, lay_out_rows(picture, WIDE)))
+    wide, panels = is_wide(picture), picture.panels
+    sheet = lay_out(picture, WIDE if wide else HALF, headed=False)
+    several = wide and len(panels) >= 2 * picture.columns and sheet.height > LOW
+    if not by_rows or not several or any(panel.equal and panel.y.label for panel in panels):
+        return StandaloneSvg(svg_of(sheet), wide)
+    return StandaloneSvg(svg_of(sheet), wide, tuple(map(svg_of, lay_out_rows(picture, WIDE))))
 
 
 def plot(result: Any, name: str = "", ax: Axes | None = None) -> Figure:

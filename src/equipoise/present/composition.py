@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,7 +20,7 @@ from equipoise.planting.blocks import planting_blocks
 from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.headlines import seen_in
 from equipoise.present.pages import ReportDocument, SummaryAnswer, check_pdf, page, pdf
-from equipoise.present.pictures import drawings
+from equipoise.present.pictures import Drawings, drawings
 from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_summary import outstanding, tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number
@@ -120,28 +120,33 @@ def build(
     language: str = "en",
     command: str = "",
     parallel: bool = False,
+    by_rows: bool = False,
 ) -> ReportDocument:
     """Everything that a report tells, in a language.
 
     command : that makes it again.
     parallel : whether a second process may help; see `pictures.drawings`.
+    by_rows : whether high pictures are drawn by rows of panels too, by which a PDF parts them.
 
     Raises
     ------
     UsageError : the analysis does not cover whole turns; errors of it otherwise.
     """
     with speaking(language), in_own_words(findings.owner):
-        if isinstance(findings, ToolFindings):
-            of_tool = _of_tool(findings, language, command)
-        else:
+        if isinstance(findings, Findings):
             check_whole_cycle(findings)
-            of_tool = _of_linkage(findings, language, command, parallel)
-        return replace(of_tool, units=chosen_units())
+        pictures = drawings(findings, parallel, by_rows)
+        if isinstance(findings, Findings):
+            document = _of_linkage(findings, pictures, language, command)
+        else:
+            document = _of_tool(findings, pictures, language, command)
+        return replace(document, units=chosen_units())
 
 
-def _of_linkage(findings: Findings, language: str, command: str, parallel: bool) -> ReportDocument:
+def _of_linkage(
+    findings: Findings, pictures: Drawings, language: str, command: str
+) -> ReportDocument:
     machine, analysis = findings.machine, findings.analysis
-    pictures = drawings(findings, parallel)
     blocks: Parts = {"model": [*model_blocks(machine), *pictures.get("model", [])]}
     blocks["motion"] = [*pictures.get("motion", []), *_details(motion_blocks(analysis))]
     blocks["motion"] += [*kind_tables(analysis, "motion"), *elements_tables(analysis)]
@@ -223,8 +228,10 @@ def balance_blocks(findings: Findings) -> Iterator[Block]:
         yield from map(Text, nothing_told(balanced))
 
 
-def _of_tool(findings: ToolFindings, language: str, command: str) -> ReportDocument:
-    pictures: list[Block | ReportSection] = [*drawings(findings).get("tool", [])]
+def _of_tool(
+    findings: ToolFindings, drawn: Drawings, language: str, command: str
+) -> ReportDocument:
+    pictures = drawn.get("tool", [])
     blocks: list[Block | ReportSection] = []
     if findings.design is not None:
         blocks.extend(design_blocks(findings.design, judged=False))  # which the summary says
@@ -279,7 +286,7 @@ def _sections(
 ) -> tuple[tuple[ReportSection, ...], tuple[ReportSection, ...]]:
     """Sections of the blocks, then what every report ends with; and the appendix.
 
-    seen : what is seen in a section, by its name.
+    headlines : what is seen in a section, by its name.
     """
     template = to_say("Made by Equipoise {version} from {file}")
     origin = say(template, version=equipoise.__version__, file=findings.file)
@@ -406,8 +413,7 @@ def report(
         raise UsageError(
             at_place("report", Note("no file is named; give one such as 'report.html'"))
         )
-    result = find(model, speed=speed)
-    write_document(build(result, language, command, parallel=True), outs)
+    write_document(find(model, speed=speed), outs, language, command)
 
 
 def report_page(findings: Findings | ToolFindings, language: str = "en", command: str = "") -> str:
@@ -439,14 +445,24 @@ def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:
                 ),
             )
         )
-    if "pdf" in {kind_of(out) for out in outs}:
+    if _has_pdf(outs):
         check_pdf(language)
 
 
-def write_document(document: ReportDocument, outs: Iterable[str | os.PathLike[str]]) -> None:
-    """Write a document as each of these files."""
+def _has_pdf(outs: Iterable[str | os.PathLike[str]]) -> bool:
+    return "pdf" in map(kind_of, outs)
+
+
+def write_document(
+    findings: Findings | ToolFindings,
+    outs: Sequence[str | os.PathLike[str]],
+    language: str,
+    command: str,
+) -> ReportDocument:
+    """Write a report of findings as each of these files; what stands in it."""
     from equipoise.schema.files import write, write_all
 
+    document = build(findings, language, command, parallel=True, by_rows=_has_pdf(outs))
     for out in outs:
         data = pdf(document) if kind_of(out) == "pdf" else page(document).encode()
         folder, name = os.path.split(out)
@@ -454,3 +470,4 @@ def write_document(document: ReportDocument, outs: Iterable[str | os.PathLike[st
             write(out, data)
         else:
             write_all(folder, {name: data})
+    return document

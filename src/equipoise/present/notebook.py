@@ -66,4 +66,4 @@ def _pose(machine: Machine) -> tuple[str, tuple[Block, ...]]:
 
 
 def _picture(analysis: Analysis) -> str:
-    return standalone_svg(linkage(analysis, None))[0]
+    return standalone_svg(linkage(analysis, None)).svg

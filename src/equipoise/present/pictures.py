@@ -11,8 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from equipoise.dataclass import dataclass
-from equipoise.figures import standalone_rows
-from equipoise.figures import standalone_svg as svg_of
+from equipoise.figures import standalone_svg
 from equipoise.i18n import say, to_say
 from equipoise.present import headlines, tool_summary
 from equipoise.present import headlines as gauged
@@ -478,33 +477,38 @@ Drawings = dict[str, list[SvgPicture]]
 """Pictures by section."""
 
 
-def drawings(findings: Findings | ToolFindings, parallel: bool = False) -> Drawings:
+def drawings(
+    findings: Findings | ToolFindings, parallel: bool = False, by_rows: bool = False
+) -> Drawings:
     """All pictures.
 
     parallel : whether a copy of this process may draw half of them, where there are two processors,
         Linux, and no other thread, which the copy would lack.
+    by_rows : whether high ones are drawn by rows of their panels too; see `SvgPicture`.
     """
     processors = len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
     may_fork = parallel and processors > 1 and threading.active_count() == 1
     other = _others(findings) if may_fork else ()
     if not other:
-        return _draw(findings, SECTIONS)
+        return _draw(findings, SECTIONS, by_rows)
     _ = findings.notes  # everything that both need is computed once
     import multiprocessing
 
     context = multiprocessing.get_context("fork")
     here, there = context.Pipe(duplex=False)
-    helper = context.Process(target=_send, args=(there, findings, other), daemon=True)
+    args = there, findings, other, by_rows
+    helper = context.Process(target=_send, args=args, daemon=True)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # threads of BLAS can be forked
         helper.start()
     there.close()
     try:
-        pictures = _draw(findings, [section for section in SECTIONS if section not in other])
+        rest = [section for section in SECTIONS if section not in other]
+        pictures = _draw(findings, rest, by_rows)
         of_helper: Drawings = here.recv()
         return pictures | of_helper
     except EOFError:  # the helper failed, and what it failed of is to be told
-        return pictures | _draw(findings, other)
+        return pictures | _draw(findings, other, by_rows)
     finally:
         helper.kill()
         helper.join()
@@ -519,21 +523,25 @@ def _others(findings: Findings | ToolFindings) -> Collection[str]:
     return ("motion", "forces") if findings.planting is None else ("motion", "planting")
 
 
-def _send(pipe: Connection, findings: Findings | ToolFindings, sections: Collection[str]) -> None:
+def _send(
+    pipe: Connection,
+    findings: Findings | ToolFindings,
+    sections: Collection[str],
+    by_rows: bool,
+) -> None:
     try:
-        pipe.send(_draw(findings, sections))
+        pipe.send(_draw(findings, sections, by_rows))
     except BaseException:  # what goes wrong here goes wrong again where it can be told
         pipe.close()
 
 
-def _draw(findings: Findings | ToolFindings, sections: Collection[str]) -> Drawings:
+def _draw(findings: Findings | ToolFindings, sections: Collection[str], by_rows: bool) -> Drawings:
     pictures: Drawings = {}
     for picture in each(findings, sections=sections):
         chart = picture.draw()
         text = say("; ").join((chart.what, *chart.words))
-        svg, wide = svg_of(chart)
+        svg, wide, rows = standalone_svg(chart, by_rows)
         headline, caption = picture.headline(), say(picture.caption)
-        rows = standalone_rows(chart)
         block = SvgPicture(picture.name, text, svg, headline, caption, wide, picture.detail, rows)
         pictures.setdefault(picture.section, []).append(block)
     return pictures

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cache
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,9 +17,12 @@ from PIL import Image
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.figures import standalone_svg
 from equipoise.figures.paint import font_folder
+from equipoise.figures.pictures import analysis_pictures
 from equipoise.figures.style import SMALL
 from equipoise.i18n.languages import KNOWN
+from equipoise.present import composition
 from equipoise.present import pages as composed
 from equipoise.present.checks import machine_blocks
 from equipoise.present.composition import SHORT, build
@@ -317,6 +321,24 @@ def test_rows_of_a_high_picture_are_drawn_like_the_whole() -> None:
         larger = re.compile(r">(drawn [0-9.]+ times as large)<")
         each_row = [text for svg in block.rows for text in larger.findall(svg)]
         assert sorted(each_row) == sorted(larger.findall(block.svg)), block.name
+
+
+def test_rows_are_drawn_for_a_pdf_alone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A page has room for every picture as a whole."""
+    asked = []
+
+    def built(*_: Any, by_rows: bool, **__: Any) -> ReportDocument:
+        asked.append(by_rows)
+        return document("yamashita-1")
+
+    monkeypatch.setattr(composition, "build", built)
+    monkeypatch.setattr(composition, "pdf", lambda _: b"")
+    for outs in (["a.html"], ["a.html", "b.pdf"], ["b.pdf"]):
+        eq.report("yamashita-1", *(tmp_path / out for out in outs))
+    assert asked == [False, True, True]
+    chart = analysis_pictures(eq.analyze(eq.load("twin-engine"), 90))["joints"]
+    assert len(standalone_svg(chart, by_rows=True).rows) > 1
+    assert not standalone_svg(chart).rows
 
 
 def test_no_remark_on_the_appendix_begins_a_page() -> None:
