@@ -310,7 +310,7 @@ def run(
     off: Annotated[float | None, size("time", "give a time of more than 0")] = None,
     off_turns: Annotated[int | None, count(1, 10_000)] = None,
     fluctuation: Annotated[float | None, read_by(_share, '"2 %"')] = None,
-    support: bool = False,
+    support: Annotated[bool | None, Parameter(negative="--no-support")] = None,
     motor: Annotated[Any, read_by(_motor, f'"{MOTOR}"')] = None,
 ) -> Result:
     """Simulate a machine under its motors, weight, springs and loads.
@@ -337,7 +337,7 @@ def run(
         Also size a flywheel for this speed fluctuation (highest minus lowest, over the mean), such
         as "2 %".
     support
-        Also follow the support, from rest in the drawn position; else the frame is fixed.
+        Also follow the support, from rest in the drawn position, or keep the frame fixed.
     motor
         Motor on the crank instead of that of the file, by the keys of [drive.motor], a comma
         between them.
@@ -357,7 +357,7 @@ def run(
             off=off,
             off_turns=off_turns,
             fluctuation=fluctuation,
-            support=support or None,
+            support=support,
             progress=progress,
         )
 
