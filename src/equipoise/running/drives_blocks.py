@@ -43,8 +43,8 @@ ENDS = {
         "undetermined; the run ends there."
     ),
     "lever": to_say(
-        "After {time} s the stroke that moves {of} has no lever, beyond which the motion is "
-        "undetermined; the run ends there."
+        "After {time} s there is no lever to move {of}, beyond which the motion is undetermined; "
+        "the run ends there."
     ),
 }
 OTHER_END = to_say("The run ends after {time} s.")
