@@ -46,7 +46,9 @@ def drives_charts(run: DrivesRun) -> dict[str, Chart]:
     time, each = run.time, [*enumerate(run.drives.items(), 1)]  # a drive looks alike in both panels
     turning = [(number, link, item) for number, (link, item) in each if item.length is None]
     speeds = [Curve(time, item.speed, link, f"several {n}") for n, link, item in turning]
-    panels = [_curves(time, say("speed of the drives"), "angular speed", speeds, "rpm")]
+    panels = []
+    if speeds:
+        panels.append(_curves(time, say("speed of the drives"), "angular speed", speeds, "rpm"))
     for effort, label in EFFORTS.items():
         curves = [
             Curve(time, item.effort, link, f"several {number}")
@@ -55,7 +57,9 @@ def drives_charts(run: DrivesRun) -> dict[str, Chart]:
         ]
         if curves:
             panels.append(_curves(time, say(label), effort, curves))
-    charts = {"speed": Chart("speed", run.machine.title, drives_verdict(run), tuple(panels))}
+    charts = {}
+    if panels:
+        charts["speed"] = Chart("speed", run.machine.title, drives_verdict(run), tuple(panels))
     if run.support is None:
         return charts
     lasting = say("run of {time} s", time=shown(float(time[-1])))
