@@ -85,8 +85,6 @@ NODES = np.polynomial.chebyshev.chebpts1(tabulated.NODES)
 LAST = tabulated.NODES - 1
 
 
-# Flywheels that are sized are run in `test_a_heavy_flywheel_is_sized_in_few_pieces`.
-@pytest.mark.exhaustive
 @pytest.mark.parametrize("name", few(["walking-transplanter", *RIGS], {"balance-rig"}))
 def test_with_a_motor_the_run_itself_is_as_even(name: str) -> None:
     machine = subject_of(name).machine
@@ -144,8 +142,6 @@ def test_a_steady_state_far_from_the_usual_speed_is_met_on_the_way(
     assert len(tries) == 2
 
 
-# One flywheel in few pieces: `test_a_heavy_flywheel_is_sized_in_few_pieces`.
-@pytest.mark.exhaustive
 def test_turns_towards_steady_states_have_one_limit_for_all_flywheels(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

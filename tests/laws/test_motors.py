@@ -350,8 +350,6 @@ def test_a_limit_of_torque_ends_a_piece(monkeypatch: pytest.MonkeyPatch) -> None
     assert np.all(np.abs(found.drive_torque) <= 12.0 * 0.03 * (1 + 1e-15))
 
 
-# Servo motors that follow: `test_a_servo_motor_follows_a_ramp`.
-@pytest.mark.exhaustive
 def test_a_servo_motor_that_holds_its_angle_does_not_fall_behind() -> None:
     """The mean speed of a steady state is the reference speed, whatever resists."""
     load = Load("crank", torque=-4.0)

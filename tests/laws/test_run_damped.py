@@ -50,8 +50,6 @@ def test_a_damped_pendulum_ends_at_rest_where_it_hangs() -> None:
     assert "at crank angle 270" in verdict(found)
 
 
-# With damping it does, at the time that theory says: the test above.
-@pytest.mark.exhaustive
 def test_a_pendulum_without_damping_never_comes_to_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("equipoise.running.integration.MOST_REVERSALS", 6)
     found = eq.run(pendulum(0.0), speed=0.0, angle=1e-3 - pi / 2)

@@ -248,8 +248,7 @@ def same_response(found: Response, wanted: Response, tolerance: float = 1e-9) ->
     close(found.drive.torque.values(theta), wanted.drive.torque.values(theta), tolerance)
 
 
-# Phases that all rows share: the test beside it.
-@pytest.mark.exhaustive
+@pytest.mark.exhaustive(but=["coupled"])
 @every_model
 def test_a_phase_of_a_full_turn_changes_nothing(model: Model) -> None:
     machine = springs().with_rows([Row(), Row(phase=1.0)])

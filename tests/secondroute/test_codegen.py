@@ -258,8 +258,6 @@ def test_every_signal_of_every_dyad(numpy_engine: None) -> None:
     assert compared(every_dyad(), 4, 5)
 
 
-# Trains of gears are compiled in the test below.
-@pytest.mark.exhaustive
 def test_gears_in_proportion_to_the_crank_compiled() -> None:
     base = eq.load("planetary-planting-arm")
     assert compared(base, 6, 3, wanted_of(["shaking_force.x", "joints.B"], "rms", "min_at"))

@@ -92,8 +92,6 @@ def test_figures_are_those_of_each_design(name: str) -> None:
             assert value == pytest.approx(exact, abs=1e-9 * size), figure
 
 
-# Contacts of each design: tests/unit/studies/test_objective_map.py.
-@pytest.mark.exhaustive
 def test_contacts_that_change_sides_are_left_to_the_loops() -> None:
     """Forces inside such a linkage, and those alone: what reaches the frame stays linear."""
     taut, chain = eq.load("knife-drive"), chained()
@@ -112,8 +110,6 @@ def test_contacts_that_change_sides_are_left_to_the_loops() -> None:
         assert machine.switches == bool(machine.gears or machine.racks or loose)
 
 
-# A chain of fewer designs: `test_figures_are_those_of_each_design`.
-@pytest.mark.exhaustive
 def test_a_study_of_a_chain_has_the_strands_of_each_design(tmp_path: Path) -> None:
     """The knife's mass against the load on its rack decides which strand pulls."""
     text = example_text("knife-drive").replace('tension = "180 N"\n', "")

@@ -491,10 +491,9 @@ def test_a_file_that_is_there_is_not_overwritten() -> None:
     assert Path("new.toml").read_text(encoding="utf-8") == "mine"
 
 
-# Drawings: tests/unit/exchange/test_drawings.py; files beside the new model: `test_csv`.
+# A drawing beside a new model: the test below; sheets: tests/unit/exchange/test_drawings.py.
 @pytest.mark.exhaustive
 def test_the_drawing_of_each_counterweight_is_written_with_the_new_model(tmp_path: Path) -> None:
-    """And neither where there is nothing to draw, which is said."""
     new, drawing = tmp_path / "new.toml", tmp_path / "new.pdf"
     told = equipoise("balance", "balance-rig", "--out", new, "--drawing", drawing)
     succeeded(told)
@@ -503,9 +502,14 @@ def test_the_drawing_of_each_counterweight_is_written_with_the_new_model(tmp_pat
         f"wrote {drawing}",
     ]
     assert drawing.read_bytes().startswith(b"%PDF") and new.is_file()
-    point = ("balance", "balance-crank", "--out", tmp_path / "p.toml")
-    told = equipoise(*point, "--drawing", tmp_path / "p.dxf")
+
+
+def test_what_a_drawing_cannot_have_is_said(tmp_path: Path) -> None:
+    """And neither file is written where there is nothing to draw."""
+    new, drawing = tmp_path / "p.toml", tmp_path / "p.dxf"
+    told = equipoise("balance", "balance-crank", "--out", new, "--drawing", drawing)
     assert told.status == 0 and "note: the drawing leaves out" in told.err
+    assert new.is_file() and drawing.is_file()
     other = ("balance", "balance-crank", "--out", tmp_path / "q.toml")
     sentence = refused(equipoise(*other, "--drawing", tmp_path / "q.pdf"))
     assert "balancing gives none to what it changes: crank" in sentence

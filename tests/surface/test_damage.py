@@ -175,8 +175,6 @@ def test_a_chunk_of_one_array_that_is_lost_is_no_gap(name: str) -> None:
     assert run(("best", "--json")).out == expected
 
 
-# Damage at random, of fewer files: `test_damage_at_random`.
-@pytest.mark.exhaustive
 def test_reasons_that_have_changed_places_are_refused(folder: Path) -> None:
     """Of the last chunk, which is filled up, and the first: a traceback of `resume`."""
     Path("study.toml").write_text(LENGTHS.replace("designs = 200", "designs = 10000"))

@@ -225,8 +225,6 @@ def test_an_option_that_is_repeated_ten_thousand_times() -> None:
     assert "--output: given 10000 times; give it 200 times at most" in told
 
 
-# The limit and its sentence: `test_what_needs_more_than_the_limit_is_refused_in_a_sentence`.
-@pytest.mark.exhaustive
 def test_a_study_of_more_outputs_than_usual(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit is told with what raises it, which it then does."""
     assert USUAL_OUTPUTS == 1000  # of which each takes some ms

@@ -91,7 +91,7 @@ def test_a_motor_that_never_pulls() -> None:
     assert line.startswith("model.toml: drive.motor: its torque nowhere falls through")
 
 
-# A motor that never pulls is refused in the test above.
+# Motors that stall: tests/unit/vibration/test_transient.py.
 @pytest.mark.exhaustive
 def test_a_motor_too_weak_to_turn_the_crank() -> None:
     """Which stands still before the first turn is over: no speed follows from it."""

@@ -117,7 +117,8 @@ def test_a_design_with_a_section_holds_what_is_asked_for(figure: str) -> None:
     assert peak_of(lambda: design(np.array([[0.35]]))) < 80
 
 
-# Analyses are given back: `test_a_coarser_analysis_is_gone_before_the_next_finer_one`.
+# Analyses are given back: `test_a_coarser_analysis_is_gone_before_the_next_finer_one` of
+# tests/unit/studies/test_evaluate.py.
 @pytest.mark.exhaustive
 def test_an_analysis_of_many_crank_angles_is_given_back_at_once() -> None:
     machine = eq.load("slider-crank-engine")

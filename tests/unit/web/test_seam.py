@@ -126,7 +126,7 @@ LATER = {"handheld", "studies", "codegen", "planting", "exposure", "vibration", 
 """Rooms that a machine without a support moves without."""
 
 
-# A start is quick: tests/surface/test_tool.py; rooms: the contracts of pyproject.toml.
+# As far as a balance or a run has begun, the test below looks for the same.
 @pytest.mark.exhaustive
 def test_a_first_machine_moves_before_other_rooms_are_imported() -> None:
     """Importing them takes a second in a browser, where everything is compiled at each start."""

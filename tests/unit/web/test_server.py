@@ -309,7 +309,6 @@ class Dragged:
             self.coming.put_nowait({"type": "websocket.disconnect"})
 
 
-@pytest.mark.exhaustive(but=["-1.0"])
 @pytest.mark.parametrize("seldom", [1e9, -1.0])
 def test_a_move_that_is_overtaken_is_told_by_its_state_alone(
     seldom: float, monkeypatch: pytest.MonkeyPatch

@@ -76,8 +76,6 @@ def test_a_page_is_answered_and_what_follows_is_computed_beside() -> None:
     assert not page.tasks
 
 
-# Moves that are overtaken: tests/unit/web/test_server.py.
-@pytest.mark.exhaustive
 def test_an_edit_that_was_only_tried_makes_way(page: Foreground) -> None:
     for mass in ("300 g", "310 g", "320 g"):
         edit = {"set": "links.crank.mass", "text": mass}
