@@ -22,6 +22,8 @@ SPREAD = 1e-7
 """Over the squared distance: inertia beyond that of one point that is taken for rounding."""
 SIZE_OF_0 = 1e-15
 """Of the sine of half a turn, which is 0 but for rounding."""
+FULL_TURN = 2 * pi * (1 - 1e-9)
+"""Angle, rad, from which a sector has no ends but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,14 @@ def _piece(shape: str, mass: float, there: complex, **sizes: float | None) -> Pi
     return {"shape": shape, "mass": mass, "place": (there.real, there.imag), **sizes}
 
 
-def covers(piece: Piece, center: complex, place: complex) -> bool:
+def is_ring(piece: Mapping[str, Any]) -> bool:
+    """Whether a piece of plate surrounds the centre of its room, as a sector of a full turn does,
+    too.
+    """
+    return bool(piece["shape"] == "ring" or piece.get("angle", 0.0) >= FULL_TURN)
+
+
+def covers(piece: Mapping[str, Any], center: complex, place: complex) -> bool:
     """Whether a piece of plate lies where a pin is.
 
     center : of the room, about which rings and sectors lie; as all places in the link's axes, m.

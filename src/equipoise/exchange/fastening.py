@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.room import pins_on
-from equipoise.balancing.workshop import covers
+from equipoise.balancing.workshop import covers, is_ring
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.bodies import material_of
@@ -53,9 +53,9 @@ class ScrewThreads:
 
 def needs_threads(piece: Mapping[str, Any], center: complex) -> bool:
     """Whether a piece has to be screwed on: it does not surround the axis at a centre."""
-    return bool(piece["shape"] == "sector" and piece["angle"] < 2 * pi - 1e-9) or (
-        piece["shape"] == "disc" and not covers(dict(piece), center, center)
-    )
+    if piece["shape"] == "disc":
+        return not covers(piece, center, center)
+    return piece["shape"] == "sector" and not is_ring(piece)
 
 
 def threads_of(

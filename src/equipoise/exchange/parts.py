@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.workshop import FULL_TURN, is_ring
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.exchange.fastening import STRESS_AREAS, ScrewThreads, needs_threads, threads_of
@@ -155,15 +156,20 @@ class Part:
             )
         if self.thickness is None or self.density is None:
             return
-        beyond = (MATERIALS["steel"] - self.density) * self.thickness * len(threads.places)
-        beyond *= pi / 4 * (1e-3 * threads.size) ** 2
+        drilled = self.thickness * sum(pi * radius**2 for _, radius in self.thread_circles)
+        beyond = (MATERIALS["steel"] - self.density) * drilled
         if abs(beyond) < LIGHT_SCREWS * (self.mass or 0.0):
             yield say("the threads are filled by steel screws, whose heads are not counted")
-        else:
-            yield say(
-                "the threads are filled by steel screws, which add {mass} without their heads",
-                mass=workshop_mass(beyond),
+            return
+        template = to_say(
+            "the threads are filled by steel screws, which add {mass} without their heads"
+        )
+        if beyond < 0:
+            template = to_say(
+                "the threads are filled by steel screws, which without their heads are {mass} "
+                "lighter than what was drilled out"
             )
+        yield say(template, mass=workshop_mass(abs(beyond)))
 
     def _round_lines(self) -> Iterator[str]:
         """Where a sector points, or a disc lies, in the axes of its link."""
@@ -297,7 +303,7 @@ def _curves(edges: tuple[Edge, ...]) -> Iterator[RoundEdge]:
     for arcs in by_name.values():
         center, radius, *_ = arcs[0]
         angle = sum(arc[3] for arc in arcs)
-        whole = angle >= 2 * pi * (1 - 1e-9)
+        whole = angle >= FULL_TURN
         toward = sum(arc[2] - center for arc in arcs)
         yield RoundEdge(center, radius, phase(toward) if not whole else 0.0, angle, whole)
 
@@ -403,7 +409,7 @@ def _edges_of_piece(piece: dict[str, Any], center: complex) -> Iterator[tuple[Ed
     """Outline and opening of a piece; rings and sectors lie about the centre of their room."""
     if piece["shape"] == "disc":
         yield circle(complex(*piece["place"]), piece["radius"])
-    elif piece["shape"] == "ring" or piece.get("angle", 0.0) >= 2 * pi * (1 - 1e-12):
+    elif is_ring(piece):
         yield circle(center, piece["outer_radius"])
         if piece["inner_radius"]:
             yield circle(center, piece["inner_radius"])

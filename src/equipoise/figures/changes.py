@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.balancing.workshop import is_ring
 from equipoise.dataclass import dataclass
 from equipoise.figures.linkage import joint_names, panel_content, plane_axes, told_angle
 from equipoise.figures.style import short
@@ -39,8 +40,6 @@ NO_LENGTH = 1e-6
 """mm."""
 NEIGHBOR = 0.3
 """Over the size of a piece: another that is nearer to its label may be taken for what it names."""
-FULL = 1e-6
-"""rad: a sector that lacks less than this is a ring."""
 FAR, COINCIDENT = 3.0, 0.02
 """Over the size of the machine: rooms that are larger do not set the scale; dots that are nearer to
 each other look like one."""
@@ -224,7 +223,7 @@ def _shape(
         radius = MM * piece["radius"]
         return circle(place, radius), (), place + radius * _way(place - center)
     inner, outer = MM * piece["inner_radius"], MM * piece["outer_radius"]
-    if piece["shape"] == "ring" or piece["angle"] >= 2 * np.pi - FULL:
+    if is_ring(piece):
         holes = (circle(center, inner),) if inner else ()
         return circle(center, outer), holes, complex(center + rect(outer, 0.25 * np.pi))
     middle = piece["direction"] + angle

@@ -18,7 +18,15 @@ from equipoise.balancing.whole_sizes import in_whole_sizes
 from equipoise.errors import UsageError
 from equipoise.exchange.fastening import ScrewThreads, needs_threads, threads_of
 from equipoise.exchange.formats import Job
-from equipoise.exchange.parts import Part, along, in_mm, parts
+from equipoise.exchange.parts import (
+    COUNTERWEIGHT,
+    Part,
+    _edges_of_piece,
+    along,
+    circle,
+    in_mm,
+    parts,
+)
 from equipoise.exchange.reading.formats import import_machine
 from equipoise.figures import workshop_sheet
 from equipoise.i18n.languages import KNOWN
@@ -245,6 +253,25 @@ def test_larger_forces_get_larger_threads() -> None:
     # across the link, along which one would be at 35 mm, in the pin at 33.5 mm
     assert threads_of(disc, 0j, motion, "crank") == ScrewThreads(5, (0.05 - 0.015j, 0.05 + 0.015j))
     assert needs_threads(disc, 0j) and not needs_threads(disc, 0.04 + 0j)
+
+
+def test_what_screws_of_steel_add_depends_on_the_material() -> None:
+    """Beside lead and tungsten they are lighter than what was drilled out; a full turn needs
+    none.
+    """
+    edges = (circle(0.05 + 0j, 0.04),)
+    threads = ScrewThreads(8, (0.04 + 0j, 0.06 + 0j))
+    drilled = 2 * np.pi / 4 * 0.008**2 * 0.02  # m3
+    for density, words in ((2700.0, "which add"), (11340.0, "lighter than what was drilled out")):
+        part = Part("crank", COUNTERWEIGHT, 1, 0.02, edges, density, threads)
+        (line,) = (line for line in part.lines if "filled by steel screws" in line)
+        assert words in line and "-" not in line and "−" not in line
+        (mass,) = re.findall(r"[0-9.]+(?= g)", line)
+        assert float(mass) == pytest.approx(1e3 * abs(STEEL - density) * drilled, abs=0.51)
+    whole = {"shape": "sector", "angle": 2 * np.pi * (1 - 1e-11), "direction": 0.0,
+             "inner_radius": 0.01, "outer_radius": 0.05}  # fmt: skip
+    assert not needs_threads(whole, 0j) and needs_threads({**whole, "angle": 6.0}, 0j)
+    assert len([*_edges_of_piece(whole, 0j)]) == 2
 
 
 def test_threads_bear_what_the_whole_machine_asks_of_them() -> None:
