@@ -23,12 +23,13 @@ from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.running.drive_angles import DriveAngles
 from equipoise.running.drivers import Driver
 from equipoise.running.drives_friction import DrivesFriction, FrictionOf
 from equipoise.running.drives_linkage import DrivesPose, References, pose_of, references_at
 from equipoise.running.mount_contacts import MountContacts
 from equipoise.running.sources import AppliedSource, SourceInputs, plus, sources_of
-from equipoise.running.strokes import Strokes, solved
+from equipoise.running.strokes import Strokes
 from equipoise.signals import Array
 from equipoise.vibration.support_motion import SupportMotion
 
@@ -40,29 +41,6 @@ STROKES_ALONE = Note(
     "every drive follows a given stroke, so that there is nothing to integrate; "
     "`equipoise analyze` computes its motion and forces"
 )
-
-
-class DriveAngles(NamedTuple):
-    """Angles of all drives (N, K), rad, and their rates.
-
-    crank_angle : (K,) rad.  speeds : rad/s.
-    following : (N, U, K), with a unit of speed of each unknown alone.  bends : what they accelerate
-    while no unknown does, rad/s2.
-    ways : (N, U, K), with a unit of speed of each unknown while no given motion goes on, along
-    which its drive does no work.
-    paces : of what drives do work on, rad/s; of strokes m/s.
-    lengths : of strokes (P, K), m.  slopes : of these by the angles of all drives (P, N, K), m/rad.
-    """
-
-    crank_angle: Array
-    angles: Array
-    speeds: Array
-    following: Array
-    bends: Array
-    ways: Array
-    paces: Array
-    lengths: Array
-    slopes: Array
 
 
 class DriveState(NamedTuple):
@@ -141,7 +119,7 @@ class DrivesEquation:
     def strokes(self) -> Strokes | None:
         """Drives that push as a given stroke has it; None without."""
         pushed = [k for k in self.given if self.drives[k].pushes]
-        return Strokes(self.linkage, pushed) if pushed else None
+        return Strokes(self.linkage, pushed, self.by_crank, self.start) if pushed else None
 
     @cached_property
     def by_crank(self) -> bool:
@@ -209,82 +187,52 @@ class DrivesEquation:
         ------
         ResponseError : the links do not get there.
         """
-        strokes = {} if self.strokes is None else self.strokes.references_at(self.start)
+        strokes = {} if self.strokes is None else self.strokes.references_at_start
         return {**references_at(self.linkage, self.start), **strokes}
 
     def references(self, state: DriveState) -> References:
         """What references have come to in K states (..., K)."""
         if self.strokes is None:
             return state.pose.references
-        pushed = state.where.angles[[*self.strokes.places]]
-        return {**state.pose.references, **dict(zip(self.strokes.references, pushed, strict=True))}
+        return {**state.pose.references, **self.strokes.references(state.where.angles)}
 
     def placed(self, time: Array, angles: Array, speeds: Array) -> DriveAngles:
         """All drives at times (K,), s, by the angles and speeds of the unknowns, each (U, K); those
         that push are NaN until `with_strokes` places them.
         """
-        pace = self._pace(time, speeds)
-        crank = angles[0] if self.by_crank else self.start + pace * time
+        crank_speed = self._crank_speed(time, speeds)
+        crank = angles[0] if self.by_crank else self.start + crank_speed * time
         count, free = self.coordinates, self.free
-        whole = np.zeros((3, count, len(time)))
-        following, ways = np.zeros((2, count, len(free), len(time)))
-        following[free, range(len(free))] = ways[free, range(len(free))] = 1.0
+        whole = np.zeros((3, count, len(time)))  # angles, speeds and bias of accelerations
+        jacobian, virtual = np.zeros((2, count, len(free), len(time)))
+        jacobian[free, range(len(free))] = virtual[free, range(len(free))] = 1.0
         whole[0, free], whole[1, free] = angles, speeds
         for k in self.given:
             if self.drives[k].pushes:
                 whole[:, k] = np.nan
                 continue
             angle, first, second = self.drives[k].turned(crank)
-            whole[:, k] = angle, first * pace, second * pace**2
+            whole[:, k] = angle, first * crank_speed, second * crank_speed**2
             if self.by_crank:
-                following[k, 0] = first
+                jacobian[k, 0] = first
         none = np.zeros((0, len(time)))
         return DriveAngles(
-            crank, whole[0], whole[1], following, whole[2], ways, whole[1], none, none[:, None]
+            crank, whole[0], whole[1], jacobian, whole[2], virtual, whole[1], none, none[:, None]
         )
 
     def with_strokes(self, time: Array, where: DriveAngles, near: References) -> DriveAngles:
-        """The drives with those that push, which are about where references have them.
+        """All drives at times (K,), s, as of `placed`, with those that push.
 
         Raises
         ------
-        MotionError : a stroke cannot be had.
+        MotionError : a stroke cannot be as long as it is to be.
         """
-        strokes = self.strokes
-        if strokes is None:
+        if self.strokes is None:
             return where
-        pushed, pace = [*strokes.places], self._pace(time, where.speeds[self.free])
-        others = [k for k in range(len(self.drives)) if k not in pushed]
-        _, first, second = strokes.commanded(where.crank_angle)
-        angles = strokes.angles(where.crank_angle, where.angles, near)
-        parts = where.speeds, where.following, where.bends, where.ways
-        speeds, following, bends, ways = (part.copy() for part in parts)
-        speeds[pushed] = 0.0
-        pose = pose_of(self.linkage, where.crank_angle, angles, speeds, near)
-        lengths, slopes, _ = strokes.lengths(pose)
+        crank_speed = self._crank_speed(time, where.speeds[self.free])
+        return self.strokes.placed(where, crank_speed, near)
 
-        def by(wanted: Array, values: Array) -> Array:
-            """What pushed drives add (P, R, K) where others have values (N - P, R, K)."""
-            left = wanted - np.einsum("pok,ork->prk", slopes[:, others], values)
-            return solved(slopes[:, pushed], left)
-
-        still = np.zeros((len(pushed), len(self.free), len(time)))
-        going = still.copy()
-        if self.by_crank:
-            going[:, 0] = first
-        following[pushed] = by(going, following[others])
-        ways[pushed] = by(still, ways[others])
-        speeds[pushed] = by((first * pace)[:, None], speeds[others][:, None])[:, 0]
-        pose = pose_of(self.linkage, where.crank_angle, angles, speeds, near)
-        bent = second * pace**2 - strokes.lengths(pose)[2]
-        bends[pushed] = by(bent[:, None], bends[others][:, None])[:, 0]
-        paces = speeds.copy()
-        paces[pushed] = first * pace
-        return DriveAngles(
-            where.crank_angle, angles, speeds, following, bends, ways, paces, lengths, slopes
-        )
-
-    def _pace(self, time: Array, speeds: Array) -> Array:
+    def _crank_speed(self, time: Array, speeds: Array) -> Array:
         """Speed of the crank (K,), rad/s, by those of the unknowns (U, K)."""
         return speeds[0] if self.by_crank else np.full(len(time), self.machine.drive.speed)
 
@@ -295,7 +243,7 @@ class DrivesEquation:
         dyads = state.pose.margins([*self.dyads.values()])
         if self.strokes is None:
             return dyads
-        return np.vstack([dyads, self.strokes.margin(state.where.slopes, self._usual_lever)])
+        return np.vstack([dyads, self.strokes.margin(state.where.slopes)])
 
     @property
     def dead_positions(self) -> list[tuple[str, str]]:
@@ -305,19 +253,7 @@ class DrivesEquation:
         dyads = [("dead", joint) for joint in self.dyads]
         if self.strokes is None:
             return dyads
-        links = ", ".join(self.drives[k].link for k in self.strokes.places)
-        return [*dyads, ("lever", links)]
-
-    @cached_property
-    def _usual_lever(self) -> float:
-        """Lever of all strokes at the start, with all drives as the file has them."""
-        assert self.strokes is not None
-        at = np.array([self.start])
-        moved = self.machine.moved(at)
-        angles = np.array([np.ravel(moved[drive.link][0]) for drive in self.drives])
-        near = self.references_at_start()
-        pose = pose_of(self.linkage, at, angles, np.zeros_like(angles), near)
-        return float(self.strokes.lever(self.strokes.lengths(pose)[1])[0])
+        return [*dyads, ("lever", ", ".join(self.strokes.links))]
 
     def factors_at(self, time: Array, since: float) -> list[Array]:
         """Factors (K,) of loads over time at times (K,), s, each on the line that it follows after
@@ -337,7 +273,7 @@ class DrivesEquation:
         """
         where = self.with_strokes(time, where, near)
         pose = self.pose(where.crank_angle, where.angles, where.speeds, near)
-        crank_speed = self._pace(time, where.speeds[self.free])
+        crank_speed = self._crank_speed(time, where.speeds[self.free])
         inputs = SourceInputs(crank_speed, self.factors_at(time, since), pose.gravity)
         acting = [source.demands(pose.moving, inputs) for source in self.sources]
         forces = np.zeros((len(self.acting), self.coordinates, pose.count))
@@ -374,18 +310,20 @@ class DrivesEquation:
         LockError : friction locks the machine.
         """
         where, inertia, count = state.where, state.inertia, torques.shape[1]
-        demand = np.sum(inertia[:, :, None] * where.following[None], axis=1)
-        left = np.sum(where.ways[:, :, None] * demand[:, None], axis=0)
+        demand = np.sum(inertia[:, :, None] * where.jacobian[None], axis=1)
+        left = np.sum(where.virtual_speeds[:, :, None] * demand[:, None], axis=0)
         acting = state.forces.sum(axis=0) + torques - state.pose.bias
-        acting = acting - np.sum(inertia * where.bends, axis=1)
-        known = np.sum(where.ways * acting[:, None], axis=0)
+        acting = acting - np.sum(inertia * where.bias_accelerations, axis=1)
+        known = np.sum(where.virtual_speeds * acting[:, None], axis=0)
         if state.rubbing is None:
             changes = _eliminated(left, known[:, None])[:, 0]
-            return where.bends + np.sum(where.following * changes, axis=1), np.zeros((0, count))
-        rubbing = np.einsum("nuk,jnk->ujk", where.ways, state.rubbing.ways)
+            return where.bias_accelerations + np.sum(where.jacobian * changes, axis=1), np.zeros(
+                (0, count)
+            )
+        rubbing = np.einsum("nuk,jnk->ujk", where.virtual_speeds, state.rubbing.ways)
         both = _eliminated(left, np.concatenate([known[:, None], rubbing], axis=1))
-        moved = np.sum(where.following[:, :, None] * both, axis=1)
-        whole, response = where.bends + moved[:, 0], moved[:, 1:]
+        moved = np.sum(where.jacobian[:, :, None] * both, axis=1)
+        whole, response = where.bias_accelerations + moved[:, 0], moved[:, 1:]
         efforts = state.rubbing.efforts(settled, whole, response)
         return whole + np.sum(response * efforts, axis=1), efforts
 
@@ -398,11 +336,7 @@ class DrivesEquation:
         if state.rubbing is not None:
             demand = demand - np.einsum("jgk,jk->gk", state.rubbing.ways, efforts)
         if self.strokes is not None:
-            pushed, slopes = [*self.strokes.places], state.where.slopes
-            levers = slopes[:, pushed].transpose(1, 0, 2)
-            forces = solved(levers, demand[pushed][:, None])[:, 0]
-            demand = demand - np.einsum("pnk,pk->nk", slopes, forces)
-            demand[pushed] = forces
+            demand = self.strokes.efforts(state.where.slopes, demand)
         return np.asarray(demand[[*self.given]])
 
     def energy(self, angles: Array, speeds: Array, crank: Array, near: References) -> Array:

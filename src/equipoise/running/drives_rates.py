@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from equipoise.errors import EquipoiseError
-from equipoise.running.drives_equation import DriveAngles, DrivesEquation
+from equipoise.running.drive_angles import DriveAngles
+from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_linkage import References
 from equipoise.running.equation import just_after
 from equipoise.running.friction import FRICTION
@@ -140,7 +141,7 @@ class DrivesRates:
             joint_rates = state.rubbing.rates
             works += [*efforts * joint_rates]
         works += [braking * where.speeds[0]] if self.braked else []
-        works += [torques[k] * where.paces[k] for k in self.turned]
+        works += [torques[k] * where.effort_speeds[k] for k in self.turned]
         return NodeValues(
             np.array(np.broadcast_arrays(*rates)),
             np.array([*electric, *works]).reshape(-1, len(time)),

@@ -14,7 +14,8 @@ from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.declaring import columns_of, values_of
 from equipoise.results.result import Result
-from equipoise.running.drives_equation import DriveAngles, DrivesEquation
+from equipoise.running.drive_angles import DriveAngles
+from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_integration import DriveEvent, DrivesIntegration, DrivesTrack, joined
 from equipoise.running.drives_linkage import pose_of
 from equipoise.running.electric import Electric

@@ -18,6 +18,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.run_plans import MOST_TURNS, RunPlan
 from equipoise.quantities import Dimension, in_si
 from equipoise.results.result import Result
+from equipoise.running.drive_angles import drives_at
 from equipoise.running.drivers import Driver
 from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_run import DrivesRun, Start, run_drives
@@ -439,12 +440,10 @@ def _start_of_drives(
     """All drives at a speed of the crank, rad/s, and its angle, rad; where the speed is the `usual`
     one, those with a motor are at rest.
     """
-    pace, theta = start
-    moved = machine.moved(np.array([theta]))
-    turned = [moved[drive.link] for drive in machine.driven]
-    angles, rates = ([float(np.ravel(each[part])[0]) for each in turned] for part in (0, 1))
+    crank_speed, crank_angle = start
+    angles, rates = (part.tolist() for part in drives_at(machine, crank_angle))
     speeds = [
-        0.0 if usual and drive.motor is not None else rate * pace
+        0.0 if usual and drive.motor is not None else rate * crank_speed
         for drive, rate in zip(machine.driven, rates, strict=True)
     ]
     return Start(angles, speeds, on_turns)

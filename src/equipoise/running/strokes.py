@@ -22,7 +22,8 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import MotionError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.running.drives_linkage import DrivesPose, References, pose_of
+from equipoise.running.drive_angles import DriveAngles, drives_at
+from equipoise.running.drives_linkage import DrivesPose, References, pose_of, references_at
 from equipoise.signals import Array
 
 ITERATIONS, SQUARED = 12, 1e-8
@@ -32,47 +33,122 @@ square."""
 
 @dataclass(frozen=True, eq=False)
 class Strokes:
-    """The drives that push, by their places (P,) among all drives."""
+    """The drives that push, by their places (P,) among all drives.
+
+    by_crank : whether the first unknown of the machine is its crank angle.
+    start : crank angle at the start, rad.
+    """
 
     linkage: Linkage
     places: Sequence[int]
+    by_crank: bool
+    start: float
+
+    @property
+    def _pushed(self) -> list[int]:
+        """Places of the drives, for arrays."""
+        return [*self.places]
 
     @cached_property
-    def references(self) -> list[str]:
-        """Names of the angles of links that are pushed, among those that tell where a machine is
-        about.
+    def _names(self) -> list[str]:
+        """Names of the angles of links that are pushed, among the references."""
+        return [f"pushed({link})" for link in self.links]
+
+    def references(self, angles: Array) -> References:
+        """Angles of links that are pushed (K,), by those of all drives (N, K), rad."""
+        return dict(zip(self._names, angles[self._pushed], strict=True))
+
+    @property
+    def references_at_start(self) -> References:
+        """Angles of links that are pushed (1,), rad, with all drives as the file has them."""
+        return self.references(drives_at(self.linkage.machine, self.start)[0][:, None])
+
+    @property
+    def links(self) -> list[str]:
+        """Links that are pushed."""
+        return [self.linkage.machine.driven[k].link for k in self.places]
+
+    def margin(self, slopes: Array) -> Array:
+        """Squared share (K,) that forces have of the lever at the start: 0 where they move no link.
+
+        slopes : as of `lengths`.
         """
-        return [f"pushed({self.linkage.machine.driven[k].link})" for k in self.places]
+        return np.asarray((self._lever(slopes) / self._usual_lever) ** 2)
 
-    def references_at(self, crank_angle: float) -> References:
-        """These angles (1,), rad, with all drives as the file has them at a crank angle, rad."""
-        moved = self.linkage.machine.moved(np.array([crank_angle]))
-        links = (self.linkage.machine.driven[k].link for k in self.places)
-        return {
-            name: np.ravel(moved[link][0])
-            for name, link in zip(self.references, links, strict=True)
-        }
-
-    def margin(self, slopes: Array, usual: float) -> Array:
-        """Squared share (K,) that forces have of a usual lever: 0 where they move no link.
-
-        slopes : as of `lengths`.  usual : as of `lever`.
-        """
-        return np.asarray((self.lever(slopes) / usual) ** 2)
-
-    def lever(self, slopes: Array) -> Array:
+    def _lever(self, slopes: Array) -> Array:
         """Determinant (K,) of the derivatives of all lengths by the angles of links that are
         pushed.
         """
-        return np.asarray(np.linalg.det(np.moveaxis(slopes[:, [*self.places]], -1, 0)))
+        return np.asarray(np.linalg.det(np.moveaxis(slopes[:, self._pushed], -1, 0)))
 
-    def commanded(self, crank_angle: Array) -> Array:
+    @cached_property
+    def _usual_lever(self) -> float:
+        """Lever at the start, with all drives as the file has them."""
+        angles = drives_at(self.linkage.machine, self.start)[0][:, None]
+        near = references_at(self.linkage, self.start)
+        pose = pose_of(self.linkage, np.array([self.start]), angles, np.zeros_like(angles), near)
+        return float(self._lever(self.lengths(pose)[1])[0])
+
+    def placed(self, where: DriveAngles, crank_speed: Array, near: References) -> DriveAngles:
+        """All drives, of which those that push are about where references have them.
+
+        where : all others.  crank_speed : (K,), rad/s.
+
+        Raises
+        ------
+        MotionError : a stroke cannot be as long as it is to be.
+        """
+        pushed, crank = self._pushed, where.crank_angle
+        angles = self._angles(crank, where.angles, near)
+        speeds, jacobian, bias, virtual = (
+            part.copy()
+            for part in (
+                where.speeds, where.jacobian, where.bias_accelerations, where.virtual_speeds
+            )
+        )  # fmt: skip
+        speeds[pushed] = 0.0
+        lengths, slopes, _ = self.lengths(pose_of(self.linkage, crank, angles, speeds, near))
+        _, first, second = self._commanded(crank)
+        commanded = np.zeros((len(pushed), *jacobian.shape[1:]))
+        virtual[pushed] = self._rates(slopes, commanded, virtual)
+        if self.by_crank:
+            commanded[:, 0] = first
+        jacobian[pushed] = self._rates(slopes, commanded, jacobian)
+        speeds[pushed] = self._rates(slopes, first * crank_speed, speeds)
+        bent = self.lengths(pose_of(self.linkage, crank, angles, speeds, near))[2]
+        bias[pushed] = self._rates(slopes, second * crank_speed**2 - bent, bias)
+        effort_speeds = speeds.copy()
+        effort_speeds[pushed] = first * crank_speed
+        return DriveAngles(
+            crank, angles, speeds, jacobian, bias, virtual, effort_speeds, lengths, slopes
+        )
+
+    def _rates(self, slopes: Array, commanded: Array, rates: Array) -> Array:
+        """Rates of links that are pushed (P, ..., K), with which lengths have the rates that are
+        commanded (P, ..., K) while all other drives have theirs (N, ..., K).
+        """
+        others = [k for k in range(len(rates)) if k not in self.places]
+        left = commanded - np.einsum("pok,o...k->p...k", slopes[:, others], rates[others])
+        right = left.reshape(len(left), -1, left.shape[-1])
+        return _solved(slopes[:, self._pushed], right).reshape(left.shape)
+
+    def efforts(self, slopes: Array, torques: Array) -> Array:
+        """Torques of drives that turn, N m, and forces of those that push, N, (N, K), which
+        together do what torques of all drives (N, K) would.
+        """
+        levers = slopes[:, self._pushed].transpose(1, 0, 2)
+        forces = _solved(levers, torques[self._pushed][:, None])[:, 0]
+        efforts = torques - np.einsum("pnk,pk->nk", slopes, forces)
+        efforts[self._pushed] = forces
+        return np.asarray(efforts)
+
+    def _commanded(self, crank_angle: Array) -> Array:
         """Lengths at crank angles (K,), and both of their derivatives by these, (3, P, K)."""
         laws = (self.linkage.machine.driven[k].stroke for k in self.places)
         values = [law.value(crank_angle) for law in laws if law is not None]
         return np.swapaxes(np.array(values), 0, 1)
 
-    def angles(self, crank_angle: Array, angles: Array, near: References) -> Array:
+    def _angles(self, crank_angle: Array, angles: Array, near: References) -> Array:
         """Angles of all drives (N, K), rad, where all lengths are as commanded.
 
         angles : (N, K), of which those of links that are pushed do not count.
@@ -81,17 +157,17 @@ class Strokes:
         ------
         MotionError : there is no such place near the references.
         """
-        wanted, angles = self.commanded(crank_angle)[0], np.array(angles)
-        for k, name in zip(self.places, self.references, strict=True):
+        wanted, angles = self._commanded(crank_angle)[0], np.array(angles)
+        for k, name in zip(self.places, self._names, strict=True):
             angles[k] = near[name]
         for _ in range(ITERATIONS):
             pose = pose_of(self.linkage, crank_angle, angles, np.zeros_like(angles), near)
             length, slopes, _ = self.lengths(pose)
-            changes = solved(slopes[:, [*self.places]], (wanted - length)[:, None])[:, 0]
+            changes = _solved(slopes[:, self._pushed], (wanted - length)[:, None])[:, 0]
             largest = np.max(np.abs(changes))
             if not np.isfinite(largest):
                 break
-            angles[[*self.places]] += changes
+            angles[self._pushed] += changes
             if largest <= SQUARED:
                 return angles
         raise MotionError(Note("a stroke cannot be as long as it is to be"))
@@ -111,7 +187,7 @@ class Strokes:
         return length[:, -1], first[:, :-1], second[:, -1]
 
 
-def solved(left: Array, right: Array) -> Array:
+def _solved(left: Array, right: Array) -> Array:
     """Solutions (P, R, K) of few equations (P, P, K) for R right-hand sides (P, R, K); NaN where
     there are none.
     """

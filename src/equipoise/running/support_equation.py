@@ -16,7 +16,8 @@ from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.parts.support import PLANAR
-from equipoise.running.drives_equation import DriveAngles, DrivesEquation
+from equipoise.running.drive_angles import DriveAngles
+from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_linkage import References, pose_of
 from equipoise.running.mount_contacts import MountContacts
 from equipoise.running.sources import AppliedSource, sources_of
