@@ -117,7 +117,6 @@ def test_pictures_beside_what_is_printed(line: str) -> None:
     keep_files(line, Path("new/pictures"))
 
 
-@pytest.mark.exhaustive(but=["png-\\x89PNG"])
 @pytest.mark.parametrize(("kind", "begin"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
 def test_kinds_of_pictures(kind: str, begin: bytes) -> None:
     """Beside one line of JSON, and in a folder that is there."""

@@ -88,8 +88,6 @@ def test_a_notebook_shows_a_tool() -> None:
 # -- pictures --------------------------------------------------------------------------------------
 
 
-# Into axes: the test beside it.
-@pytest.mark.exhaustive
 def test_plot_gives_a_figure_that_a_notebook_shows() -> None:
     analysis = eq.analyze(FOUR_BAR, 90)
     figure = analysis.plot()
@@ -209,7 +207,7 @@ def test_a_wrong_text_is_refused_with_its_argument(make: Callable[[], Any], word
 # -- what else is looked for -----------------------------------------------------------------------
 
 
-# Machines and their files: the other tests of this file.
+# Reports of files: tests/surface/test_report.py.
 @pytest.mark.exhaustive
 def test_a_machine_is_reported_as_its_file_is(tmp_path: Path) -> None:
     """The page is the same but for the name that the file has."""
@@ -224,6 +222,9 @@ def test_a_machine_is_reported_as_its_file_is(tmp_path: Path) -> None:
     faster = tmp_path / "faster.html"
     eq.report(FOUR_BAR, faster, speed="300 rpm")
     assert "300" in faster.read_text(encoding="utf-8")
+
+
+def test_a_report_of_a_machine_that_has_no_file_needs_a_name() -> None:
     with pytest.raises(eq.EquipoiseError, match="no file is named"):
         eq.report(FOUR_BAR)
 

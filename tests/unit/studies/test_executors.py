@@ -299,13 +299,14 @@ def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
     assert capfd.readouterr() == ("", "")
 
 
-# Clusters at work are started before a release; the other refusals of executors stay.
+# `test_what_cannot_be_asked_makes_no_store` of test_run.py is refused alike.
 @pytest.mark.exhaustive
 def test_no_scheduler_is_told_in_a_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(clusters, "ANSWER", 0.5)
     task = Orders(STUDY, tmp_path).task
+    pytest.importorskip("distributed")  # which gives its logger a level
     level = logging.getLogger("distributed").level
     with socket.create_server(("127.0.0.1", 0)) as silent:
         addresses = [f"tcp://127.0.0.1:{silent.getsockname()[1]}", "tcp://127.0.0.1:9", "here", ""]

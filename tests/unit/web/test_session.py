@@ -360,8 +360,6 @@ def test_a_file_with_a_byte_order_mark_is_opened() -> None:
     assert state(ask(session, "open", name="m.toml", text=text)[0]).content["name"] == "m.toml"
 
 
-# Steps of undo: the first test of this file.
-@pytest.mark.exhaustive
 def test_steps_of_undo_keep_no_motion() -> None:
     """Hundreds of designs would keep hundreds of motions, and the answers of large machines."""
     session, _ = opened("yamashita-rig")

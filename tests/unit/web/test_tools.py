@@ -103,7 +103,6 @@ def desk() -> PageBackend:
     return begun("brush-cutter")()
 
 
-@pytest.mark.exhaustive(but=["asked0-got 23 mm inside of 20 mm", "asked2-shaft.colour"])
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
@@ -178,8 +177,6 @@ def test_the_file_of_a_tool_is_saved_in_place(path: Path) -> None:
     assert "pole-saw was not opened from a file" in refused.content["message"]
 
 
-# A model comes with its tables: tests/unit/web/test_downloads.py.
-@pytest.mark.exhaustive
 def test_a_tool_that_is_dropped_takes_its_tables_along() -> None:
     desk = begun(None)()
     asked = {"name": "mine.toml", "text": HELD}
