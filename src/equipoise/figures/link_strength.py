@@ -18,7 +18,6 @@ from equipoise.mechanism.dynamics.link_stress import (
     FatiguePlace,
     StressPeak,
     amplitudes_about_zero,
-    critical_place,
     largest_stress,
 )
 from equipoise.results.charts import (
@@ -152,23 +151,22 @@ def _haigh(analysis: Analysis, name: str) -> Chart:
     """Mean and amplitude of each cycle of stress where one comes nearest to the fatigue limit, and
     that limit and the yield strength, as far as they are given.
     """
-    section, states = _section(analysis, name), analysis.resolved.forces.working_states
-    place = critical_place(states, name)
+    section, place = _section(analysis, name), analysis.sections[name].critical_place
+    assert section.fatigue_limit is not None and place is not None
     means = np.concatenate([cycles.means for cycles in place.cycles])
     amplitudes = np.concatenate([cycles.ranges for cycles in place.cycles]) / 2
-    assert section.fatigue_limit is not None
     high = 1.15 * max(section.fatigue_limit, float(np.max(amplitudes, initial=0.0)))
     limits = (*_limits(section, means, high),)
     every = np.concatenate([means, *(limit.x for limit in limits)])
     x = Axis.of(say("mean stress"), "modulus", every, "MPa")
     y = Axis.of(say("amplitude of stress"), "modulus", every, "MPa", low=0.0, high=high)
-    panel = Panel(x, y, limits, (*_cycle_marks(place, section, len(states)),))
+    panel = Panel(x, y, limits, (*_cycle_marks(place, section),))
     first = section.ends(analysis.machine.links[name].points)[0]
     at = quantity(float(place.cut.at[0]), "length", "mm")
     values = {"link": short(name), "distance": at, "point": short(first)}
     what = say("Cycles of stress in {link}, {distance} from {point}", **values)
     if analysis.machine.duty:
-        what = say("{what}, over {count} duty states", what=what, count=len(states))
+        what = say("{what}, over {count} duty states", what=what, count=len(place.cycles))
     else:
         what = title(analysis, what, of_one=True)
     return _chart(analysis, "haigh", name, what, [panel])
@@ -195,13 +193,13 @@ def _limits(section: LinkSection, means: Array, high: float) -> Iterator[Curve]:
         yield Curve(places, np.array([0.0, top, peak, top, 0.0]), say("yielding"), "action value")
 
 
-def _cycle_marks(place: FatiguePlace, section: LinkSection, states: int) -> Iterator[Mark]:
+def _cycle_marks(place: FatiguePlace, section: LinkSection) -> Iterator[Mark]:
     """A sign for each cycle, of each duty state its own, with the safety of the worst of all."""
     limit, worst = section.fatigue_limit, place.largest(section.tensile_strength)
     assert limit is not None
     for number, cycles in enumerate(place.cycles):
         label = say("cycles of stress")
-        if states > 1:
+        if len(place.cycles) > 1:
             label = say("cycles in duty state {number}", number=number + 1)
         effects = amplitudes_about_zero(cycles, section.tensile_strength)
         for mean, size, effect in zip(cycles.means, cycles.ranges, effects, strict=True):

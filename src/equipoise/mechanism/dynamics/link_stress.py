@@ -9,7 +9,7 @@ that all cycles use up add to 1 where it breaks (Palmgren and Miner).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from itertools import pairwise
 from math import inf, pi
 from typing import Any
@@ -182,6 +182,7 @@ class LinkStress:
         the stretch of the line; 0 where there are none.
     rod_mass, least_end_mass : the uniform part of the mass along the line, kg, and the smaller of
         the lumps at its ends, below 0 where mass lies beyond them.
+    critical_place : where a cycle of stress comes nearest to the fatigue limit; None without one.
     """
 
     fibre: str
@@ -205,10 +206,11 @@ class LinkStress:
     deflection: float | None = figure(to_say("largest deflection"), "length")
     deflection_at: float | None = figure(to_say("largest deflection at crank angle"), "angle")
     path_error: float | None = figure(to_say("largest error of the path of a point"), "length")
+    critical_place: FatiguePlace | None = field(default=None, compare=False, repr=False)
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain data in SI units."""
-        return dict(vars(self))
+        """Figures as plain data in SI units."""
+        return {name: value for name, value in vars(self).items() if name != "critical_place"}
 
 
 def link_stresses(forces: Forces) -> Mapping[str, LinkStress]:
@@ -240,9 +242,7 @@ def _over(states: Sequence[WorkingState], name: str) -> LinkStress:
             buckling_safety=_least(figures.buckling_safety for figures in each),
             **{load: max(getattr(figures, load) for figures in each) for load in LARGEST},
         )
-    cycles, fatigue_safety = _fatigue(states, name)
-    life = None if cycles is None else cycles / sum(map(_rate, states))
-    return replace(worst, fatigue_safety=fatigue_safety, cycles_to_failure=cycles, life=life)
+    return _with_fatigue(worst, states, name)
 
 
 def _most(values: Iterable[float | None]) -> float | None:
@@ -360,6 +360,16 @@ class FatiguePlace:
         amplitudes = [amplitudes_about_zero(item, tensile_strength) for item in self.cycles]
         return float(np.max(np.concatenate(amplitudes), initial=0.0))
 
+    def damage(
+        self, line: WoehlerLine, tensile_strength: float | None, shares: Sequence[float]
+    ) -> float:
+        """Share of its life that a cycle of the machine uses up.
+
+        shares : of each duty state in all cycles of the machine.
+        """
+        each = (damage(item, line, tensile_strength) for item in self.cycles)
+        return sum(share * done for share, done in zip(shares, each, strict=True))
+
 
 def fatigue_places(states: Sequence[WorkingState], name: str) -> Iterator[FatiguePlace]:
     """Cycles of stress at all places of a link in all duty states."""
@@ -370,27 +380,25 @@ def fatigue_places(states: Sequence[WorkingState], name: str) -> Iterator[Fatigu
             yield FatiguePlace(cut, side, [rainflow(item[side], repeats=True) for item in stresses])
 
 
-def critical_place(states: Sequence[WorkingState], name: str) -> FatiguePlace:
-    """Place of a link where a cycle of stress comes nearest to its fatigue limit."""
-    section = states[0].forces.sections[name].section
-    places = fatigue_places(states, name)
-    return max(places, key=lambda place: place.largest(section.tensile_strength))
-
-
-def _fatigue(states: Sequence[WorkingState], name: str) -> tuple[float | None, float | None]:
-    """Cycles of the machine to failure of a link at the worst place, None where it is endless; and
-    safety of the fatigue limit.
+def _with_fatigue(figures: LinkStress, states: Sequence[WorkingState], name: str) -> LinkStress:
+    """Figures of a link, with those of fatigue where its limit is given: cycles of the machine to
+    failure at the worst place, and safety at the critical one.
     """
     section = states[0].forces.sections[name].section
     if section.fatigue_limit is None:
-        return None, None
+        return figures
     line = WoehlerLine(section.fatigue_limit, section.knee_cycles, section.slope)
-    rates = [_rate(state) for state in states]
-    worst, largest = 0.0, 0.0
-    for place in fatigue_places(states, name):
-        each = [damage(cycles, line, section.tensile_strength) for cycles in place.cycles]
-        shares = (rate / sum(rates) * done for rate, done in zip(rates, each, strict=True))
-        worst = max(worst, sum(shares))
-        largest = max(largest, place.largest(section.tensile_strength))
-    safety = None if largest == 0 else section.fatigue_limit / largest if largest < inf else 0.0
-    return (1 / worst if worst > 0 else None), safety
+    tensile, rates = section.tensile_strength, [_rate(state) for state in states]
+    shares = [rate / sum(rates) for rate in rates]
+    places = [*fatigue_places(states, name)]
+    worst = max(place.damage(line, tensile, shares) for place in places)
+    critical = max(places, key=lambda place: place.largest(tensile))
+    largest = critical.largest(tensile)
+    cycles = 1 / worst if worst > 0 else None
+    return replace(
+        figures,
+        fatigue_safety=section.fatigue_limit / largest if largest else None,
+        cycles_to_failure=cycles,
+        life=None if cycles is None else cycles / sum(rates),
+        critical_place=critical,
+    )
