@@ -10,9 +10,9 @@ outside, as a servo motor that follows the crank would: nothing but its own link
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -73,13 +73,18 @@ class DrivesEquation:
     start: float = 0.0
 
     def __post_init__(self) -> None:
+        if reason := next(self.refusals(), None):
+            raise UsageError(at_place(*reason))
         if missing := massless(self.machine):
             raise MassError(missing)
         if not self.unknowns:
             strokes_alone = all(drive.pushes for drive in self.drives)
             raise UsageError(at_place("drive", STROKES_ALONE if strokes_alone else NO_FREE_DRIVE))
-        if reason := next(_lacking(self.machine), None):
-            raise UsageError(at_place(*reason))
+
+    def refusals(self) -> Iterator[tuple[str, Note]]:
+        """What such a run does not compute, with its place in the file."""
+        if self.machine.rows:
+            yield "rows", Note("a run of several drives computes one row; leave the others out")
 
     @property
     def drives(self) -> tuple[Drive | FurtherDrive, ...]:
@@ -364,9 +369,3 @@ def _eliminated(left: Array, right: Array) -> Array:
             right[k] -= left[k, j] * right[j]
         right[k] /= left[k, k]
     return right
-
-
-def _lacking(machine: Machine) -> Any:
-    """What a run of several drives does not compute, with its place in the file."""
-    if machine.rows:
-        yield "rows", Note("a run of several drives computes one row; leave the others out")

@@ -181,17 +181,10 @@ class DrivesIntegration:
             state, gained = span.states(at)[:, 0], span.quadratures(at)[:, 0]
             self.on_turns(abs(self._crank_angle(time, state) - self.start) / (2 * pi))
             before = span, place
-            if watch is None and ended:
-                for kind in due:
-                    if goes_on:
-                        due_now = DriveWatch(kind, "", lambda _: np.zeros(0))
-                        goes_on, state = self._happens(due_now, time, state, gained)
-            elif watch is not None and watch.kind == "settled":
-                self._settle(self.rates.rubbing.index(watch.of), before)
-            elif watch is not None and watch.kind == "contact":
-                self._touch(watch.of, before)
-            elif watch is not None:
-                goes_on, state = self._happens(watch, time, state, gained)
+            events = [(kind, "") for kind in due] if ended else []
+            for kind, of in events if watch is None else [(watch.kind, watch.of)]:
+                if goes_on:
+                    goes_on, state = self._happens((kind, of), (time, state, gained), before)
             if not goes_on:
                 self.events.sort(key=lambda event: event.time)
                 return
@@ -501,24 +494,41 @@ class DrivesIntegration:
     # -- what happens ------------------------------------------------------------------------------
 
     def _happens(
-        self, watch: DriveWatch, time: float, state: Array, gained: Array
+        self,
+        event: tuple[str, str],
+        now: tuple[float, Array, Array],
+        at: tuple[TimeSpan, float],
     ) -> tuple[bool, Array]:
-        """Change what an event changes; whether the run goes on, and from which state."""
-        kind = self._reached(watch.kind, state)
-        if kind == "corner":
-            self.corners = [corner for corner in self.corners if corner > just_after(time)]
-            return True, state
-        if kind == "limit":
-            self._limited(watch.of, time, state)
-            return True, state
+        """Change what an event changes; whether the run goes on, and from which state.
+
+        event : its kind and what it is of.  now : time, state and quadratures.
+        at : span, and its place where that is.
+        """
+        (kind, of), (time, state, gained) = event, now
+        kind = self._reached(kind, state)
+        match kind:
+            case "corner":
+                self.corners = [corner for corner in self.corners if corner > just_after(time)]
+            case "limit":
+                self._limited(of, time, state)
+            case "settled":
+                self._settle(self.rates.rubbing.index(of), at)
+            case "contact":
+                self._touch(of, at)
+            case "off":
+                state = self._switch_off(time, state, gained)
+            case _:
+                return self._goes_on(kind, of, time, state), state
+        return True, state
+
+    def _goes_on(self, kind: str, of: str, time: float, state: Array) -> bool:
+        """Whether the run goes on after a cycle, or what may end it, at a time."""
         if kind in ("mark", "turns") and abs(self._since_mark(time, state)) < AT_EDGE:
             goes_on = self._begin_cycle(time, state)
             if kind == "mark":
-                return goes_on, state
-        if kind == "off":
-            return True, self._switch_off(time, state, gained)
-        self._note(self._rest if kind == "rest" else kind, time, state, watch.of)
-        return False, state
+                return goes_on
+        self._note(self._rest if kind == "rest" else kind, time, state, of)
+        return False
 
     def _reached(self, kind: str, state: Array) -> str:
         """What happens in a state, where several things do so at the same crank angle."""

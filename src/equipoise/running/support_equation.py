@@ -7,12 +7,12 @@ the frame moves with the support; weight, mounts and loads from outside act on b
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.parts.support import PLANAR
@@ -54,37 +54,28 @@ class SupportedEquation(DrivesEquation):
     """
 
     def __post_init__(self) -> None:
-        if not self.body.support.planar:
-            names = [Note(n) for n in self.body.support.coordinates if n not in PLANAR]
-            raise UsageError(
-                at_place(
-                    "support.freedoms",
-                    Note(
-                        "a run with its support is for motion in the plane of the drawing; leave "
-                        "out {names}",
-                        names=all_of(names),
-                    ),
-                )
-            )
-        if self.machine.rows:
-            raise UsageError(
-                at_place(
-                    "rows",
-                    Note(
-                        "a run with its support computes one row; leave the others out, or follow "
-                        "them with `equipoise simulate`"
-                    ),
-                )
-            )
-        if self.machine.pushers:
-            raise UsageError(
-                at_place(
-                    "support",
-                    Note("a run with its support computes no strokes; leave out one or the other"),
-                )
-            )
         super().__post_init__()
         _ = self.rest
+
+    def refusals(self) -> Iterator[tuple[str, Note]]:
+        """What such a run does not compute, with its place in the file."""
+        out_of_plane = [Note(n) for n in self.body.support.coordinates if n not in PLANAR]
+        if out_of_plane:
+            note = Note(
+                "a run with its support is for motion in the plane of the drawing; leave out "
+                "{names}",
+                names=all_of(out_of_plane),
+            )
+            yield "support.freedoms", note
+        if self.machine.rows:
+            note = Note(
+                "a run with its support computes one row; leave the others out, or follow them "
+                "with `equipoise simulate`"
+            )
+            yield "rows", note
+        if self.machine.pushers:
+            note = Note("a run with its support computes no strokes; leave out one or the other")
+            yield "support", note
 
     @cached_property
     def body(self) -> SupportBody:
