@@ -47,7 +47,8 @@ class DriveState(NamedTuple):
     """What acts in K states.
 
     where : all drives.  inertia : (N, N, K) of links and motors, kg m2.
-    forces : of each source (S, N, K), N m.  rubbing : friction in joints; None without.
+    forces : of each of `DrivesEquation.acting` (S, N, K), N m, or N along a support.
+    rubbing : friction in joints; None without.
     """
 
     pose: DrivesPose

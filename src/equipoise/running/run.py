@@ -421,7 +421,9 @@ def _turns_counted(limits: Limits, progress: Progress | None) -> Callable[[float
 
 
 def _limits_of_drives(machine: Machine, limits: Limits) -> Limits:
-    """Where a run of several drives ends, of which none may ever be steady."""
+    """Where a run of several drives ends, which may never be steady: after `TURNS_OF_DRIVES` turns
+    of the crank, or the time of these, where nothing is given.
+    """
     pace = abs(machine.drive.speed)
     if limits.steady:
         time = 2 * pi * TURNS_OF_DRIVES / (pace or 1.0)
