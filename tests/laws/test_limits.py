@@ -11,6 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.mechanism.parts.machine import FRAME
 from support.conformance import compared
+from support.refusals import refused
 from support.sources import CLOSED_FORMS
 
 G = 9.80665
@@ -241,7 +242,7 @@ def test_near_a_parallelogram_the_rocker_follows_the_crank() -> None:
 
 
 def test_the_parallelogram_itself_has_change_points() -> None:
-    with pytest.raises(eq.EquipoiseError, match="change point at crank angle"):
+    with refused(eq.EquipoiseError, other="rocker", link="coupler", angle="0.00 deg"):
         eq.move(four_bar(1.0, 0.3, 1.0, 0.3), 36)
 
 

@@ -106,7 +106,9 @@ class AddedWeight(DesignVariables):
         def spare(m: float) -> float:
             return float(self._room * m - c * m**1.5 - moment)
 
-        if spare(top) <= 0 or moment == 0:
+        if moment == 0:
+            return 0.0
+        if spare(top) <= 0:
             return now
         return float(brentq(spare, 0.0, top))
 

@@ -191,5 +191,5 @@ def test_there_are_as_many_crank_angles_as_frames() -> None:
 def test_a_missing_library_is_told_with_the_command_that_installs_it(monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "av", None)
     _, scene, _ = analyzed("yamashita-1", 90)
-    with pytest.raises(UsageError, match=re.escape('pip install "equipoise[video]"')):
+    with refused(UsageError, command='pip install "equipoise[video]"', library="av"):
         mp4(scene)

@@ -88,7 +88,7 @@ def test_a_counterweight_against_rows_that_cancel_already() -> None:
     rows = (Row(0.0), Row(np.pi))
     machine = replace(eq.load("yamashita-1"), rows=rows)
     plan = Balance(masses=(COUNTER,), objectives=(Objective("shaking_force"),))
-    with pytest.raises(eq.EquipoiseError, match="none of the permitted changes affects"):
+    with refused(eq.EquipoiseError, name="rms of shaking_force"):
         eq.balance(machine, plan)
 
 

@@ -374,7 +374,7 @@ def test_shafts_for_a_gauge() -> None:
 
 def test_gauges_need_a_support() -> None:
     machine = eq.load("yamashita-1")
-    with pytest.raises(ModelError, match="support"):
+    with refused(ModelError, "support"):
         signals_of(Effects(machine, ()), RIPPLE, LinearizationPoint(machine))
     with refused(ModelError, "support.gauges", kind="gauge"):
         signals_of(Effects(RIG, ()), Objective("gauges.other"), LinearizationPoint(RIG))

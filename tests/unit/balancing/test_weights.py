@@ -126,6 +126,15 @@ def test_the_best_disc() -> None:
     assert found[2] * part.mass_unit * part.reach == pytest.approx(plate * pi * 0.04**2 * 0.02)
 
 
+@SHAPED
+def test_without_a_moment_there_is_no_mass(shape: Shape) -> None:
+    """A disc about its point stayed as heavy as it was: 0.8 kg without any use."""
+    part = part_of(ROOMS[shape])
+    numbers = np.zeros(part.count)
+    numbers[0] = 0.5
+    assert part.minimize_added_mass(numbers, np.zeros(part.count, dtype=bool))[0] == 0.0
+
+
 @pytest.mark.parametrize("shape", ["disc", "ring", "sector"])
 def test_no_more_mass_than_fits(shape: Shape) -> None:
     part = part_of(ROOMS[shape])

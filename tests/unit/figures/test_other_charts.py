@@ -27,6 +27,7 @@ from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.record import simulate_decay
 from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Panel
 from equipoise.signals import Figures, figures
+from support.refusals import refused
 from unit.figures.checks import check
 from unit.figures.samples import words
 
@@ -214,7 +215,7 @@ def test_the_users_settings_do_not_matter() -> None:
 def test_pictures_by_name() -> None:
     analysis = eq.analyze(eq.load("yamashita-1"), 90)
     assert plot(analysis, "torque").get_size_inches()[0] == pytest.approx(7.2)
-    with pytest.raises(eq.EquipoiseError, match="did you mean"):
+    with refused(eq.EquipoiseError, given="torqe", name="torque"):
         plot(analysis, "torqe")
 
 

@@ -190,11 +190,11 @@ def test_refusals() -> None:
     for call in (expose_tool, SpeedBand):
         with refused(ModelError, "shaft.stations"):
             call(shaken(bare(Station("a", 0.1)), cause), SPEEDS)
-        with pytest.raises(ModelError, match="nothing shakes the tool"):
+        with refused(ModelError, "excitations"):
             call(shaken(random_tool(1)), SPEEDS)
         with refused(ModelError, "shaft.stations[1].hand.impedance", first=50.0, high=111.408):
             call(shaken(bare(measured), cause), SPEEDS)
-    with pytest.raises(ModelError, match=r"operation: missing; add the table \[operation\]"):
+    with refused(ModelError, "operation"):
         expose_tool(random_tool(1), np.array([300.0]), HOUR)
 
 

@@ -188,7 +188,7 @@ def test_what_is_not_there() -> None:
     for place in (-0.01, 99.0):
         with refused(UsageError, length=1.68645):
             found.line([0.1, place])
-    with pytest.raises(ModelError, match="nothing shakes the tool"):
+    with refused(ModelError, "excitations"):
         respond_tool(bare(), 10.0)
 
 
@@ -271,11 +271,11 @@ def test_columns_are_the_values() -> None:
 
 
 def test_nothing_to_sweep() -> None:
-    with pytest.raises(ModelError, match="nothing holds the tool and nothing shakes it"):
+    with refused(ModelError, "shaft"):
         sweep_tool(bare(), SPEEDS)
     held = sweep_tool(bare(Station("a", 0.5, stiffness=both(9e3))), SPEEDS)
     assert held.response is None
-    with pytest.raises(ModelError, match="nothing shakes the tool"):
+    with refused(ModelError, "excitations"):
         held.places([0.1])
     free = sweep_tool(shaken(bare(Station("a", 0.5)), Excitation("e", "a", force=1.0)), SPEEDS)
     assert free.transmissions is None

@@ -461,7 +461,7 @@ def test_two_blocks_on_one_point_lie_as_each_is_told() -> None:
 
 def test_a_guide_called_as_the_pin_of_another_dyad_is_refused() -> None:
     given = block_on_the_pin("C", assembly={"C": "left"})
-    with pytest.raises(ModelError, match="give the guide another label"):
+    with refused(ModelError, "assembly", name="C"):
         eq.mechanism.assemble(given)
 
 

@@ -471,7 +471,7 @@ def test_the_least_base_radius_that_does(given: eq.Machine) -> None:
         for radius in (least, 0.999 * least)
     )
     assemble(right)
-    with pytest.raises(ModelError, match="undercut"):
+    with refusals.refused(ModelError, "cams[1]", base_radius="base_radius"):
         assemble(small)
 
 

@@ -135,7 +135,7 @@ def test_a_pin_stays_between_the_ends_of_its_slot() -> None:
     wide = replace(SLOT, arc=(low - 1e-3, high + 1e-3))
     assert np.ptp(eq.move(in_slot(BASE, wide)).element_values("circular_slots", 0)["angle"]) > 0.5
     for arc in ((low + 1e-3, high + 1e-3), (low - 1e-3, high - 1e-3)):
-        with pytest.raises(ModelError, match=r"^circular_slots\[1\]: the pin reaches the end of"):
+        with refused(ModelError, "circular_slots[1]"):
             eq.analyze(in_slot(BASE, replace(SLOT, arc=arc)))
 
 

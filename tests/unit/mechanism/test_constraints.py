@@ -22,6 +22,7 @@ from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from equipoise.web.session import Session
+from support.refusals import refused
 from unit.web.pages import ask, edit, move, refusal, state
 
 Array = np.ndarray[Any, Any]
@@ -154,7 +155,7 @@ to = ["P", "Q"]
 """
     )
     both = machine(tmp_path, text)
-    with pytest.raises(ModelError, match=r"^constraints: cannot all hold with these places"):
+    with refused(ModelError, "constraints"):
         both.with_constraints_met()
     assert both.constraints[2].misses(both.bodies) > HOLDS
 
@@ -195,7 +196,7 @@ def test_a_study_varies_what_both_follow_and_nothing_else(tmp_path: Path) -> Non
     template = Template.load(tmp_path / "four-bar.toml")
     assert template.number("links.coupler.points.R.x")[0] == 0.03
     for path in ("links.rocker.length", "links.coupler.points.C.x", "rocker"):
-        with pytest.raises(ModelError, match=r"constraints\[1\] holds it; vary a parameter"):
+        with refused(ModelError, where="constraints[1]"):
             template.number(path)
 
 

@@ -18,6 +18,7 @@ from equipoise.mechanism import DutyState, GasTable, Load, LoadTable, Machine, S
 from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.results.machine_blocks import model_blocks
 from support.own_kinds import scripted
+from support.refusals import refused
 
 BORE, CRANK = 0.068, 0.03
 AREA = np.pi / 4 * BORE**2
@@ -168,7 +169,7 @@ def test_a_file_is_read_written_and_shown(tmp_path: Path) -> None:
 def test_a_wrong_file_is_named(tmp_path: Path, slip: tuple[str, str], sentence: str) -> None:
     (tmp_path / "indicator.csv").write_text(ROWS.replace(*slip), encoding="utf-8")
     (tmp_path / "engine.toml").write_text(TEXT, encoding="utf-8")
-    with pytest.raises(ModelError, match=r"indicator\.csv") as caught:
+    with refused(ModelError, "loads[1].gas", shown="indicator.csv") as caught:
         eq.load(tmp_path / "engine.toml")
     assert sentence in str(caught.value)
 

@@ -261,7 +261,7 @@ def test_position_incomplete(missing: str, link: str) -> None:
 def test_a_triad_that_never_closes() -> None:
     """A front link of 1 m among links of 0.1 m."""
     given = TRIAD.with_link("front-link", points={"D": ORIGIN, "P": (1.0, 0.0)})
-    with pytest.raises(MotionError, match="the loop equations have no solution nearby"):
+    with refusals.refused(MotionError, angle=0.0, links="rod, plate, front-link, rear-link"):
         eq.move(given, 36)
 
 
@@ -299,7 +299,10 @@ def test_the_angle_told_is_where_it_ends() -> None:
     """A four-bar that only swings, as a loop group: its end is known in closed form."""
     limit = np.arccos((1 + 0.9**2 - 1.05**2) / 1.8)
     rough = with_position(four_bar(1.0, 0.9, 0.5, 0.55))
-    with only_loops(), pytest.raises(MotionError, match="can be moved no further") as caught:
+    with (
+        only_loops(),
+        refusals.refused(MotionError, last="'rocker'", first="'coupler'") as caught,
+    ):
         eq.move(rough, 36)
     low, high = map(float, re.findall(r"at (-?[0-9.]+) deg", str(caught.value)))
     assert (low, high) == pytest.approx((-degrees(limit), degrees(limit)), abs=0.01)
@@ -353,7 +356,10 @@ def test_a_bifurcation_is_called_one(lean: float) -> None:
     place = (float(np.cos(lean)), float(np.sin(lean)))
     given = four_bar(1.0, 0.3, 1.0, 0.3, "right")
     rough = with_position(replace(given, frame={**given.frame, "D": place}))
-    with only_loops(), pytest.raises(ChangePointError, match="two ways there") as caught:
+    with (
+        only_loops(),
+        refusals.refused(ChangePointError, last="'rocker'", first="'coupler'") as caught,
+    ):
         eq.move(rough, 36)
     at = caught.value.crank_angle
     assert abs(np.sin(at - lean)) < radians(0.5)  # a step of the grid

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from support.refusals import refused
 
 FOUR_BAR = eq.load("yamashita-1")
 RIG = eq.load("yamashita-rig")
@@ -96,7 +97,7 @@ def test_plot_gives_a_figure_that_a_notebook_shows() -> None:
     before = figure._repr_png_()
     figure.axes[0].text(10, 10, "mine")
     assert figure._repr_png_() != before  # what is shown is the figure as it is
-    with pytest.raises(eq.EquipoiseError, match="did you mean 'torque'"):
+    with refused(eq.EquipoiseError, name="torque", given="torqe"):
         analysis.plot("torqe")
 
 

@@ -223,7 +223,7 @@ def test_a_file_beside_that_is_spelt_alike_is_suggested(
     monkeypatch.chdir(tmp_path)
     Path("sieve-2.toml").write_text(FOUR_BAR, encoding="utf-8")
     for name in ("sieve-2", "siev-2.toml"):
-        with pytest.raises(ModelError, match=r"did you mean 'sieve-2\.toml'"):
+        with refused(ModelError, name="sieve-2.toml"):
             load(name)
     with pytest.raises(ModelError, match="there is no such file; give a path, or the name of an"):
         load("nothing-at-all")

@@ -107,7 +107,7 @@ def test_any_numbers_and_names_survive(
 def test_nothing_is_written_that_a_file_cannot_tell() -> None:
     tool = loads_tool(TOOL)
     profile = Section(980.0, 2.3, shear_stiffness=1e6)
-    with pytest.raises(ModelError, match=r"^shaft: a file cannot tell shear_stiffness"):
+    with refused(ModelError, "shaft"):
         dumps(replace(tool, shaft=replace(tool.shaft, profile=profile)))
 
 

@@ -17,6 +17,7 @@ from equipoise.errors import UsageError
 from equipoise.studies.run import create_store
 from equipoise.studies.selection import write_designs
 from equipoise.studies.study import Output, samples
+from support.refusals import refused
 from support.studies import LENGTH, MASS, SPEED, Formulas, filled, short_study
 
 STUDY = short_study(250)
@@ -143,7 +144,6 @@ def test_without_pyarrow_the_sentence_tells_how_to_install_it(
 ) -> None:
     store = filled(tmp_path / "s", STUDY)
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    told = r'an export needs pyarrow, .* pip install "equipoise\[studies\]"'
-    with pytest.raises(UsageError, match=told):
+    with refused(UsageError, library="pyarrow", command='pip install "equipoise[studies]"'):
         write_designs(store, tmp_path / "d.csv")
     assert not (tmp_path / "d.csv").exists()

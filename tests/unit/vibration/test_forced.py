@@ -354,7 +354,7 @@ def test_no_curve_goes_on_past_standstill(mean_speed: Literal["held", "free"]) -
     machine = eq.load("quick-return")
     mean = abs(eq.analyze(machine).summary["drive_torque"].mean)
     weak = Motor(80.0, 0.8 * mean, mean_speed=mean_speed)
-    with pytest.raises(StallError, match="stalls with any flywheel") as error:
+    with pytest.raises(StallError) as error:
         respond(machine.with_drive(motor=weak), drive=True)
     assert f"has {0.8 * mean:.4g} N m" in str(error.value)
 

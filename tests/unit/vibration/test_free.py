@@ -286,7 +286,7 @@ def test_told_values() -> None:
 
 
 def test_refusals() -> None:
-    with pytest.raises(ModelError, match=r"^support: the machine stands on solid ground"):
+    with refused(ModelError, "support"):
         eq.modes(eq.load("yamashita-1"))
     with refused(UsageError, model="whole"):
         eq.modes(rig(), "whole")
@@ -477,7 +477,7 @@ def test_wrong_numbers_of_speeds(speeds: int) -> None:
 def test_a_sweep_needs_a_support() -> None:
     machine = replace(rig(), support=None).with_drive(motor=Motor(26.0, 6.0))
     for drive in (False, True):
-        with pytest.raises(ModelError, match="the machine stands on solid ground"):
+        with refused(ModelError, "support"):
             sweep_speed(machine, 3.0, 9.0, drive=drive)
 
 

@@ -227,7 +227,7 @@ def test_the_scale_of_an_svg_is_that_at_which_it_is_shown(
 
 def test_a_stretched_svg_is_refused(tmp_path: Path) -> None:
     head = 'width="200mm" height="50mm" viewBox="0 0 200 100" preserveAspectRatio="none"'
-    with pytest.raises(EquipoiseError, match="it is stretched"):
+    with refused(EquipoiseError, "svg"):
         import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, head=head))
 
 

@@ -138,7 +138,7 @@ def test_blocks_that_hold_themselves_and_endless_ones_come_to_an_end(tmp_path: P
     many = {"row_count": 30000, "row_spacing": 1, "column_count": 30000, "column_spacing": 1}
     document.modelspace().add_blockref("loop", (0, 0), dxfattribs=many)
     document.saveas(tmp_path / "a.dxf")
-    with pytest.raises(eq.EquipoiseError, match="more than 20,000 entities"):
+    with refused(eq.EquipoiseError, most=20000):
         eq.import_machine(tmp_path / "a.dxf")
 
 
