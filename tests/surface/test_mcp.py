@@ -1,14 +1,17 @@
-"""The commands as tools: a session with the protocol's own client, over standard streams."""
+"""The commands as tools: a session with the protocol's own client, in this process.
+
+Over standard streams, and with processes that compute: `test_mcp_stopped.py`.
+"""
 
 from __future__ import annotations
 
 import base64
 import json
-import os
 import re
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from contextlib import chdir
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,11 +19,13 @@ from typing import Any
 import anyio
 import jsonschema
 import pytest
-from mcp import Client, StdioServerParameters
+from mcp import Client
 from mcp.types import CallToolResult, Tool
 
 import equipoise as eq
+from equipoise.cli.protocol import Workers, server_of
 from equipoise.cli.tools import tools
+from equipoise.cli.worker import ToolCall, ToolReply, reply_to
 from equipoise.errors import EquipoiseError
 from surface.running import equipoise, refused
 from unit.schema.samples import FOUR_BAR
@@ -100,13 +105,22 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
     (folder / "reads.toml").write_text(f"{FOUR_BAR}\n{load}", encoding="utf-8")
     (folder / "link.toml").symlink_to(around / "outside.toml")
     (folder / "way").symlink_to(around)
-    words = ["-m", "equipoise", "mcp", "--folder", str(folder)]
-    server = StdioServerParameters(command=sys.executable, args=words, env={**os.environ})
-    yield anyio.run(partial(talk, server, folder))
+    with chdir(folder):
+        yield anyio.run(partial(talk, folder))
     assert {one.name for one in around.iterdir()} == {"folder", "outside.toml", "load.csv"}
 
 
-async def talk(server: StdioServerParameters, folder: Path) -> Session:
+class Here(Workers):
+    """Answers in this process, where a new one would import everything first."""
+
+    async def answer(self, name: str, given: dict[str, Any], long: bool) -> ToolReply:
+        reply = reply_to(ToolCall(name, given, str(self.folder)))
+        return ToolReply(**json.loads(json.dumps(asdict(reply))))  # as over a pipe
+
+
+async def talk(folder: Path) -> Session:
+    limiter = anyio.CapacityLimiter(1)
+    server = server_of(Here(folder.resolve(), limiter, limiter))
     async with Client(server, read_timeout_seconds=300) as client:
         known = {one.name: one for one in (await client.list_tools()).tools}
         told = {key: await client.call_tool(*call) for key, call in CALLS.items()}
@@ -223,7 +237,7 @@ def test_what_is_wrong_is_an_error_of_the_tool(session: Session) -> None:
 def test_nothing_outside_of_the_folder_is_read_or_written(
     session: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """By the server; and by what it calls, in this process, which takes a tenth of the time."""
+    """By the server, and by what it calls."""
     told = {key: wrong(session, key) for key in OUTSIDE.keys() & CALLS.keys()}
     monkeypatch.chdir(session.folder)
     for key, (name, given) in OUTSIDE.items():

@@ -130,14 +130,17 @@ def test_a_call_that_is_cancelled_ends_and_others_do_not_wait(
     stored = folder / "1.zarr"
     until(lambda: stored.exists() and (folder / "2.zarr").exists())
     assert not (folder / "3.zarr").exists()
-    session.call(4, "check", file="machine.toml")
-    assert "ready to be analysed" in session.wait(4)["result"]["content"][0]["text"]
+    session.call(4, "analyze", file="machine.toml", csv="all.csv")
+    answer = session.wait(4)["result"]
+    assert "Look at next" in answer["content"][0]["text"]
+    assert answer["structuredContent"]["files"] == ["all.csv"]
     for number in (1, 2, 3):
         session.send("notifications/cancelled", {"requestId": number, "reason": "enough"})
     until(lambda: session.computing() == [])
     chunks = sum(1 for _ in folder.rglob("c/*"))
-    session.call(5, "check", file="machine.toml")
-    assert "result" in session.wait(5)
+    session.call(5, "check", file="../outside.toml")
+    refusal = session.wait(5)["result"]
+    assert refusal["isError"] and "folder that is served" in refusal["content"][0]["text"]
     assert sum(1 for _ in folder.rglob("c/*")) == chunks
     assert not (folder / "3.zarr").exists()
 
