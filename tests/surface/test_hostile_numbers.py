@@ -31,7 +31,7 @@ TABLES = re.compile(
 SIZES = ("0", "-1", "1e30", "-1e30", "1e-30", "nan", "inf", "1e308", "5e-324")
 PLAIN = (0, -1, 1e30, 1e-30, float("nan"), float("inf"), 10**40, True, "", "text", "=1/0", [], [1],
          ["A"], {"a": 1})  # fmt: skip
-PARTS = 48
+PARTS = 96
 SECONDS = 20
 KEYS = {
     "RollingBearing": "joints.*.bearing",

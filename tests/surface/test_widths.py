@@ -93,7 +93,7 @@ LINES = [
     "tool brush-cutter",
     "tool design tool.toml",
     "tool sensitivities tool.toml",
-    "tool vary nagamine-irie 'harness position = 0 mm : 400 mm' --number 9",
+    "tool vary nagamine-irie 'harness position = 0 mm : 400 mm' --number 3",
 ]
 """Of every command that prints blocks, quick ones with much to tell."""
 PRINTING = {
