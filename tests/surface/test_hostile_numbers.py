@@ -79,9 +79,15 @@ def places() -> list[tuple[int, Path_]]:
     return [*found.values()]
 
 
+@cache
+def drawn(seed: int) -> tuple[dict[str, Any], dict[str, str]]:
+    """The document and the tables of a machine, which take longer to draw than most commands."""
+    return machines_any.files(seed)
+
+
 def document(seed: int) -> dict[str, Any]:
     """A machine from nothing, with a brake, and a run that has every key now and then."""
-    made, _ = machines_any.files(seed)
+    made = deepcopy(drawn(seed)[0])
     if "motor" in made["drive"]:
         made["drive"]["brake"] = "3 N m"
         if seed % 2:
@@ -121,7 +127,7 @@ def try_commands(seed: int, path: Path_, value: Any) -> None:
 @pytest.mark.parametrize("part", few(range(PARTS), (13,)))
 def test_no_number_breaks_a_command(part: int) -> None:
     for seed, path in places()[part::PARTS]:
-        made, tables = document(seed), machines_any.files(seed)[1]
+        made, tables = document(seed), drawn(seed)[1]
         for name, text in tables.items():
             Path(name).write_text(text, encoding="utf-8")
         given: Any = made
