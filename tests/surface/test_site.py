@@ -64,6 +64,7 @@ def test_public_names_stand_in_tables_and_have_examples(site: Path) -> None:
     assert re.search(r"<td>(?:(?!</td>).)*>angles<", own["equipoise.analyze"], re.DOTALL)
 
 
+@pytest.mark.documentation
 def test_examples_of_public_names_do_what_they_show(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
