@@ -271,7 +271,7 @@ FIGURES = [
 
 @pytest.mark.exhaustive(
     but=[
-        "quick-return-None-True",
+        "quick-return-None-False",
         "slider-crank-engine-None-False",
         "quick-return-40-False",
         "slider-crank-engine-40-False",

@@ -201,6 +201,8 @@ def zdt1(*numbers: Array) -> Array:
     return np.stack([numbers[0], g * (1 - np.sqrt(numbers[0] / g))], axis=1)
 
 
+# A front that is missed: `test_the_front_within_a_limit`.
+@pytest.mark.exhaustive
 def test_the_front_of_a_known_problem() -> None:
     outputs = tuple(Output(name, value="a.b", make="smallest") for name in ("f", "g"))
     some = replace(of(*[Range(0.0, 1.0)] * 5), outputs=outputs)
