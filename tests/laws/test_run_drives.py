@@ -18,7 +18,7 @@ from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.laws import AngleLaw
-from equipoise.mechanism.parts.machine import FurtherDrive, Row
+from equipoise.mechanism.parts.machine import FurtherDrive
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
@@ -252,17 +252,6 @@ def test_links_that_reach_no_start_are_refused() -> None:
     rubbing = eq.load("two-motor-mixer")  # whose friction is not what keeps it from its start
     with pytest.raises(ResponseError, match="assembled"):
         eq.run(replace(rubbing, frame={**rubbing.frame, "E": (0.43, 0.0)}))
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"rows": (Row(), Row(phase=pi))},
-    ],
-)
-def test_what_a_run_of_several_drives_lacks_is_refused(changes: Any) -> None:
-    with pytest.raises(UsageError, match=f"^{next(iter(changes))}: "):
-        eq.run(apart(**changes))
 
 
 def test_drives_of_given_motions_alone_are_refused() -> None:

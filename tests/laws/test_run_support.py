@@ -13,7 +13,7 @@ import equipoise as eq
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.figures.running import drives_charts
 from equipoise.mechanism.parts.force_elements import Motor
-from equipoise.mechanism.parts.machine import FurtherDrive, Row
+from equipoise.mechanism.parts.machine import FurtherDrive
 from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.mechanism.parts.support import Mount, Support
 from equipoise.mechanism.parts.timed_loads import TimedLoad
@@ -180,7 +180,6 @@ def test_loads_between_links_and_frame_do_not_push_the_support() -> None:
     np.testing.assert_allclose(momentum, 0, atol=1e-7)
 
 
-ROWS = (Row(), Row(pi))
 SPATIAL = {"pivot": None, "pivot_inertia": None, "inertia": (1.0, 1.0, 1.0),
            "freedoms": ("heave", "roll")}  # fmt: skip
 
@@ -188,14 +187,12 @@ SPATIAL = {"pivot": None, "pivot_inertia": None, "inertia": (1.0, 1.0, 1.0),
 @pytest.mark.parametrize(
     ("change", "values"),
     [
-        (lambda m: replace(m, rows=ROWS), {"place": "rows"}),
         (
             lambda m: replace(m, support=replace(m.support, **SPATIAL)),
             {"place": "support.freedoms", "names": "roll"},
         ),
-        (lambda m: replace(eq.load("hydraulic-loader"), support=m.support), {"place": "support"}),
     ],
-    ids=["rows", "spatial", "strokes"],
+    ids=["spatial"],
 )
 def test_what_a_run_on_a_support_refuses(change: Any, values: dict[str, str]) -> None:
     with refused(UsageError, **values):

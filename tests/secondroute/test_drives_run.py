@@ -25,14 +25,14 @@ from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw
-from equipoise.mechanism.parts.machine import FurtherDrive
+from equipoise.mechanism.parts.machine import FurtherDrive, Row
 from equipoise.results.remarks import linkage_remarks
 from equipoise.running.drives_blocks import verdict
 from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_friction import NEAR_REST
 from support.machines import make
-from support.pinned_bodies import PinnedBodies
-from support.poses import Array
+from support.pinned_bodies import PinnedBodies, in_rows
+from support.poses import Array, pins
 
 CLOSE = 3e-8
 """rad: free bodies drift off their pins, as nothing holds them there but second derivatives."""
@@ -105,19 +105,14 @@ def against_free_bodies(
     """Compare all cranks' angles over time; return the run."""
     found = eq.run(machine, duration, **start)
     assert found.energy_error < BALANCE
-    first = {link: course.angle[0] for link, course in found.drives.items()}
     speeds = {link: course.speed[0] for link, course in found.drives.items()}
-    linkage = assemble(machine)
-    motion = at_angles(linkage, [*first.values()], np.zeros((1, len(first))))
-    angles = {
-        link: float(np.angle(np.ravel(motion.state[u(link)[0]])[0])) for link in machine.links
-    }
     torques, more = motor_torques(machine, {item.link: 1.0 for item in machine.driven})
-    bodies = PinnedBodies(with_rotors(machine), given, torques)
-    bodies.rubbing = {
-        entry.joint.partition(".")[2]: (entry.friction or 0.0) * (entry.radius or 0.0)
-        for entry in machine.joints
-    }
+    whole, shafts = in_rows(machine) if machine.rows else (machine, [])
+    bodies = PinnedBodies(with_rotors(whole), given, torques)
+    bodies.shafts = shafts
+    bodies.rubbing = friction_in_pins(machine, whole)
+    angles = angles_of_rows(machine, found)
+    speeds |= {other: speeds[link] for link, other in shafts}
     bodies.strokes = strokes
     bodies.slow = NEAR_REST * abs(machine.drive.speed)
     state = np.concatenate([bodies.start(angles, speeds), np.zeros(more)])
@@ -130,6 +125,48 @@ def against_free_bodies(
         # the spline between instants of a step is off by less than the tolerance
         np.testing.assert_allclose(spline(times) - course.angle[0], gone, atol=CLOSE)
     return found
+
+
+def friction_in_pins(machine: eq.Machine, whole: eq.Machine) -> dict[str, float]:
+    """Coefficient times radius, m, of each pin of all rows."""
+    each = {
+        entry.joint.partition(".")[2]: (entry.friction or 0.0) * (entry.radius or 0.0)
+        for entry in machine.joints
+    }
+    return {pin: each.get(pin.removesuffix(" 2"), 0.0) for pin in pins(whole)}
+
+
+def angles_of_rows(machine: eq.Machine, run: Any) -> dict[str, float]:
+    """Angles of the links of all rows at the start of a run, as of `in_rows`, in each of which
+    drives of constant ratios are ahead by its phase.
+    """
+    linkage, angles = assemble(machine), {}
+    for number, row in enumerate(machine.rows or (Row(),), 1):
+        first = [
+            run.drives[drive.link].angle[0] + row.phase * getattr(drive, "ratio", 1.0)
+            for drive in machine.driven
+        ]
+        motion = at_angles(linkage, first, np.zeros((1, len(first))))
+        for link in machine.links:
+            angle = float(np.angle(np.ravel(motion.state[u(link)[0]])[0]))
+            angles[link if number == 1 else f"{link} {number}"] = angle
+    return angles
+
+
+ROWS = (Row(), Row(phase=1.9, offset=(0.3, -0.05)))
+
+
+def two_motors(**changes: Any) -> eq.Machine:
+    drive = eq.Drive("left crank", 15.0, motor=LAGGING)
+    other = FurtherDrive("right crank", start=pi / 3, motor=QUICK)
+    return replace(five_bar(drive, other), **changes)
+
+
+def test_two_motors_turn_two_rows() -> None:
+    run = against_free_bodies(two_motors(rows=ROWS), 0.1, {})
+    alone = eq.run(two_motors(), 0.1)
+    shares = [run.drives[link].turns / course.turns for link, course in alone.drives.items()]
+    assert max(abs(share - 1) for share in shares) > 0.05
 
 
 def test_two_motors_turn_a_five_bar() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import pi
 from typing import Any
@@ -11,23 +12,25 @@ import pytest
 from scipy.interpolate import CubicHermiteSpline
 
 import equipoise as eq
-from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import u
 from equipoise.mechanism.parts.force_elements import Load, Motor
 from equipoise.mechanism.parts.laws import AngleLaw
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive
-from equipoise.mechanism.parts.support import Mount, Support
+from equipoise.mechanism.parts.support import Mount, Row, Support
 from equipoise.running.drives_friction import NEAR_REST
 from equipoise.running.drives_run import DrivesRun
 from secondroute.test_drives_run import (
     JOINTS,
-    LAGGING,
-    QUICK,
-    at_angles,
+    ROWS,
+    angles_of_rows,
     five_bar,
+    friction_in_pins,
     motor_torques,
+    pushed_five_bar,
+    stroke_by_time,
+    two_motors,
 )
-from support.pinned_bodies import PinnedBodies
+from support.pinned_bodies import PinnedBodies, in_rows
 from support.poses import Array
 
 CLOSE = 3e-8
@@ -101,6 +104,14 @@ def test_one_crank_and_its_motor_as_the_exact_model() -> None:
     assert np.all(np.ptp(run.support.place, axis=1) > 1e-4)
 
 
+def test_rows_on_a_support_as_the_exact_model() -> None:
+    rows = (Row(phase=0.4), Row(phase=2.2, offset=(-0.3, 0.1)))
+    machine = replace(rig(), rows=rows)
+    run = against_exact(machine, 0.25, 3e-9)
+    alone = eq.run(replace(machine, rows=()), 0.25, support=True)
+    assert abs(run.turned / alone.turned - 1) > 0.01
+
+
 def test_a_support_about_a_pivot_as_the_exact_model() -> None:
     base = eq.load("balance-rig")
     assert base.drive.motor is not None
@@ -134,26 +145,24 @@ def test_mounts_let_go_and_touch_again() -> None:
 
 
 def against_free_bodies(
-    machine: eq.Machine, duration: float, given: dict[str, Any] | None = None
+    machine: eq.Machine,
+    duration: float,
+    given: dict[str, Any] | None = None,
+    strokes: Sequence[Any] = (),
 ) -> DrivesRun:
     """Compare drives and support over time; return the run."""
     run = eq.run(machine, duration, support=True)
     assert isinstance(run, DrivesRun)
     assert run.energy_error < BALANCE
-    linkage = assemble(machine)
-    first = [course.angle[0] for course in run.drives.values()]
-    motion = at_angles(linkage, first, np.zeros((1, len(first))))
-    angles = {
-        link: float(np.angle(np.ravel(motion.state[u(link)[0]])[0])) for link in machine.links
-    }
     torques, more = motor_torques(machine, {item.link: 1.0 for item in machine.driven})
-    bodies = PinnedBodies(machine, given or {}, torques, on_support=True)
-    bodies.rubbing = {
-        entry.joint.partition(".")[2]: (entry.friction or 0.0) * (entry.radius or 0.0)
-        for entry in machine.joints
-    }
+    whole, shafts = in_rows(machine) if machine.rows else (machine, [])
+    bodies = PinnedBodies(whole, given or {}, torques, on_support=True)
+    bodies.shafts, bodies.strokes = shafts, strokes
+    bodies.rubbing = friction_in_pins(machine, whole)
     bodies.slow = NEAR_REST * abs(machine.drive.speed)
     speeds = {link: course.speed[0] for link, course in run.drives.items()}
+    speeds |= {other: speeds[link] for link, other in shafts}
+    angles = angles_of_rows(machine, run)
     state = np.concatenate([bodies.start(angles, speeds), np.zeros(more)])
     times = np.linspace(0.0, run.time[-1], 40)
     wanted, found = bodies.follow(state, times), sampled(run, times)
@@ -162,25 +171,36 @@ def against_free_bodies(
     return run
 
 
-def two_motors() -> eq.Machine:
-    drive = eq.Drive("left crank", 15.0, motor=LAGGING)
-    return replace(five_bar(drive, FurtherDrive("right crank", start=pi / 3, motor=QUICK)),
-                   support=SUPPORT)  # fmt: skip
-
-
 def test_two_motors_shake_their_support() -> None:
-    run = against_free_bodies(two_motors(), 0.15)
+    run = against_free_bodies(two_motors(support=SUPPORT), 0.15)
     assert run.support is not None
     assert np.all(np.ptp(run.support.place, axis=1) > 1e-3)
-    fixed = eq.run(replace(two_motors(), support=None), 0.15)
+    fixed = eq.run(two_motors(), 0.15)
     other = fixed.drives["left crank"].turns / run.drives["left crank"].turns
     assert abs(other - 1) > 1e-3  # the support acts back on the drives
 
 
 def test_friction_in_pins_is_pressed_by_the_support_too() -> None:
-    run = against_free_bodies(replace(two_motors(), joints=JOINTS), 0.02)
-    fixed = eq.run(replace(two_motors(), joints=JOINTS, support=None), 0.02)
+    run = against_free_bodies(two_motors(joints=JOINTS, support=SUPPORT), 0.02)
+    fixed = eq.run(two_motors(joints=JOINTS), 0.02)
     assert abs(fixed.losses["A"][-1] / run.losses["A"][-1] - 1) > 1e-3
+
+
+def test_two_rows_with_friction_shake_their_support() -> None:
+    """Friction of a row is pressed by what that of the other does to the shafts and the support."""
+    machine = two_motors(joints=JOINTS, support=SUPPORT, rows=ROWS)
+    run = against_free_bodies(machine, 0.01)
+    alone = eq.run(replace(machine, rows=()), 0.01, support=True)
+    assert abs(run.losses["A"][-1] / alone.losses["A"][-1] - 1) > 1e-2
+
+
+def test_a_cylinder_between_the_cranks_on_their_support() -> None:
+    drive = eq.Drive("left crank", 15.0, free=True, motion=AngleLaw(between=(0.0, 0.5)))
+    machine = replace(pushed_five_bar(drive), support=SUPPORT)
+    stroke = ("left crank", "P"), ("right crank", "D"), stroke_by_time
+    run = against_free_bodies(machine, 0.15, strokes=[stroke])
+    wanted = [stroke_by_time(time)[0] for time in run.time]
+    np.testing.assert_allclose(run.drives["right crank"].length, wanted, atol=1e-12)
 
 
 def test_free_drives_on_one_sided_mounts() -> None:
@@ -257,8 +277,8 @@ def momenta(run: DrivesRun, places: Array) -> tuple[Array, Array]:
 def test_a_free_support_keeps_momentum(rubbing: bool) -> None:
     """Motors, friction and springs between links and support act within the machine."""
     loose = replace(SUPPORT, mounts={"film": Mount(axis="pitch", torsional_damping=1e-15)})
-    machine = replace(two_motors(), support=loose, gravity=(0.0, 0.0),
-                      joints=JOINTS if rubbing else ())  # fmt: skip
+    joints = JOINTS if rubbing else ()
+    machine = two_motors(support=loose, gravity=(0.0, 0.0), joints=joints)
     run = eq.run(machine, 0.04, support=True)
     assert isinstance(run, DrivesRun)
     places = np.linspace(0, len(run.time) - 1, 50).astype(int)

@@ -10,6 +10,7 @@ body of a support on its mounts.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -36,11 +37,13 @@ class PinnedBodies:
 
     rubbing : pin -> coefficient of friction times radius, m.
     strokes : two bodies, each with a point, and the length between these by the time.
+    shafts : pairs of links that turn together about the frame.
     slow : rad/s, below which friction changes its sense: as s (3 - s^2) / 2 with the share s of it.
     """
 
     rubbing: Mapping[str, float] = {}
     strokes: Sequence[tuple[tuple[str, str], tuple[str, str], Given]] = ()
+    shafts: Sequence[tuple[str, str]] = ()
     slow = 0.0
 
     def __init__(
@@ -106,6 +109,12 @@ class PinnedBodies:
             length, rate, bend = law(time)
             rows.append(row)
             right.append(rate**2 + length * bend - known)
+        for first, second in self.shafts:
+            row = np.zeros(len(q))
+            row[3 * self.names.index(first) + 2] = 1.0
+            row[3 * self.names.index(second) + 2] = -1.0
+            rows.append(row)
+            right.append(0.0)
         for body, law in self.given.items():
             row = np.zeros(len(q))
             row[3 * self.names.index(body) + 2] = 1.0
@@ -250,3 +259,21 @@ class PinnedBodies:
         x, y, turned_by = done.y[last - 2 : last + 1]
         angles = {name: done.y[3 * k + 2] - turned_by for k, name in enumerate(self.machine.links)}
         return {**angles, "x": x, "y": y, FRAME: turned_by}
+
+
+def in_rows(machine: eq.Machine) -> tuple[eq.Machine, list[tuple[str, str]]]:
+    """The links of all rows as those of one machine, whose further ones are named ``LINK 2``, and
+    pairs of the same driven link in two rows.
+    """
+    frame: dict[str, tuple[float, ...]] = {}
+    links: dict[str, eq.Link] = {}
+    shafts = []
+    for number, row in enumerate(machine.rows, 1):
+        mark = "" if number == 1 else f" {number}"
+        frame |= {name + mark: tuple(np.add(at, row.offset)) for name, at in machine.frame.items()}
+        for name, link in machine.links.items():
+            points = {label + mark: place for label, place in link.points.items()}
+            links[name + mark] = replace(link, points=points)
+        if mark:
+            shafts += [(drive.link, drive.link + mark) for drive in machine.driven]
+    return replace(machine, rows=(), frame=frame, links=links), shafts

@@ -10,7 +10,7 @@ outside, as a servo motor that follows the crank would: nothing but its own link
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cached_property
 from typing import NamedTuple
 
@@ -25,8 +25,9 @@ from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drive_angles import DriveAngles
 from equipoise.running.drivers import Driver
-from equipoise.running.drives_friction import DrivesFriction, FrictionOf
+from equipoise.running.drives_friction import DrivesFriction, JointPressing
 from equipoise.running.drives_linkage import DrivesPose, References, pose_of, references_at
+from equipoise.running.linkage_rows import LinkageRows
 from equipoise.running.mount_contacts import MountContacts
 from equipoise.running.sources import AppliedSource, SourceInputs, plus, sources_of
 from equipoise.running.strokes import Strokes
@@ -46,8 +47,9 @@ STROKES_ALONE = Note(
 class DriveState(NamedTuple):
     """What acts in K states.
 
-    where : all drives.  inertia : (N, N, K) of links and motors, kg m2.
-    forces : of each of `DrivesEquation.acting` (S, N, K), N m, or N along a support.
+    pose : of the linkages of all R rows, as all that follows (R K).  where : coordinates of each.
+    inertia : (C, C, R K) of links and motors, kg m2.
+    forces : of each of `DrivesEquation.acting` (S, C, R K), N m, or N along a support.
     rubbing : friction in joints; None without.
     """
 
@@ -55,7 +57,7 @@ class DriveState(NamedTuple):
     where: DriveAngles
     inertia: Array
     forces: Array
-    rubbing: FrictionOf | None
+    rubbing: JointPressing | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,25 +69,23 @@ class DrivesEquation:
     Raises
     ------
     MassError : a link has no mass given.
-    UsageError : no drive moves freely, or something acts that a run of several drives lacks.
+    UsageError : no drive moves freely.
     """
 
     machine: Machine
     start: float = 0.0
 
     def __post_init__(self) -> None:
-        if reason := next(self.refusals(), None):
-            raise UsageError(at_place(*reason))
         if missing := massless(self.machine):
             raise MassError(missing)
         if not self.unknowns:
             strokes_alone = all(drive.pushes for drive in self.drives)
             raise UsageError(at_place("drive", STROKES_ALONE if strokes_alone else NO_FREE_DRIVE))
 
-    def refusals(self) -> Iterator[tuple[str, Note]]:
-        """What such a run does not compute, with its place in the file."""
-        if self.machine.rows:
-            yield "rows", Note("a run of several drives computes one row; leave the others out")
+    @cached_property
+    def rows(self) -> LinkageRows:
+        """The linkages that the drives turn."""
+        return LinkageRows(self.machine)
 
     @property
     def drives(self) -> tuple[Drive | FurtherDrive, ...]:
@@ -158,7 +158,7 @@ class DrivesEquation:
         """Friction in joints, where they have some."""
         if not self.machine.rubs:
             return None
-        return DrivesFriction(self.linkage, abs(self.machine.drive.speed) or 1.0)
+        return DrivesFriction(self.linkage, abs(self.machine.drive.speed) or 1.0, self.rows)
 
     @cached_property
     def rotors(self) -> tuple[float, ...]:
@@ -186,31 +186,52 @@ class DrivesEquation:
         return [Driver(drive.motor, speed, brake) for drive, speed, brake in each]
 
     def references_at_start(self) -> References:
-        """References (..., 1) at the crank angle of the start, with all drives as the file has them
-        there.
+        """References (..., R, 1) at the crank angle of the start, with all drives as the file has
+        them there.
 
         Raises
         ------
         ResponseError : the links do not get there.
         """
-        strokes = {} if self.strokes is None else self.strokes.references_at_start
-        return {**references_at(self.linkage, self.start), **strokes}
+        starts = self.start + self.rows.phases
+        each = [references_at(self.linkage, angle) for angle in starts.tolist()]
+        near = {name: np.concatenate([row[name] for row in each], axis=-1) for name in each[0]}
+        if self.strokes is not None:
+            near |= self.strokes.references_at(starts)
+        return self._by_row(near)
 
     def references(self, state: DriveState) -> References:
-        """What references have come to in K states (..., K)."""
-        if self.strokes is None:
-            return state.pose.references
-        return {**state.pose.references, **self.strokes.references(state.where.angles)}
+        """What references have come to in K states (..., R, K)."""
+        references = dict(state.pose.references)
+        if self.strokes is not None:
+            references |= self.strokes.references(state.where.angles)
+        return self._by_row(references)
+
+    def _by_row(self, references: References) -> References:
+        """References (..., R, K) of (..., R K)."""
+        return {name: self.rows.apart(values) for name, values in references.items()}
+
+    def _of_rows(self, references: References) -> References:
+        """References (..., R K) of (..., R, K)."""
+        return {name: self.rows.joined(values) for name, values in references.items()}
 
     def placed(self, time: Array, angles: Array, speeds: Array) -> DriveAngles:
-        """All drives at times (K,), s, by the angles and speeds of the unknowns, each (U, K); those
-        that push are NaN until `with_strokes` places them.
+        """All drives at times (K,), s, by the angles and speeds of the unknowns, each (U, K), as
+        their shafts turn; those that push are NaN until `in_rows` places them.
         """
         crank_speed = self._crank_speed(time, speeds)
         crank = angles[0] if self.by_crank else self.start + crank_speed * time
-        count, free = self.coordinates, self.free
-        whole = np.zeros((3, count, len(time)))  # angles, speeds and bias of accelerations
-        jacobian, virtual = np.zeros((2, count, len(free), len(time)))
+        return self._placed(crank, crank_speed, angles, speeds)
+
+    def _placed(
+        self, crank: Array, crank_speed: Array, angles: Array, speeds: Array
+    ) -> DriveAngles:
+        """All drives by the unknowns, each (U, K), of which those that are given follow a crank
+        angle (K,), rad, and its speed, rad/s.
+        """
+        count, free, states = self.coordinates, self.free, len(crank)
+        whole = np.zeros((3, count, states))  # angles, speeds and bias of accelerations
+        jacobian, virtual = np.zeros((2, count, len(free), states))
         jacobian[free, range(len(free))] = virtual[free, range(len(free))] = 1.0
         whole[0, free], whole[1, free] = angles, speeds
         for k in self.given:
@@ -221,22 +242,43 @@ class DrivesEquation:
             whole[:, k] = angle, first * crank_speed, second * crank_speed**2
             if self.by_crank:
                 jacobian[k, 0] = first
-        none = np.zeros((0, len(time)))
+        none = np.zeros((0, states))
         return DriveAngles(
             crank, whole[0], whole[1], jacobian, whole[2], virtual, whole[1], none, none[:, None]
         )
 
-    def with_strokes(self, time: Array, where: DriveAngles, near: References) -> DriveAngles:
-        """All drives at times (K,), s, as of `placed`, with those that push.
+    def in_rows(self, time: Array, where: DriveAngles, near: References) -> DriveAngles:
+        """All drives of each row (R K), at times (K,), s, with those that push.
+
+        Shafts that follow from torques turn the links of all rows by the same angles, from where
+        the file has each at the start; a given motion is that of the row's own crank angle.
+
+        where : as of `placed`.  near : references in these states.
 
         Raises
         ------
         MotionError : a stroke cannot be as long as it is to be.
         """
+        rows, free = self.rows, self.free
+        crank_speed = rows.repeated(self._crank_speed(time, where.speeds[free]))
+        if not rows.as_in_file:
+            shifts = rows.of_each(self._shifts, len(time))
+            crank = rows.repeated(where.crank_angle) + rows.of_each(rows.phases, len(time))
+            angles, speeds = (rows.repeated(part[free]) for part in (where.angles, where.speeds))
+            where = self._placed(crank, crank_speed, angles + shifts, speeds)
         if self.strokes is None:
             return where
-        crank_speed = self._crank_speed(time, where.speeds[self.free])
-        return self.strokes.placed(where, crank_speed, near)
+        return self.strokes.placed(where, crank_speed, self._of_rows(near))
+
+    @cached_property
+    def _shifts(self) -> Array:
+        """By which the unknowns of each row are larger (U, R) than those of the shafts."""
+        shifts = np.zeros((len(self.unknowns), self.rows.count))
+        for row, k in enumerate(self.unknowns):
+            if k < len(self.drives):
+                turned = self.drives[k].turned
+                shifts[row] = turned(self.start + self.rows.phases)[0] - turned(self.start)[0]
+        return shifts
 
     def _crank_speed(self, time: Array, speeds: Array) -> Array:
         """Speed of the crank (K,), rad/s, by those of the unknowns (U, K)."""
@@ -246,20 +288,21 @@ class DrivesEquation:
         """What falls to 0 (D, K) where a dyad, or a stroke, comes to its dead position, in the
         order of `dead_positions`.
         """
-        dyads = state.pose.margins([*self.dyads.values()])
-        if self.strokes is None:
-            return dyads
-        return np.vstack([dyads, self.strokes.margin(state.where.slopes)])
+        margins = state.pose.margins([*self.dyads.values()])
+        if self.strokes is not None:
+            margins = np.vstack([margins, self.strokes.margin(state.where.slopes)])
+        by_row = self.rows.apart(margins)
+        return by_row.reshape(-1, by_row.shape[-1])
 
     @property
     def dead_positions(self) -> list[tuple[str, str]]:
         """What `margins` belong to: ``dead`` with the inner joint of a dyad, ``lever`` with the
         links that strokes move.
         """
-        dyads = [("dead", joint) for joint in self.dyads]
-        if self.strokes is None:
-            return dyads
-        return [*dyads, ("lever", ", ".join(self.strokes.links))]
+        positions = [("dead", joint) for joint in self.dyads]
+        if self.strokes is not None:
+            positions.append(("lever", ", ".join(self.strokes.links)))
+        return [position for position in positions for _ in self.rows.all]
 
     def factors_at(self, time: Array, since: float) -> list[Array]:
         """Factors (K,) of loads over time at times (K,), s, each on the line that it follows after
@@ -270,6 +313,7 @@ class DrivesEquation:
     def at(self, time: Array, since: float, where: DriveAngles, near: References) -> DriveState:
         """What acts in K states.
 
+        where : as of `placed`.
         since : an instant, s, after which loads over time follow the line that counts.
         near : references in these states.
 
@@ -277,15 +321,17 @@ class DrivesEquation:
         ------
         MotionError, ModelError : the machine cannot be there.
         """
-        where = self.with_strokes(time, where, near)
-        pose = self.pose(where.crank_angle, where.angles, where.speeds, near)
-        crank_speed = self._crank_speed(time, where.speeds[self.free])
-        inputs = SourceInputs(crank_speed, self.factors_at(time, since), pose.gravity)
+        rows, mounts = self.rows, self.mount_forces(where)
+        where = self.in_rows(time, where, near)
+        pose = self.pose(where, self._of_rows(near))
+        crank_speed = self._crank_speed(rows.repeated(time), where.speeds[self.free])
+        factors = self.factors_at(rows.repeated(time), since)
+        inputs = SourceInputs(crank_speed, factors, pose.gravity)
         acting = [source.demands(pose.moving, inputs) for source in self.sources]
         forces = np.zeros((len(self.acting), self.coordinates, pose.count))
         for k, (source, demands) in enumerate(zip(self.sources, acting, strict=True)):
             forces[k] = pose.exerted(source, inputs, demands)
-        forces[len(acting) :] = self.mount_forces(where)
+        forces[len(acting) :] = rows.repeated(mounts) / rows.count
         rubbing = None
         if self.friction is not None:
             rubbing = self.friction.of(pose, plus(pose.turning, *acting))
@@ -295,64 +341,67 @@ class DrivesEquation:
         """Generalized forces (0, N, K) of mounts of the support: none on a fixed frame."""
         return np.zeros((0, *where.angles.shape))
 
-    def pose(self, crank: Array, angles: Array, speeds: Array, near: References) -> DrivesPose:
-        """The linkage as of `pose_of`."""
-        return pose_of(self.linkage, crank, angles, speeds, near)
+    def pose(self, where: DriveAngles, near: References) -> DrivesPose:
+        """The linkages of all rows, at coordinates as of `in_rows`, near references (..., R K)."""
+        return pose_of(
+            self.linkage, where.crank_angle, where.angles, where.speeds, near, 1 / self.rows.count
+        )
 
     def with_rotors(self, inertia: Array) -> Array:
-        """Inertia (N, N, K), kg m2, of links with that of motors."""
-        return inertia + np.diag(self.rotors)[:, :, None]
+        """Inertia (C, C, R K), kg m2, of links with that of motors."""
+        return inertia + np.diag(self.rotors)[:, :, None] / self.rows.count
 
     def accelerations(
         self, state: DriveState, torques: Array, settled: Array
     ) -> tuple[Array, Array]:
-        """Of all drives (N, K), rad/s2, with torques (N, K) on those that are unknown, N m; and
-        friction (J, K) in joints, N m or N.
+        """Of all drives of each row (C, R K), rad/s2, with torques (C, K) on the shafts that are
+        unknown, N m; and friction (J R, K) in joints, N m or N.
 
-        settled : (J,), as of `DrivesFriction.senses`.
+        settled : (J R,), as of `DrivesFriction.senses`.
 
         Raises
         ------
         LockError : friction locks the machine.
         """
-        where, inertia, count = state.where, state.inertia, torques.shape[1]
+        rows, where, inertia = self.rows, state.where, state.inertia
         demand = np.sum(inertia[:, :, None] * where.jacobian[None], axis=1)
-        left = np.sum(where.virtual_speeds[:, :, None] * demand[:, None], axis=0)
-        acting = state.forces.sum(axis=0) + torques - state.pose.bias
+        left = rows.total(np.sum(where.virtual_speeds[:, :, None] * demand[:, None], axis=0))
+        acting = state.forces.sum(axis=0) + rows.repeated(torques) / rows.count - state.pose.bias
         acting = acting - np.sum(inertia * where.bias_accelerations, axis=1)
-        known = np.sum(where.virtual_speeds * acting[:, None], axis=0)
+        known = rows.total(np.sum(where.virtual_speeds * acting[:, None], axis=0))
         if state.rubbing is None:
-            changes = _eliminated(left, known[:, None])[:, 0]
-            return where.bias_accelerations + np.sum(where.jacobian * changes, axis=1), np.zeros(
-                (0, count)
-            )
+            changes = rows.repeated(_eliminated(left, known[:, None])[:, 0])
+            whole = where.bias_accelerations + np.sum(where.jacobian * changes, axis=1)
+            return whole, np.zeros((0, torques.shape[1]))
         rubbing = np.einsum("nuk,jnk->ujk", where.virtual_speeds, state.rubbing.ways)
+        rubbing = rows.apart(rubbing).reshape(len(left), -1, torques.shape[1])
         both = _eliminated(left, np.concatenate([known[:, None], rubbing], axis=1))
-        moved = np.sum(where.jacobian[:, :, None] * both, axis=1)
+        moved = np.sum(where.jacobian[:, :, None] * rows.repeated(both), axis=1)
         whole, response = where.bias_accelerations + moved[:, 0], moved[:, 1:]
         efforts = state.rubbing.efforts(settled, whole, response)
-        return whole + np.sum(response * efforts, axis=1), efforts
+        return whole + np.sum(response * rows.repeated(efforts), axis=1), efforts
 
     def given_efforts(self, state: DriveState, accelerations: Array, efforts: Array) -> Array:
-        """Torques, N m, and of strokes forces, N, of the drives with a given motion (G, K) in K
-        states.
+        """Torques, N m, and of strokes forces, N, of the drives with a given motion of each row
+        (G, R K).
         """
         demand = np.einsum("ijk,jk->ik", state.inertia, accelerations)
         demand = demand + state.pose.bias - state.forces.sum(axis=0)
         if state.rubbing is not None:
-            demand = demand - np.einsum("jgk,jk->gk", state.rubbing.ways, efforts)
+            of_rows = efforts.reshape(len(state.rubbing.ways), -1)
+            demand = demand - np.einsum("jgk,jk->gk", state.rubbing.ways, of_rows)
         if self.strokes is not None:
             demand = self.strokes.efforts(state.where.slopes, demand)
         return np.asarray(demand[[*self.given]])
 
-    def energy(self, angles: Array, speeds: Array, crank: Array, near: References) -> Array:
-        """Kinetic energy (K,), J, of all drives at angles and speeds (N, K).
+    def energy(self, where: DriveAngles, near: References) -> Array:
+        """Kinetic energy (K,), J.
 
-        crank : crank angles (K,), rad.  near : references there.
+        where : as of `in_rows`.  near : references there (..., R, K).
         """
-        pose = self.pose(crank, angles, speeds, near)
-        inertia = self.with_rotors(pose.inertia)
-        return np.asarray(np.einsum("ik,ijk,jk->k", speeds, inertia, speeds) / 2)
+        inertia = self.with_rotors(self.pose(where, self._of_rows(near)).inertia)
+        doubled = np.einsum("ik,ijk,jk->k", where.speeds, inertia, where.speeds)
+        return np.asarray(self.rows.total(doubled) / 2)
 
 
 def _eliminated(left: Array, right: Array) -> Array:

@@ -32,6 +32,7 @@ from equipoise.mechanism.dynamics.friction import (
 from equipoise.mechanism.kinematics.friction_joints import STILL, RubbingJoint, rubbing_joints
 from equipoise.running.drives_linkage import DrivesPose
 from equipoise.running.friction import check_shared_friction, on_flanks, sided_meshes
+from equipoise.running.linkage_rows import LinkageRows
 from equipoise.signals import Array
 
 NEAR_REST = 1e-3
@@ -43,7 +44,8 @@ sense of a joint's motion changes."""
 class DrivesFriction:
     """Joints of a linkage that resist their motion.
 
-    usual : speed of the crank, rad/s.
+    usual : speed of the crank, rad/s.  rows : R linkages, whose J joints follow each other joint by
+    joint, each in all rows.
 
     Raises
     ------
@@ -52,6 +54,7 @@ class DrivesFriction:
 
     linkage: Linkage
     usual: float
+    rows: LinkageRows
 
     def __post_init__(self) -> None:
         check_shared_friction(self.linkage.machine)
@@ -73,21 +76,25 @@ class DrivesFriction:
 
     @cached_property
     def slow(self) -> Array:
-        """Rates (J,), rad/s or m/s, below which the sense of a joint's motion changes."""
+        """Rates (J R,), rad/s or m/s, below which the sense of a joint's motion changes."""
         sizes = np.array([joint.still / STILL for joint in self.joints])
-        return NEAR_REST * self.usual * sizes
+        return NEAR_REST * self.usual * self.of_rows(sizes)
+
+    def of_rows(self, values: Array) -> Array:
+        """Of joints in all rows (J R,), of joints (J,)."""
+        return np.repeat(values, self.rows.count)
 
     def senses(self, rates: Array, settled: Array) -> Array:
-        """Of joints at rates (J, K): from -1 to 1 between both of their `slow` rates.
+        """Of joints at rates (J R, K): from -1 to 1 between both of their `slow` rates.
 
-        settled : (J,) 1 or -1 of a joint that is known to be beyond them, else 0.
+        settled : (J R,) 1 or -1 of a joint that is known to be beyond them, else 0.
         """
         share = np.clip(rates / self.slow[:, None], -1.0, 1.0)
         smooth = share * (3 - share**2) / 2
         return np.where(settled[:, None], settled[:, None], smooth)
 
-    def of(self, pose: DrivesPose, demands: Demands) -> FrictionOf:
-        """In K states, where everything but friction and accelerations makes some demands."""
+    def of(self, pose: DrivesPose, demands: Demands) -> JointPressing:
+        """In K states of all rows, where all but friction and accelerations makes some demands."""
         motion, count = pose.moving, len(self.linkage.machine.driven)
         rates = np.array([joint.rate(pose.along) for joint in self.joints])
         rates = rates.reshape(len(self.joints), count + 1, pose.count)
@@ -101,16 +108,21 @@ class DrivesFriction:
             pressed = pressing_rows(motion, rows, self.joints, None)
         ways = np.zeros((len(self.joints), len(pose.accelerated), pose.count))
         ways[:, :count] = rates[:, :-1]  # joints do not move by what carries the whole machine
-        return FrictionOf(self, ways, rates[:, -1], pressed)
+        return JointPressing(self, ways, self._by_joint(rates[:, -1]), pressed)
+
+    def _by_joint(self, values: Array) -> Array:
+        """Values (J R, K) of (J, R K)."""
+        return values.reshape(len(values) * self.rows.count, -1)
 
 
 @dataclass(frozen=True, eq=False)
-class FrictionOf:
-    """Friction in K states.
+class JointPressing:
+    """What presses in joints in K states.
 
-    ways : rates (J, N, K) of joints with a unit of speed of each drive.  rates : (J, K) that they
-    have, rad/s or m/s.  pressed : (U, 2, 1 + N + U, K) with what acts, with a unit of acceleration
-    of each drive, and with a unit of each friction, and of each flank; U is J with the latter.
+    ways : rates (J, C, R K) of joints with a unit of speed of each coordinate.
+    rates : (J R, K) that they have, rad/s or m/s.
+    pressed : (U, 2, 1 + C + U, R K) with what acts, with a unit of acceleration of each coordinate,
+    and with a unit of each friction, and of each flank; U is J with the latter.
     """
 
     friction: DrivesFriction
@@ -119,27 +131,51 @@ class FrictionOf:
     pressed: Array
 
     def efforts(self, settled: Array, accelerations: Array, response: Array) -> Array:
-        """Friction (J, K) that obeys the law, N m or N.
+        """Friction (J R, K) that obeys the law, N m or N.
 
-        settled : as of `DrivesFriction.senses`.  accelerations : of all drives (N, K) without it.
-        response : (N, J, K) of these to a unit of each friction.
+        settled : as of `DrivesFriction.senses`.  accelerations : of all coordinates of each row
+        (C, R K) without it.  response : (C, J R, R K) of these to a unit of each friction.
 
         Raises
         ------
         LockError : the machine locks itself.
         """
-        own, drives = self.friction, len(accelerations)
-        count, sides = len(own.joints), len(own.sides)
-        known, parts = self.pressed[:, :, 0], self.pressed[:, :, 1 : 1 + drives]
+        own, law = self.friction, self._law(settled)
+        known, parts = self.pressed[:, :, 0], self.pressed[:, :, 1 : 1 + len(accelerations)]
         without = known + np.einsum("jcnk,nk->jck", parts, accelerations)
-        added = np.array(self.pressed[:, :, 1 + drives :])
-        added[:, :, :count] += np.einsum("jcnk,nmk->jcmk", parts, response)
-        law = FrictionLaw.of(own.joints, self.rates, own.senses(self.rates, settled))
-        law = law.with_sides(own.sides) if sides else law
-        efforts, share = balanced(law, Press.of(without, added))
+        press = Press.of(self._rows_first(without), self._added(parts, response))
+        efforts, share = balanced(law, press)
         if np.any(share < 1):
             raise LockError(Note("friction in joints locks the machine on the way"))
-        return np.asarray(efforts[:count])
+        return np.asarray(efforts[: len(own.joints) * own.rows.count])
+
+    def _law(self, settled: Array) -> FrictionLaw:
+        """The law of all joints of all rows, and of their sides."""
+        own, count = self.friction, self.friction.rows.count
+        joints = [joint for joint in own.joints for _ in range(count)]
+        law = FrictionLaw.of(tuple(joints), self.rates, own.senses(self.rates, settled))
+        if not own.sides:
+            return law
+        return law.with_sides(tuple(side for side in own.sides for _ in range(count)))
+
+    def _added(self, parts: Array, response: Array) -> Array:
+        """What presses (U R, 2, U R, K) with a unit of each friction, and of each flank: in its own
+        row as it is, and in all by the accelerations that it makes.
+        """
+        own, rows = self.friction, self.friction.rows
+        units, count = len(self.pressed), len(own.joints) * rows.count
+        direct = rows.apart(self.pressed[:, :, 1 + parts.shape[2] :])  # (U, 2, U, R, K)
+        added = np.zeros((units, rows.count, 2, units, rows.count, direct.shape[-1]))
+        for row in range(rows.count):
+            added[:, row, :, :, row] = direct[:, :, :, row]
+        added = added.reshape(units * rows.count, 2, units * rows.count, -1)
+        added[:, :, :count] += self._rows_first(np.einsum("jcnk,nmk->jcmk", parts, response))
+        return added
+
+    def _rows_first(self, values: Array) -> Array:
+        """Values (U R, 2, ..., K) of (U, 2, ..., R K)."""
+        apart = np.moveaxis(self.friction.rows.apart(values), -2, 1)
+        return apart.reshape(-1, *apart.shape[2:])
 
 
 def leaving(rates: Array, slow: Array, settled: Array) -> Array:

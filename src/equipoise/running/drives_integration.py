@@ -348,10 +348,10 @@ class DrivesIntegration:
     def _usual_energy(self, state: Array, near: References) -> float:
         """Kinetic energy at the start with all drives at the usual speed, J."""
         where = self.rates.where(np.zeros(1), state[:, None])
-        where = self.equation.with_strokes(np.zeros(1), where, near)
+        where = self.equation.in_rows(np.zeros(1), where, near)
         speeds = np.zeros_like(where.angles)
         speeds[: len(self.drivers)] = self.usual
-        return float(self.equation.energy(where.angles, speeds, where.crank_angle, near)[0]) or 1.0
+        return float(self.equation.energy(where._replace(speeds=speeds), near)[0]) or 1.0
 
     @property
     def _moved_drives(self) -> list[tuple[int, int]]:
@@ -414,8 +414,8 @@ class DrivesIntegration:
         for k, driver in enumerate(self.drivers):
             if driver.controlled:
                 yield DriveWatch("limit", equation.drives[k].link, self._below_limit(k))
-        for k, joint in enumerate(self.rates.rubbing):
-            yield DriveWatch("settled", joint, self._settled_left(k))
+        for k in range(len(self.rates.settled)):
+            yield DriveWatch("settled", str(k), self._settled_left(k))
         for mount in equation.mounts.one_sided:
             yield DriveWatch("contact", mount, self._contact_left(mount))
         if not equation.given:
@@ -512,7 +512,7 @@ class DrivesIntegration:
             case "limit":
                 self._limited(of, time, state)
             case "settled":
-                self._settle(self.rates.rubbing.index(of), at)
+                self._settle(int(of), at)
             case "contact":
                 self._touch(of, at)
             case "off":

@@ -23,7 +23,7 @@ from equipoise.errors import EquipoiseError, ResponseError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import frame_state, p, run, u
-from equipoise.mechanism.dynamics.forces import inertia_moved
+from equipoise.mechanism.dynamics.forces import flywheel_on, inertia_about
 from equipoise.mechanism.dynamics.friction import Demands
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
@@ -42,10 +42,12 @@ class DrivesPose:
 
     along : motion in (N + 1) K places: with a unit of speed of each drive alone, and at last with
         the speeds that they have.
+    share : of a flywheel, which rows of a machine have together, that such a linkage has.
     """
 
     linkage: Linkage
     along: Motion
+    share: float
 
     @cached_property
     def count(self) -> int:
@@ -104,11 +106,10 @@ class DrivesPose:
     @cached_property
     def _inertial(self) -> dict[str, tuple[float, complex, float]]:
         """Mass, first moment and inertia about their anchors of the links that have any."""
-        linkage = self.linkage
-        each = {
-            link: inertia_moved(linkage.machine, link, linkage.anchors[link])
-            for link in linkage.machine.links
-        }
+        linkage, each = self.linkage, {}
+        for name, link in linkage.machine.links.items():
+            mass, moment, inertia = inertia_about(link, linkage.anchors[name])
+            each[name] = mass, moment, inertia + self.share * flywheel_on(linkage.machine, name)
         return {link: own for link, own in each.items() if any(own)}
 
     @cached_property
@@ -192,11 +193,16 @@ class DrivesPose:
 
 
 def pose_of(
-    linkage: Linkage, crank: Array, angles: Array, speeds: Array, references: References
+    linkage: Linkage,
+    crank: Array,
+    angles: Array,
+    speeds: Array,
+    references: References,
+    share: float = 1.0,
 ) -> DrivesPose:
     """A linkage with its drives at angles (N, K), rad, and speeds, rad/s.
 
-    crank : crank angle (K,), rad.
+    crank : crank angle (K,), rad.  share : as of `DrivesPose`.
 
     Raises
     ------
@@ -215,7 +221,7 @@ def pose_of(
         near = references[name]
         state[f"reference({name})"] = np.tile(near, (*[1] * (near.ndim - 1), count + 1))
     run(linkage.motion, state)
-    return DrivesPose(linkage, Motion(linkage, theta, 1.0, 0.0, False, state))
+    return DrivesPose(linkage, Motion(linkage, theta, 1.0, 0.0, False, state), share)
 
 
 def references_at(linkage: Linkage, crank_angle: float) -> References:

@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.errors import EquipoiseError
 from equipoise.running.drive_angles import DriveAngles
-from equipoise.running.drives_equation import DrivesEquation
+from equipoise.running.drives_equation import DrivesEquation, DriveState
 from equipoise.running.drives_linkage import References
 from equipoise.running.equation import just_after
 from equipoise.running.friction import FRICTION
@@ -28,7 +28,7 @@ class DrivesReadings(NamedTuple):
     """What else is known in K states.
 
     torques : of all drives (N, K), N m, and forces of strokes, N.  margins : (D, K) as of
-    `DrivesEquation.margins`.  joint_rates : (J, K) of joints with friction, rad/s or m/s.
+    `DrivesEquation.margins`.  joint_rates : (J R, K) of joints with friction, rad/s or m/s.
     """
 
     torques: Array
@@ -41,7 +41,7 @@ class DrivesRates:
 
     works : what has done work, by the order of the quadratures, after supply and heat of circuits.
     since : s, an instant after which loads over time follow the line that counts.
-    settled : (J,) as of `DrivesFriction.senses`.
+    settled : (J R,) as of `DrivesFriction.senses`.
     failure : why the last states could not be computed; None where they could.
     """
 
@@ -62,7 +62,7 @@ class DrivesRates:
             *([BRAKE] if self.braked else []),
             *(f"drives.{equation.drives[k].link}" for k in self.turned),
         )
-        self.settled = np.zeros(len(self.rubbing))
+        self.settled = np.zeros(len(self.rubbing) * equation.rows.count)
         self.since = 0.0
         self.failure: EquipoiseError | None = None
 
@@ -116,8 +116,8 @@ class DrivesRates:
 
     def _at(self, time: Array, states: Array, near: References) -> NodeValues | None:
         equation = self.equation
-        state = equation.at(time, just_after(self.since), self.where(time, states), near)
-        where = state.where
+        where, rows = self.where(time, states), equation.rows
+        state = equation.at(time, just_after(self.since), where, near)
         margins = equation.margins(state)
         if not np.all(margins >= 0):  # before friction, which would seem to lock such a machine
             return None
@@ -127,10 +127,10 @@ class DrivesRates:
             braking = self._braking(where)
             total[0] += braking
         changes, efforts = equation.accelerations(state, total, self.settled)
-        if equation.given:
-            torques[[*equation.given]] = equation.given_efforts(state, changes, efforts)
-        rates = [*where.speeds[equation.free], *changes[equation.free]]
-        electric, works = [], [*np.einsum("snk,nk->sk", state.forces, where.speeds)]
+        given_powers = self._give(torques, state, changes, efforts)
+        rates = [*where.speeds[equation.free], *rows.first(changes[equation.free])]
+        electric, works = [], [*np.einsum("snk,nk->sk", state.forces, state.where.speeds)]
+        works = [*rows.total(np.array(works).reshape(-1, len(time) * rows.count))]
         for k in self.circuits:
             current = self.current(k, states, where)
             change, supply, heat = self.drivers[k].electric_rates(current, where.speeds[k])
@@ -139,15 +139,37 @@ class DrivesRates:
         joint_rates = np.zeros((0, len(time)))
         if state.rubbing is not None:
             joint_rates = state.rubbing.rates
-            works += [*efforts * joint_rates]
+            works += [*np.add.reduceat(efforts * joint_rates, self._first_rows, axis=0)]
         works += [braking * where.speeds[0]] if self.braked else []
-        works += [torques[k] * where.effort_speeds[k] for k in self.turned]
+        works += [
+            given_powers[k] if k in given_powers else torques[k] * where.speeds[k]
+            for k in self.turned
+        ]
         return NodeValues(
             np.array(np.broadcast_arrays(*rates)),
             np.array([*electric, *works]).reshape(-1, len(time)),
             np.concatenate([torques[: len(self.drivers)], margins, joint_rates]),
             equation.references(state),
         )
+
+    @property
+    def _first_rows(self) -> list[int]:
+        """Places of joints of the first row among those of all rows."""
+        return [*range(0, len(self.settled), self.equation.rows.count)]
+
+    def _give(
+        self, torques: Array, state: DriveState, changes: Array, efforts: Array
+    ) -> dict[int, Array]:
+        """Set what drives of given motions exert on all rows, in torques (C, K) of all drives;
+        the power of each (K,), W.
+        """
+        rows, given = self.equation.rows, self.equation.given
+        if not given:
+            return {}
+        exerted = self.equation.given_efforts(state, changes, efforts)
+        torques[[*given]] = rows.total(exerted)
+        powers = rows.total(exerted * state.where.effort_speeds[[*given]])
+        return dict(zip(given, powers, strict=True))
 
     def _driving(self, time: Array, where: DriveAngles, states: Array) -> Array:
         """Torques (N, K) of motors, N m; 0 of drives without one."""

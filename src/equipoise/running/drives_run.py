@@ -19,7 +19,7 @@ from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_integration import DriveEvent, DrivesIntegration, DrivesTrack, joined
 from equipoise.running.drives_linkage import pose_of
 from equipoise.running.electric import Electric
-from equipoise.running.friction import FRICTION
+from equipoise.running.energy_balance import energy_error, losses_apart
 from equipoise.running.integration import Limits
 from equipoise.signals import Array
 from equipoise.vibration.support_motion import SupportMotion
@@ -47,9 +47,9 @@ class DriveCourse:
 
     link : the driven link.  moved_by : ``motor``, ``free`` or ``given motion``.
     angle, speed : of the link (M,) rad and rad/s.
-    effort : torque (M,) of motor or given motion, N m; force of a stroke, N.
+    effort : torque (M,) of motor or given motion, N m; force of a stroke, N; on all rows.
     electric : circuit of a direct-current motor; None of any other.
-    length : (M,) m, of a stroke; None of what turns.
+    length : (M,) m, of a stroke; None of what turns.  What is pushed moves as in the first row.
     """
 
     link: str
@@ -98,8 +98,9 @@ class DrivesRun(Result):
     events : what happened; the last one ended the run.
     cycle_begins : times at which a cycle of the crank began, s.
     losses : joint with friction -> energy that it has taken since the start (M,), J.
-    references : about what running angles (..., M), and unknowns of loops, are, by their names in
-        the linkage.
+    where : drives, and coordinates of the support, of each of R rows (R M).
+    references : about what running angles (..., R, M), and unknowns of loops, are, by their names
+        in the linkage.
     support : how the support moves; None on a fixed frame.
     """
 
@@ -112,6 +113,7 @@ class DrivesRun(Result):
     events: tuple[DriveEvent, ...]
     cycle_begins: tuple[float, ...]
     losses: Mapping[str, Array]
+    where: DriveAngles
     references: Mapping[str, Array]
     support: SupportMotion | None = None
     blocks_in = "running.drives_blocks.run_blocks"
@@ -131,46 +133,33 @@ class DrivesRun(Result):
     @cached_property
     def kinetic_energy(self) -> Array:
         """(M,), J, from the linkage itself and not from what was integrated."""
-        courses = self.drives.values()
-        angles, speeds = ([getattr(each, name) for each in courses] for name in ("angle", "speed"))
-        if self.support is not None:
-            free = [*self.support.body.free_in_plane]
-            angles += [*self.support.place[free]]
-            speeds += [*self.support.rate[free]]
-        return self.equation.energy(
-            np.array(angles), np.array(speeds), self.crank_angle, self.references
-        )
+        return self.equation.energy(self.where, self.references)
 
     @cached_property
     def energy_error(self) -> float:
         """Largest difference of kinetic energy and work done, or of what a motor's supply gave and
         what became of it, over the largest of them all.
         """
-        energy, work = self.kinetic_energy, np.array([*self.work.values()])
-        worst = float(np.max(np.abs(energy - energy[0] - np.sum(work, axis=0))))
-        size = max(float(np.max(energy)), float(np.max(np.abs(work), initial=0.0)))
-        drivers = dict(zip(self.drives, self.equation.drivers(), strict=True))
-        for link, course in self.drives.items():
-            if (circuit := course.electric) is not None:
-                stored = drivers[link].stored(circuit.current)
-                missed = circuit.supply - circuit.heat - (stored - stored[0])
-                missed = missed - self.work[f"drives.{link}"]
-                worst = max(worst, float(np.max(np.abs(missed))))
-                size = max(size, float(np.max(np.abs(circuit.supply))))
-        return worst / size if size else 0.0
+        each = zip(self.drives.items(), self.equation.drivers(), strict=True)
+        circuits = (
+            (driver, course.electric, self.work[f"drives.{link}"])
+            for (link, course), driver in each
+            if course.electric is not None
+        )
+        return energy_error(self.kinetic_energy, self.work.values(), circuits)
 
     def motion_at(self, places: Array) -> Motion:
-        """Poses in the frame's axes at some of the M instants, by their places (K,), where
-        derivatives by the crank angle are those by time.
+        """Poses of the first row in the frame's axes at some of the M instants, by their places
+        (K,), where derivatives by the crank angle are those by time.
         """
-        courses = self.drives.values()
-        angles, speeds = (
-            np.array([getattr(each, name)[places] for each in courses])
-            for name in ("angle", "speed")
+        count = len(self.drives)
+        references = {name: values[..., 0, places] for name, values in self.references.items()}
+        where = self.where
+        crank, angles, speeds = (
+            part[..., places] for part in (where.crank_angle, where.angles, where.speeds)
         )
-        references = {name: values[..., places] for name, values in self.references.items()}
-        crank = self.crank_angle[places]
-        return pose_of(self.equation.linkage, crank, angles, speeds, references).moving
+        linkage = self.equation.linkage
+        return pose_of(linkage, crank, angles[:count], speeds[:count], references).moving
 
     @property
     def last_cycle(self) -> Array | None:
@@ -230,9 +219,13 @@ def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> Drives
     integration.follow([angles[k] for k in unknowns], [speeds[k] for k in unknowns])
     track, rates = joined(integration.tracks), integration.rates
     where = rates.where(track.time, track.states)
-    where = equation.with_strokes(track.time, where, track.references)
+    of_rows = equation.in_rows(track.time, where, track.references)
     pushed = () if equation.strokes is None else equation.strokes.places
-    lengths = dict(zip(pushed, where.lengths, strict=True))
+    lengths = dict(zip(pushed, equation.rows.first(of_rows.lengths), strict=True))
+    for k in pushed:
+        where.angles[k], where.speeds[k] = (
+            equation.rows.first(part[k]) for part in (of_rows.angles, of_rows.speeds)
+        )
     courses = {
         drive.link: DriveCourse(
             drive.link,
@@ -246,9 +239,7 @@ def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> Drives
         for k, drive in enumerate(equation.drives)
     }
     works = dict(zip(rates.works, track.quadratures[2 * len(rates.circuits) :], strict=True))
-    rubbed = {name: works.pop(f"{FRICTION}.{name}") for name in rates.rubbing}
-    if rubbed:
-        works[FRICTION] = np.sum([*rubbed.values()], axis=0)
+    works, losses = losses_apart(works, rates.rubbing)
     return DrivesRun(
         equation.machine,
         equation,
@@ -258,7 +249,8 @@ def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> Drives
         works,
         tuple(integration.events),
         tuple(integration.marks),
-        {name: -values for name, values in rubbed.items()},
+        losses,
+        of_rows,
         track.references,
         equation.support_motion(where.angles, where.speeds),
     )

@@ -23,9 +23,9 @@ from equipoise.running.drivers import Driver
 from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_run import DrivesRun, Start, run_drives
 from equipoise.running.electric import Electric
+from equipoise.running.energy_balance import energy_error, losses_apart
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
-from equipoise.running.friction import FRICTION
 from equipoise.running.integration import Event, Integration, Limits
 from equipoise.running.piece_motion import ELECTRIC, Instant
 from equipoise.running.sources import LOADS
@@ -124,17 +124,10 @@ class Run(Result):
     @cached_property
     def energy_error(self) -> float:
         """Largest difference of kinetic energy and work done, over the largest of them all."""
-        energy, work = self.kinetic_energy, np.array([*self.work.values()])
-        missed = energy - energy[0] - np.sum(work, axis=0)
-        size = max(float(np.max(energy)), float(np.max(np.abs(work))))
-        worst = float(np.max(np.abs(missed)))
+        circuits: list[tuple[Driver, Electric, Array]] = []
         if self.electric is not None:
-            of = self.electric
-            stored = Driver.of(self.machine).stored(of.current)
-            missed = of.supply - of.heat - (stored - stored[0]) - self.work[DRIVE]
-            worst = max(worst, float(np.max(np.abs(missed))))
-            size = max(size, float(np.max(np.abs(of.supply))))
-        return worst / size if size else 0.0
+            circuits = [(Driver.of(self.machine), self.electric, self.work[DRIVE])]
+        return energy_error(self.kinetic_energy, self.work.values(), circuits)
 
     @cached_property
     def last_cycle(self) -> LastCycle | None:
@@ -464,9 +457,7 @@ def _result(equation: CrankEquation, integration: Integration, flywheel: Flywhee
     torque = np.where(time <= switched, driving, 0.0)
     brake = [BRAKE] if driver.brake else []
     works = dict(zip([*equation.works, *brake, DRIVE], work, strict=True))
-    rubbed = {name: works.pop(f"{FRICTION}.{name}") for name in equation.rubbing}
-    if rubbed:
-        works[FRICTION] = np.sum([*rubbed.values()], axis=0)
+    works, losses = losses_apart(works, equation.rubbing)
     keys = [*(source.key for source in equation.sources), *brake, DRIVE]
     works = {key: works[key] for key in keys}
     return Run(
@@ -481,5 +472,5 @@ def _result(equation: CrankEquation, integration: Integration, flywheel: Flywhee
         tuple(integration.begins),
         flywheel,
         None if driver.circuit is None else Electric(*electric),
-        {name: -values for name, values in rubbed.items()},
+        losses,
     )

@@ -36,7 +36,8 @@ class Strokes:
     """The drives that push, by their places (P,) among all drives.
 
     by_crank : whether the first unknown of the machine is its crank angle.
-    start : crank angle at the start, rad.
+    start : crank angle at the start, rad.  Coordinates beside the drives, of a support, change no
+    length.
     """
 
     linkage: Linkage
@@ -58,10 +59,12 @@ class Strokes:
         """Angles of links that are pushed (K,), by those of all drives (N, K), rad."""
         return dict(zip(self._names, angles[self._pushed], strict=True))
 
-    @property
-    def references_at_start(self) -> References:
-        """Angles of links that are pushed (1,), rad, with all drives as the file has them."""
-        return self.references(drives_at(self.linkage.machine, self.start)[0][:, None])
+    def references_at(self, crank_angles: Array) -> References:
+        """Angles of links that are pushed (K,), rad, with all drives as the file has them at crank
+        angles (K,), rad.
+        """
+        each = [drives_at(self.linkage.machine, angle)[0] for angle in crank_angles.tolist()]
+        return self.references(np.array(each).T)
 
     @property
     def links(self) -> list[str]:
@@ -86,8 +89,9 @@ class Strokes:
         """Lever at the start, with all drives as the file has them."""
         angles = drives_at(self.linkage.machine, self.start)[0][:, None]
         near = references_at(self.linkage, self.start)
-        pose = pose_of(self.linkage, np.array([self.start]), angles, np.zeros_like(angles), near)
-        return float(self._lever(self.lengths(pose)[1])[0])
+        crank = np.array([self.start])
+        _, slopes, _ = self._lengths_at(crank, angles, np.zeros_like(angles), near)
+        return float(self._lever(slopes)[0])
 
     def placed(self, where: DriveAngles, crank_speed: Array, near: References) -> DriveAngles:
         """All drives, of which those that push are about where references have them.
@@ -107,7 +111,7 @@ class Strokes:
             )
         )  # fmt: skip
         speeds[pushed] = 0.0
-        lengths, slopes, _ = self.lengths(pose_of(self.linkage, crank, angles, speeds, near))
+        lengths, slopes, _ = self._lengths_at(crank, angles, speeds, near)
         _, first, second = self._commanded(crank)
         commanded = np.zeros((len(pushed), *jacobian.shape[1:]))
         virtual[pushed] = self._rates(slopes, commanded, virtual)
@@ -115,7 +119,7 @@ class Strokes:
             commanded[:, 0] = first
         jacobian[pushed] = self._rates(slopes, commanded, jacobian)
         speeds[pushed] = self._rates(slopes, first * crank_speed, speeds)
-        bent = self.lengths(pose_of(self.linkage, crank, angles, speeds, near))[2]
+        bent = self._lengths_at(crank, angles, speeds, near)[2]
         bias[pushed] = self._rates(slopes, second * crank_speed**2 - bent, bias)
         effort_speeds = speeds.copy()
         effort_speeds[pushed] = first * crank_speed
@@ -161,8 +165,7 @@ class Strokes:
         for k, name in zip(self.places, self._names, strict=True):
             angles[k] = near[name]
         for _ in range(ITERATIONS):
-            pose = pose_of(self.linkage, crank_angle, angles, np.zeros_like(angles), near)
-            length, slopes, _ = self.lengths(pose)
+            length, slopes, _ = self._lengths_at(crank_angle, angles, np.zeros_like(angles), near)
             changes = _solved(slopes[:, self._pushed], (wanted - length)[:, None])[:, 0]
             largest = np.max(np.abs(changes))
             if not np.isfinite(largest):
@@ -171,6 +174,20 @@ class Strokes:
             if largest <= SQUARED:
                 return angles
         raise MotionError(Note("a stroke cannot be as long as it is to be"))
+
+    def _lengths_at(
+        self, crank: Array, angles: Array, speeds: Array, near: References
+    ) -> tuple[Array, Array, Array]:
+        """Lengths (P, K), m, at crank angles (K,), rad, with coordinates (C, K) and their rates;
+        their derivatives by all coordinates (P, C, K), and what they accelerate (P, K), m/s2, while
+        no drive does.
+        """
+        drives = len(self.linkage.machine.driven)
+        pose = pose_of(self.linkage, crank, angles[:drives], speeds[:drives], near)
+        lengths, by_drive, accelerations = self.lengths(pose)
+        slopes = np.zeros((len(lengths), len(angles), pose.count))
+        slopes[:, :drives] = by_drive
+        return lengths, slopes, accelerations
 
     def lengths(self, pose: DrivesPose) -> tuple[Array, Array, Array]:
         """Lengths (P, K), m, their derivatives by the angles of all drives (P, N, K), and what they

@@ -7,12 +7,12 @@ the frame moves with the support; weight, mounts and loads from outside act on b
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.parts.support import PLANAR
@@ -54,11 +54,12 @@ class SupportedEquation(DrivesEquation):
     """
 
     def __post_init__(self) -> None:
+        self._refuse()
         super().__post_init__()
         _ = self.rest
 
-    def refusals(self) -> Iterator[tuple[str, Note]]:
-        """What such a run does not compute, with its place in the file."""
+    def _refuse(self) -> None:
+        """Raise a `UsageError` where the support moves out of the plane."""
         out_of_plane = [Note(n) for n in self.body.support.coordinates if n not in PLANAR]
         if out_of_plane:
             note = Note(
@@ -66,16 +67,7 @@ class SupportedEquation(DrivesEquation):
                 "{names}",
                 names=all_of(out_of_plane),
             )
-            yield "support.freedoms", note
-        if self.machine.rows:
-            note = Note(
-                "a run with its support computes one row; leave the others out, or follow them "
-                "with `equipoise simulate`"
-            )
-            yield "rows", note
-        if self.machine.pushers:
-            note = Note("a run with its support computes no strokes; leave out one or the other")
-            yield "support", note
+            raise UsageError(at_place("support.freedoms", note))
 
     @cached_property
     def body(self) -> SupportBody:
@@ -107,7 +99,8 @@ class SupportedEquation(DrivesEquation):
     @cached_property
     def sources(self) -> tuple[AppliedSource, ...]:
         """What acts beside the drives, mounts and friction in joints."""
-        return tuple(sources_of(self.machine, self.support[:2]))
+        mass, first, *_ = self.support
+        return tuple(sources_of(self.machine, (mass / self.rows.count, first / self.rows.count)))
 
     @property
     def acting(self) -> tuple[str, ...]:
@@ -149,16 +142,16 @@ class SupportedEquation(DrivesEquation):
         place[free], rate[free] = angles[drives:], speeds[drives:]
         return place, rate
 
-    def pose(self, crank: Array, angles: Array, speeds: Array, near: References) -> SupportedPose:
-        """Linkage and support with coordinates (N + D, K) and their rates.
-
-        crank : crank angle (K,), rad.
-        """
-        drives = len(self.drives)
-        own = pose_of(self.linkage, crank, angles[:drives], speeds[:drives], near)
+    def pose(self, where: DriveAngles, near: References) -> SupportedPose:
+        """Linkages and support with coordinates (N + D, R K) and their rates."""
+        drives, rows = len(self.drives), self.rows
+        angles, speeds = where.angles, where.speeds
+        own = pose_of(self.linkage, where.crank_angle, angles[:drives], speeds[:drives], near)
         return SupportedPose(
-            self.linkage, own.along, self.support, *self.place_and_rate(angles, speeds)
-        )
+            self.linkage, own.along, 1 / rows.count, self.support,
+            *self.place_and_rate(angles, speeds),
+            rows.of_each(rows.offsets, angles.shape[1] // rows.count),
+        )  # fmt: skip
 
     def mount_forces(self, where: DriveAngles) -> Array:
         """Generalized force (1, N + D, K) of all mounts."""
@@ -176,7 +169,7 @@ class SupportedEquation(DrivesEquation):
         pitch = drives + self.support.free.index(PITCH)
         for k, drive in enumerate(self.drives):
             if drive.motor is not None:
-                both = drive.motor.ratio * drive.motor.inertia
+                both = drive.motor.ratio * drive.motor.inertia / self.rows.count
                 whole[pitch, k] += both
                 whole[k, pitch] += both
         return whole

@@ -32,11 +32,13 @@ class SupportedPose(DrivesPose):
     """A linkage in K states of its N drives and of its support, which has D coordinates.
 
     place, rate : displacements and velocities (3, K) of the support along surge, heave and pitch.
+    offset : (K,), m, complex, by which the linkage stands beside that of the file.
     """
 
     support: PlanarInertia
     place: Array
     rate: Array
+    offset: Array
 
     @property
     def _drives(self) -> int:
@@ -60,13 +62,14 @@ class SupportedPose(DrivesPose):
         """Place (K,) of a link's anchor, from the reference point, which is the frame's own."""
         if body == FRAME:
             return np.zeros(self.count)
-        return np.asarray(self.rows(p(self.linkage.anchors[body])[0])[-1] - self.support.reference)
+        place = self.rows(p(self.linkage.anchors[body])[0])[-1]
+        return np.asarray(place + self.offset - self.support.reference)
 
     @cached_property
     def _numbers(self) -> list[Array]:
         """Mass, first moment and inertia (L + 1, 1) of links and support."""
         return [
-            np.concatenate([own, [[of_support]]])
+            np.concatenate([own, [[self.share * of_support]]])
             for own, of_support in zip(super()._numbers, self.support[:3], strict=True)
         ]
 
@@ -106,7 +109,7 @@ class SupportedPose(DrivesPose):
         whole = np.array(super().inertia)
         if PITCH in self.support.free:
             at = self._drives + self.support.free.index(PITCH)
-            whole[at, at] -= self.linkage.machine.drive.flywheel
+            whole[at, at] -= self.share * self.linkage.machine.drive.flywheel
         return whole
 
     def generalized(self, demands: Demands) -> Array:
