@@ -10,7 +10,7 @@ from cmath import phase, rect
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import cache, partial
-from math import atan, ceil, degrees, log10, pi, sin, tan
+from math import atan, ceil, degrees, log10, sin, tan
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,13 @@ import numpy as np
 from equipoise.balancing.workshop import FULL_TURN, is_ring
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
-from equipoise.exchange.fastening import STRESS_AREAS, ScrewThreads, needs_threads, threads_of
+from equipoise.exchange.fastening import (
+    COARSE_THREADS,
+    COUNTS,
+    ScrewThreads,
+    needs_threads,
+    threads_of,
+)
 from equipoise.exchange.formats import Job
 from equipoise.i18n import Note, coordinates, decimals, say, to_say
 from equipoise.mechanism.kinematics.motion import move
@@ -66,7 +72,7 @@ class Part:
     thickness : m, None where not known.
     edges : of its outline and of each opening, closed.
     density : kg/m3, None where not known.
-    threads : by which it is fastened; None of what is not.
+    screwed : whether it has to be fastened.  threads : by which it is; None where none hold it.
     """
 
     link: str
@@ -75,6 +81,7 @@ class Part:
     thickness: float | None
     edges: tuple[tuple[Edge, ...], ...]
     density: float | None = None
+    screwed: bool = False
     threads: ScrewThreads | None = None
 
     @property
@@ -135,6 +142,14 @@ class Part:
             said.append(say("holes: {list}", list=", ".join(dict.fromkeys(holes))))
         if self.threads is not None:
             said.extend(self._thread_lines(self.threads))
+        elif self.screwed:
+            said.append(
+                say(
+                    "no screws fit in it and hold it: weld it on or make it in one piece with "
+                    "{link}",
+                    link=self.link,
+                )
+            )
         return tuple(said)
 
     def _thread_lines(self, threads: ScrewThreads) -> Iterator[str]:
@@ -154,13 +169,24 @@ class Part:
                 places=", ".join(f"({coordinates(place)})" for place in axes),
                 **words,
             )
-        if self.thickness is None or self.density is None:
-            return
-        drilled = self.thickness * sum(pi * radius**2 for _, radius in self.thread_circles)
-        beyond = (MATERIALS["steel"] - self.density) * drilled
+        if threads.is_blind:
+            yield say(
+                "threads {depth} mm deep in holes of Ø {drill}, {hole} mm deep, from the side of "
+                "the link",
+                depth=in_mm(1e3 * threads.depth),
+                drill=in_mm(threads.thread.drill),
+                hole=in_mm(1e3 * threads.hole),
+            )
+        else:
+            yield say("threads all through")
+        if self.density is not None:
+            yield self._screws_line(threads, self.density)
+
+    def _screws_line(self, threads: ScrewThreads, density: float) -> str:
+        """What screws without heads weigh beyond what was drilled out."""
+        beyond = MATERIALS["steel"] * threads.filled - density * threads.drilled
         if abs(beyond) < LIGHT_SCREWS * (self.mass or 0.0):
-            yield say("the threads are filled by steel screws, whose heads are not counted")
-            return
+            return say("the threads are filled by steel screws, whose heads are not counted")
         template = to_say(
             "the threads are filled by steel screws, which add {mass} without their heads"
         )
@@ -169,7 +195,7 @@ class Part:
                 "the threads are filled by steel screws, which without their heads are {mass} "
                 "lighter than what was drilled out"
             )
-        yield say(template, mass=workshop_mass(abs(beyond)))
+        return say(template, mass=workshop_mass(abs(beyond)))
 
     def _round_lines(self) -> Iterator[str]:
         """Where a sector points, or a disc lies, in the axes of its link."""
@@ -391,15 +417,18 @@ def _of_changes(job: Job) -> Iterator[Part]:
             screwed = needs_threads(piece, center)
             threads = threads_of(piece, center, motion(), change.link) if screwed else None
             part = Part(change.link, COUNTERWEIGHT, counts[change.link], piece.get("thickness"),
-                        edges, piece.get("density"), threads)  # fmt: skip
+                        edges, piece.get("density"), screwed, threads)  # fmt: skip
             if not edges:
                 job.leave_out(Note("{part}, a point mass without an outline", part=part.name))
                 continue
             if screwed and threads is None:
                 note = Note(
-                    "threads of {part}: no two screws up to M{size} both fit in it and hold it",
+                    "threads of {part}: no {least} to {most} screws up to M{size} fit in it "
+                    "and hold it",
                     part=part.name,
-                    size=max(STRESS_AREAS),
+                    least=COUNTS[0],
+                    most=COUNTS[-1],
+                    size=COARSE_THREADS[-1].size,
                 )
                 job.leave_out(note)
             yield part

@@ -40,8 +40,8 @@ OFF = 12.0
 """Between a part and its widest measures, mm on paper."""
 MARGIN = 12.0
 """mm on paper left, right and below all measures."""
-WRITTEN = 63.0
-"""mm on paper for ten lines of text below the upper edge, and a gap."""
+WRITTEN = 80.0
+"""mm on paper for 13 lines of text below the upper edge, and a gap."""
 DRAWN = (SHEET[0] - 2 * MARGIN, SHEET[1] - EDGE - WRITTEN - MARGIN)
 """Width and height of what is drawn with all its measures, mm on paper."""
 AXIS_BEFORE, AXIS_BEYOND = 0.15, 0.6
