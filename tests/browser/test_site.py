@@ -86,6 +86,28 @@ ASKED = {
     "how to use it from Python": "python.html",
     "sign convention of angles": "conventions.html",
     "bearing life": "output.html",
+    "friction in pins": "recipes/see-what-friction-costs.html",
+    "flywheel size": "recipes/size-a-flywheel.html",
+    "hand arm vibration limit": "exposure.html",
+    "import from MATLAB": "commands.html",
+    "why is my torque zero": "recipes/find-out-why-a-torque-is-zero.html",
+    "units": "model-file/units-1.html",
+    "counterweight drawing": "recipes/cut-a-counterweight.html",
+    "natural frequencies of the frame": "tutorials/put-it-on-mounts.html",
+    "export to CAD": "commands.html",
+    "critical speed of a shaft": "recipes/find-speeds-to-keep-away-from.html",
+    "moment of inertia from geometry": (
+        "recipes/compute-a-moment-of-inertia-from-the-geometry.html"
+    ),
+    "share a machine with a colleague": "recipes/share-a-machine-with-others.html",
+    "jerk of a cam follower": "recipes/model-a-cam.html",
+    "what is a dyad": "theory.html",
+    "soil resistance of a planting finger": "model-file/planting/plantingsoil.html",
+    "stress in a link": "output.html",
+    "belt drive": "model-file/belts.html",
+    "gear ratio": "model-file/gears.html",
+    "how accurate is it": "trust.html",
+    "run many designs in parallel": "tour.html",
 }
 """What an engineer asks in words of the trade, and the page that answers."""
 

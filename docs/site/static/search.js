@@ -12,6 +12,7 @@ const KINDS = [
   [/^(CHANGELOG|README|SECURITY|CONTRIBUTING|api\/|scripts|conformance|architecture)/, 0.3],
 ];
 const WHOLE = 1.1; // weight of a page, over that of a section of a page that has the same title
+const TITLE = 0.5; // by how much a section weighs more whose title has nothing but what is sought
 const stemmer = new Stemmer();
 
 const pairs = (run) => (run.length > 1 ? [...run].slice(1).map((sign, at) => run[at] + sign) : [run]);
@@ -36,6 +37,17 @@ const index = new MiniSearch({
   },
 });
 index.addAll(SECTIONS.map(([page, anchor, titles, text], id) => ({ id, title: titles.at(-1), above: titles.slice(0, -1).join(" "), text })));
+
+/** Sections that have what is sought, best first: a title that asks for more words than were typed answers something else. */
+function ranked(query, options) {
+  const sought = new Set(words(query).map(processed).filter(Boolean));
+  const share = ({ id }) => {
+    const title = new Set(words(SECTIONS[id][2].at(-1)).map(processed).filter(Boolean));
+    return title.size ? [...title].filter((word) => sought.has(word)).length / title.size : 0;
+  };
+  const weighed = (hit) => ({ ...hit, score: hit.score * (1 + TITLE * share(hit) ** 2) });
+  return index.search(query, options).map(weighed).sort((one, other) => other.score - one.score);
+}
 
 /** Mark the words that were sought; a text of parts, those at odd places marked. */
 function marked(text, stems) {
@@ -68,8 +80,8 @@ function element(name, content, attributes = {}) {
 
 function show(query) {
   const misspelt = { fuzzy: (term) => (term.length > 4 ? 0.2 : false) };
-  const exact = index.search(query);
-  const hits = exact.length ? exact : index.search(query, misspelt);
+  const exact = ranked(query);
+  const hits = exact.length ? exact : ranked(query, misspelt);
   const stems = new Set(words(query).map(processed).filter(Boolean));
   const highlighted = (text) => marked(text, stems).map((part, at) => (at % 2 ? element("mark", [part]) : part));
   const items = hits.slice(0, SHOWN).map(({ id }) => {

@@ -29,6 +29,7 @@ from equipoise.figures.stage import (
 )
 from equipoise.i18n import Note, decimals, said, say
 from equipoise.mechanism.parts.machine import unknown
+from equipoise.symbols.carrier import mount
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, in_turn, pixels
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene, clear_angle
@@ -61,6 +62,7 @@ class Label:
 def captions(stage: Stage, traced: tuple[str, ...]) -> tuple[Label, ...]:
     """Names of what stands still and of paths, each where it has room; then the strip below."""
     labels: list[Label] = []
+    drawn = np.concatenate([stage.links, *_of_mounts(stage)])
     places = (*_of_pivots(stage), *_of_gauges(stage), *_of_paths(stage, traced))
     for choices in (*_strip(stage), *places):
         for size in (stage.size_where_narrow, stage.size_of_type):
@@ -68,14 +70,24 @@ def captions(stage: Stage, traced: tuple[str, ...]) -> tuple[Label, ...]:
             if free:
                 break
         if free:
-            labels.append(min(free, key=lambda item: _covered(item, stage)))
+            labels.append(min(free, key=lambda item: _covered(item, stage, drawn)))
     return tuple(labels)
 
 
-def _covered(label: Label, stage: Stage) -> int:
-    """How often links pass over a text."""
+def _of_mounts(stage: Stage) -> Iterator[Array]:
+    """Pixels of the signs of mounts at rest."""
+    carrier = stage.scene.carrier
+    for item in () if carrier is None else carrier.support.mounts.values():
+        if item.point is not None:
+            place = complex(*item.point[:2])
+            for shape in mount(item, place, carrier.way(item)):
+                yield _stroke(stage, shape, stage.origin).points
+
+
+def _covered(label: Label, stage: Stage, drawn: Array) -> int:
+    """How often what is drawn, pixels (N,), lies on a text: links in all poses, and mounts."""
     left, top, right, bottom = label.box(stage.size_of_type)
-    x, y = stage.links.real, stage.links.imag
+    x, y = drawn.real, drawn.imag
     return int(np.sum((left < x) & (x < right) & (top < y) & (y < bottom)))
 
 

@@ -46,6 +46,10 @@ ALONG = (
 """What is drawn along a link, a panel each."""
 HEIGHT = 74.0
 """Points of each of the panels below each other."""
+ASIDE = 30.0
+"""Degrees above or below the axis in which the largest stress is written beside the line of its
+place.
+"""
 LEAST = 1e-6
 """Over the largest force on a link, below which a load is none beside it."""
 
@@ -138,7 +142,8 @@ def _stress_panel(x: Axis, at: Array, stress: Array, peak: StressPeak, place: Li
         for number, (fibre, values) in enumerate(zip(names, stress, strict=True), 1)
     )
     text = say("{value} at {place}", value=y.quantity(peak.stress), place=x.quantity(peak.place))
-    wish = 90.0 if peak.stress > 0 else -90.0
+    beside = ASIDE if peak.place < peak.loads.length / 2 else 180.0 - ASIDE  # of the place's line
+    wish = beside if peak.stress > 0 else -beside
     mark = Mark(peak.place, peak.stress, text, curves[peak.side].role, wish)
     heading = say("Stress in the outermost fibres, tension positive")
     return Panel(x, y, curves, (mark,), (), (place,), title=heading, height=HEIGHT)

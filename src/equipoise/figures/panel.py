@@ -316,16 +316,22 @@ FARTHEST = 36.0
 """Points that words above the axes may be from their places before they are set upright."""
 
 
+UPRIGHT, LEVEL = 1.5, 0.5
+"""Weights of lines from end to end: of an upright one few pieces lie below a text, and they go
+through its letters.
+"""
+
+
 def write_words(view: View) -> None:
     """Numbers of bars, marks with their texts, and words around the axes."""
     panel = view.panel
     for line in panel.lines:
         if line.axis == "x" and view.x.low <= line.at * view.x.axis.unit.factor <= view.x.high:
             x = float(view.x.at(line.at))
-            view.labels.avoid(np.array([(x, view.y.start), (x, view.y.end)]), 0.5)
+            view.labels.avoid(np.array([(x, view.y.start), (x, view.y.end)]), UPRIGHT)
         elif line.axis == "y":
             y = float(view.y.at(line.at))
-            view.labels.avoid(np.array([(view.x.start, y), (view.x.end, y)]), 0.5)
+            view.labels.avoid(np.array([(view.x.start, y), (view.x.end, y)]), LEVEL)
     _bar_numbers(view)
     _marks(view)
     if panel.message:

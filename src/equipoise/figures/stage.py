@@ -35,6 +35,8 @@ SOME = 24
 """Instants, and places on an edge of a link, at which texts are kept free."""
 SHRUNK = 18 / 640
 """Size of type where the picture is shown on a narrow page, in widths of the picture."""
+SHRUNK_STRIP = 12.5 / 640
+"""Size of type there of several lines in the strip below: 7 pixels on a telephone."""
 RATES = {"gif": 25, "mp4": 30}
 """Frames a second of films.  Delays of a GIF are whole hundredths of a second."""
 MOST_SECONDS = 600
@@ -193,10 +195,10 @@ class Stage:
         """Remarks in lines from below; the first is empty where none fits beside the ruler."""
         result = []
         for words, color in self.captions:
-            size = width_of(words, self.size_of_type) / len(words)
+            size = width_of(words, self._size_in_strip) / len(words)
             parts = wrap(words, max(1, int((self.width - 24 * self.unit) / size)))
             result += [(part, color) for part in parts]
-        size = self.size_of_type if len(result) > 1 else self.size_where_narrow
+        size = self._size_in_strip if len(result) > 1 else self.size_where_narrow
         width = (1 - RULER) * self.width - 36 * self.unit - width_of("500 mm ", size)
         if result and width_of(result[-1][0], size) > width:
             result.append(("", "ink"))
@@ -205,7 +207,12 @@ class Stage:
     @property
     def row(self) -> float:
         """Pixels from one of these to the next."""
-        return 1.4 * self.size_of_type
+        return max(1.4 * self.size_of_type, 1.1 * self._size_in_strip)
+
+    @property
+    def _size_in_strip(self) -> float:
+        """Of type in several lines where the picture is shown small, pixels."""
+        return max(self.size_of_type, SHRUNK_STRIP * self.width)
 
     @property
     def _below(self) -> float:

@@ -182,6 +182,18 @@ def test_names_of_gauges_stand_where_no_link_passes() -> None:
         assert np.mean(passing) < 0.01
 
 
+def test_names_of_gauges_stand_beside_mounts() -> None:
+    """The sieve's stood on the springs below its crank."""
+    stage = laid_out(scene_of("sieve")).stage
+    (label,) = (label for label in laid_out(scene_of("sieve")).labels if "stand" in label.text)
+    left, top, right, bottom = label.box(stage.size_of_type)
+    size = 40 * stage.unit  # of the sign of a mount
+    for item in eq.load("sieve").support.mounts.values():
+        at = complex(stage.at(complex(*item.point[:2])))
+        beside = not (left - size < at.real < right + size and top - size < at.imag < bottom)
+        assert beside, label
+
+
 @pytest.mark.parametrize("width", [150, 440, 640])
 def test_what_is_told_is_told_whole_in_pictures_of_any_width(width: int) -> None:
     scene = scene_of("riding-transplanter")

@@ -14,10 +14,11 @@ import pytest
 
 import equipoise as eq
 from equipoise.figures.link_strength import link_charts
+from equipoise.figures.sheet import Words, box_of
 from equipoise.i18n import speaking
 from equipoise.mechanism.dynamics.section_loads import MassAlongLine
 from equipoise.results.charts import Chart, Panel
-from unit.figures.checks import check
+from unit.figures.checks import Laid, check
 from unit.figures.link_samples import DUTY, analysis_of, engine, pictures
 from unit.figures.samples import words
 
@@ -104,6 +105,16 @@ def test_the_place_marked_has_the_largest_stress_of_all(kind: str) -> None:
         peaks = [float(np.max(np.abs(curve.y))) for curve in chart.panels[3].curves]
         assert max(peaks) == pytest.approx(figures.stress)
         assert np.all(np.diff(at) >= 0) and at[0] == 0
+
+
+def test_the_largest_stress_is_written_beside_the_line_of_its_place() -> None:
+    """That line went through its letters."""
+    for name, kind in (("stress-rod", "engine"), ("stress-connecting-link", "shaper")):
+        view, items = Laid.of(pictures(kind)[name]).panels[-1]
+        (line,), (mark,) = view.panel.lines, view.panel.marks
+        (text,) = (item for item in items if isinstance(item, Words) and item.text == mark.text)
+        left, _, right, _ = box_of(text)
+        assert not left < float(view.x.at(line.at)) < right
 
 
 def test_the_state_of_the_duty_is_that_of_the_largest_stress() -> None:
