@@ -19,7 +19,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError, meant
 from equipoise.i18n import LANGUAGES, Note, Worded
 from equipoise.keys.paths import KeyPath, quoted
-from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.checks import FRAME, unknown
 from equipoise.mechanism.parts.shown_units import SIGN, worked_out
 from equipoise.quantities import KINDS, Dimension, as_written, described, format_exact, parse
 from equipoise.quantities.expressions import Names, is_expression
@@ -48,6 +48,8 @@ class Context:
     read_side_file : reads what lies in a file of its own, by its sort and the file's name.
     makers : make the objects of some classes otherwise than by `Frozen.from_table`.
     names : what names in expressions stand for.
+    bodies : tables of the links and of the frame, by name, as the file has them, of which examples
+        of what is missing take their names.
     problems : what has been found wrong, with its place.
     expressions : those of numbers that have been worked out, by their places.
     written : texts of quantities that have been read, each with its place.
@@ -58,6 +60,7 @@ class Context:
         default_factory=dict
     )
     names: Names = field(default_factory=dict)
+    bodies: Mapping[str, Any] = field(default_factory=dict)
     problems: list[tuple[KeyPath, Note]] = field(default_factory=list)
     expressions: dict[KeyPath, str] = field(default_factory=dict)
     written: list[tuple[KeyPath, str]] = field(default_factory=list)
@@ -115,6 +118,7 @@ def read_table(
     ------
     ModelError : the first thing that is wrong with it, with the number of the others.
     """
+    context.bodies = context.bodies or _bodies_in(content)
     table = _table(keys.KeyTable(of), content, place, context)
     if context.problems:
         (where, what), *others = context.problems
@@ -145,7 +149,8 @@ def _table(kind: keys.KeyTable, given: Any, place: KeyPath, context: Context) ->
             return context.say(place / name, wrong.about(UNKNOWN))
     for name, item in known.items():
         if item.required and name not in given:
-            return context.say(place / name, Note("missing; add {example}", example=_example(item)))
+            example = _example(item, _own_names(item.kind, given, known, context.bodies))
+            return context.say(place / name, Note("missing; add {example}", example=example))
     return Values(of, place, _values(of, given, place, context))
 
 
@@ -185,9 +190,37 @@ def _values(
     return values
 
 
-def _example(key: keys.Key) -> str:
-    """Return a key and its value as they would stand in the file."""
-    name, example = key.name, key.example
+def _bodies_in(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Tables of links and of the frame in the content of a file, as far as they are tables."""
+    links, frame = content.get("links"), content.get(FRAME)
+    tables = {**(links if isinstance(links, dict) else {}), FRAME: frame}
+    return {name: table for name, table in tables.items() if isinstance(table, dict)}
+
+
+def _own_names(
+    kind: keys.Kind,
+    given: Mapping[str, Any],
+    known: Mapping[str, keys.Key],
+    bodies: Mapping[str, Any],
+) -> list[str]:
+    """Names in the file that a key can have which names a link, or a point of a body that is given
+    or the default beside it; empty where that is not clear.
+    """
+    if not isinstance(kind, keys.TextKind):
+        return []
+    if kind.of == "link":
+        return [name for name in bodies if name != FRAME]
+    if kind.of != "point":
+        return []
+    beside = known.get(kind.on)
+    body = kind.on if beside is None else given.get(kind.on, beside.default)
+    points = bodies.get(body, {}).get("points") if isinstance(body, str) else None
+    return [*points] if isinstance(points, dict) else []
+
+
+def _example(key: keys.Key, names: list[str]) -> str:
+    """Return a key and its value as they would stand in the file: one of these names, if any."""
+    name, example = key.name, names[0] if names else key.example
     if example is None:
         return Note("the table [{name}]", name=name)
     if isinstance(example, dict):

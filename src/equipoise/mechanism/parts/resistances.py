@@ -247,7 +247,11 @@ class Resistance(BetweenPoints, RatedElement):
             wrong = Note("give at least one of force, damping, table, and positions with forces")
             yield ModelError(where, wrong)
         if (self.force is not None or by_way) and self.speed is None:
-            wrong = Note("missing; a dry part goes with the speed near which it changes its sense")
+            wrong = Note(
+                "missing; a dry part changes its direction smoothly about this speed: add "
+                "{example}, or another that is small against those of the point",
+                example='speed = "5 mm/s"',
+            )
             yield ModelError(f"{where}.speed", wrong)
         if self.direction is None and (by_way or self.one_way):
             wrong = Note("missing; what acts by the way or one way needs a direction")
