@@ -86,6 +86,11 @@ def trace_load(trace: Trace, number: int, load: Load) -> Iterator[HoldingWrench]
     )
     x, y, torque = parts
     force = VectorTerm(x, y)
+    acts_at = None if load.point is None else trace.point(load.link, load.point)[0]
+    if load.toward is not None:
+        end = TracedBodies(trace, f"loads[{number}]").point(load.reaction or FRAME, load.toward)
+        force = force * ((end - acts_at) * (1 / kernels.length(end - acts_at)))
+        acts_at = end
     if load.axes is not None:
         force = force * trace.state[u(load.link)[0]]
     if load.axes == "slider":
@@ -98,7 +103,7 @@ def trace_load(trace: Trace, number: int, load: Load) -> Iterator[HoldingWrench]
     yield holding_wrench(trace, load.link, load.point, force, torque)
     if (other := load.reaction_link) is not None:
         anchor = trace.body(other)[0]
-        at = anchor if load.point is None else trace.point(load.link, load.point)[0]
+        at = anchor if acts_at is None else acts_at
         yield other, *kernels.load_demand(anchor, at, -force, -torque)
 
 

@@ -256,11 +256,18 @@ def _force(model: Flat, load: Load) -> tuple[str, str]:
     """Components along x and y of the frame."""
     assert load.force is not None
     fx, fy = map(_in_brackets, load.force)
-    if load.axes is None:
+    if load.toward is not None and load.point is not None:
+        ends = (load.link, load.point), (load.reaction or FRAME, load.toward)
+        (x, y), (x0, y0) = (model.place(*end) for end in ends)
+        length = f"sqrt(({x0} - {x})^2 + ({y0} - {y})^2)"
+        cos, sin = f"({x0} - {x}) / {length}", f"({y0} - {y}) / {length}"
+    elif load.axes is not None:
+        turn = load.axes_angle(model.machine.sliders)
+        angle = f"({model.angle(load.link)} + {_in_brackets(turn)})"
+        cos, sin = f"cos{angle}", f"sin{angle}"
+    else:
         return fx, fy
-    turn = load.axes_angle(model.machine.sliders)
-    angle = f"({model.angle(load.link)} + {_in_brackets(turn)})"
-    return f"({fx} * cos{angle} - {fy} * sin{angle})", f"({fx} * sin{angle} + {fy} * cos{angle})"
+    return f"({fx} * {cos} - {fy} * {sin})", f"({fx} * {sin} + {fy} * {cos})"
 
 
 def _torsion_springs(model: Flat, job: Job) -> None:

@@ -237,6 +237,10 @@ def constant_loads(job: Job, *, between: bool = False) -> Iterator[tuple[int, Lo
         if not load.constant:
             job.leave_out(Note("load {number}, which is not constant", number=number))
             continue
+        if load.toward is not None and not between:
+            note = Note("load {number}, which acts in the line between two points", number=number)
+            job.leave_out(note)
+            continue
         if load.reaction_link is not None and not between:
             note = Note("load {number}, whose opposite {link!r} bears", number=number,
                         link=load.reaction_link)  # fmt: skip

@@ -297,6 +297,8 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
         place = load.link
         if load.point is not None:
             place = say("{point} of {link}", point=load.point, link=load.link)
+        if load.toward is not None:
+            place = say("{place} towards {to}", place=place, to=load.toward)
         what = say(kind)
         ends, beyond = (load.start, load.stop), "zero"
         if (table := load.rows) is not None:

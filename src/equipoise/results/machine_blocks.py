@@ -233,6 +233,13 @@ def _parts(machine: Machine) -> Iterator[str]:
                 link=load.link,
                 bore=format_quantity(load.bore, "length"),
             )
+        elif load.toward is not None:
+            yield say(
+                "Load: a force from {point} of {link} towards {to}",
+                point=load.point,
+                link=load.link,
+                to=load.toward,
+            )
         elif load.axes is None:
             yield say("Load: a force at {point} of {link}", point=load.point, link=load.link)
         elif load.axes == "link":

@@ -15,7 +15,6 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
-from equipoise.mechanism.assembly.steps import u
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.applied_loads import (
     against_soil,
@@ -26,6 +25,7 @@ from equipoise.mechanism.dynamics.applied_loads import (
 )
 from equipoise.mechanism.dynamics.forces import weight_demands
 from equipoise.mechanism.dynamics.friction import Demands
+from equipoise.mechanism.dynamics.lines import load_axis
 from equipoise.mechanism.dynamics.rated_elements import rated_torque, rated_ways
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.dynamics.reduced import generalized_force
@@ -289,8 +289,8 @@ def _ends(motion: Motion, load: TimedLoad) -> Iterator[Acting]:
     none = np.zeros(len(motion.crank_angle))
     place, force = None, none + 0j
     if load.force is not None and load.point is not None:
-        turn = motion.state[u(load.link)[0]] if load.axes else 1.0
-        force, place = (none + complex(*load.force)) * turn, motion.point(load.point).place
+        force = (none + complex(*load.force)) * load_axis(motion, "timed_loads", load)
+        place = motion.point(load.point).place
     torque = load.torque or 0.0
     yield load.link, place, force, torque
     if load.on != FRAME:

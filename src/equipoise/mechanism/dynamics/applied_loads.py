@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import chain
-from math import degrees
 from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError
-from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.dynamics.lines import check_apart
 from equipoise.mechanism.dynamics.loads import acting_load
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.kinematics.indicators import loads_of
@@ -22,10 +20,6 @@ from equipoise.mechanism.parts.field import Soil
 from equipoise.mechanism.parts.machine import FRAME, Load
 from equipoise.mechanism.parts.ramps import table_value
 from equipoise.mechanism.parts.resistances import TINY
-from equipoise.mechanism.parts.springs import MEETING as SPRING_MEETING
-
-MEETING = 1e-12
-"""Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
 
 
 def load_demands(motion: Motion) -> dict[str, Demand]:
@@ -136,8 +130,8 @@ def _acting(motion: Motion, counts: Callable[[Load], bool]) -> Iterator[Acting]:
     for load in filter(counts, loads_of(motion.linkage)):
         force, torque = acting_load(motion, load)
         yield load.link, load.point, force, torque
-        if load.reaction_link is not None:  # in the same line, so at the same place
-            yield load.reaction_link, load.point, -force, -torque
+        if load.reaction_link is not None:  # in the same line, so at the same place where no other
+            yield load.reaction_link, load.toward or load.point, -force, -torque
 
 
 def soil_force(motion: Motion, tip: str | None = None, crank_speed: Array | None = None) -> Array:
@@ -178,32 +172,3 @@ def resistance(soil: Soil, depth: Any, speed: Any) -> Any:
     if soil.table is not None:
         size = size + table_value(soil.table.depth, soil.table.resistance, depth)
     return size
-
-
-def spring_vector(motion: Motion, point: str, to: str) -> Any:
-    """From a point to another, both ends of a spring (N,), m, complex."""
-    return motion.point(to).place - motion.point(point).place
-
-
-def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
-    """Unit vector from a spring's end on a link to its other end (N,), complex.
-
-    Raises
-    ------
-    ModelError : they meet.
-    """
-    check_apart(motion, "springs", (link, point, to), SPRING_MEETING)
-    along = spring_vector(motion, point, to)
-    return along / abs(along)
-
-
-def check_apart(motion: Motion, where: str, ends: tuple[str, str, str], sentence: str) -> None:
-    """Raise a `ModelError` where a point of a link meets another; ends : link, point and that."""
-    link, point, to = ends
-    length = abs(spring_vector(motion, point, to))
-    coordinates = abs(motion.point(point).place) + abs(motion.point(to).place)
-    meeting = length <= MEETING * coordinates
-    if meeting.any():
-        angle = degrees(motion.crank_angle[meeting.argmax()])
-        named = {"point": point, "link": link, "to": to, "angle": angle}
-        raise ModelError(where, Note(sentence, **named, **key_names("free_length")))

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import Array, u
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.dynamics.lines import load_axis
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.force_elements import ROUNDING
@@ -46,12 +47,14 @@ def load_at(load: Load, crank_angle: Array) -> tuple[Array, Array]:
 
 
 def acting_load(motion: Motion, load: Load) -> tuple[Array, Array]:
-    """Force (complex, N) in the axes of the frame, and torque (N m) of a load in a motion."""
+    """Force (complex, N) in the axes of the frame, and torque (N m) of a load in a motion.
+
+    Raises
+    ------
+    ModelError : the points between which it acts meet.
+    """
     force, torque = load_at(load, motion.crank_angle)
-    if load.axes is None:
-        return force, torque
-    turn = motion.state[u(load.link)[0]] * np.exp(1j * load.axes_angle(motion.machine.sliders))
-    return force * turn, torque
+    return force * load_axis(motion, "loads", load), torque
 
 
 PIECE, NODES = pi / 12, 4

@@ -25,12 +25,12 @@ from equipoise.displays import Brief
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import Array, planar
-from equipoise.mechanism.dynamics.applied_loads import spring_direction, spring_vector
 from equipoise.mechanism.dynamics.forces import (
     demand_of_inertia,
     forces,
     massless,
 )
+from equipoise.mechanism.dynamics.lines import direction_between, vector_between
 from equipoise.mechanism.dynamics.out_of_plane import (
     OutOfPlaneMoments,
     exerted_in,
@@ -43,6 +43,7 @@ from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.links import moments_across
 from equipoise.mechanism.parts.machine import Link, Machine, Vector, unknown
 from equipoise.mechanism.parts.places import in_frame
+from equipoise.mechanism.parts.springs import MEETING
 
 QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
 """Inertial parameters of a link: kg, kg m, kg m, kg m2; moments and inertia about its origin."""
@@ -289,5 +290,5 @@ def spring_units(motion: Motion, link: str, point: str, to: str) -> Array:
     ------
     ModelError : the ends meet, so that a pull has no direction.
     """
-    along = spring_direction(motion, link, point, to)
-    return np.stack([spring_vector(motion, point, to), along])
+    along = direction_between(motion, "springs", (link, point, to), MEETING)
+    return np.stack([vector_between(motion, point, to), along])

@@ -40,6 +40,7 @@ from equipoise.mechanism.checks import (
 from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.indicator_diagrams import IndicatorDiagram, wrong_diagram
 from equipoise.mechanism.parts.induction_motors import InductionMotor
+from equipoise.mechanism.parts.lines import AlongLine, wrong_line
 from equipoise.mechanism.parts.ramps import ramp_value, ramps_of
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 
@@ -147,7 +148,7 @@ class LoadGuide(Protocol):
 
 
 @declared
-class Load(Frozen):
+class Load(AlongLine, Frozen):
     """A force at a point of a link, or a torque on a link: from outside the machine, or between the
     link and another body.
 
@@ -157,14 +158,17 @@ class Load(Frozen):
 
     called = to_say("{what} of load {number}")
     file_order = ("link", "point", "force", "torque", "table", "gas", "indicator", "bore",
-                  "back_pressure", "side", "axes", "outside", "from", "to", "reaction")  # fmt: skip
+                  "back_pressure", "side", "axes", "toward", "outside", "from", "to",
+                  "reaction")  # fmt: skip
     conditions: ClassVar[Conditions] = {
         "oneOf": [{"required": [name]} for name in KINDS],
         "dependentRequired": {
             "from": ["to"], "to": ["from"], "force": ["point"], "axes": ["point"],
+            "toward": ["point", "reaction"],
             "gas": ["bore", "axes"], "indicator": ["bore", "axes"],
         },
         "dependentSchemas": {
+            "toward": lacks("axes"),
             "outside": {"anyOf": [{"required": [name]} for name in ("table", "gas")]},
             **{name: {"anyOf": [{"required": ["gas"]}, {"required": ["indicator"]}]}
                for name in OF_GAS},
@@ -247,6 +251,14 @@ class Load(Frozen):
         "a piston and its cylinder, so that it does not shake the machine as a whole; nothing of "
         "the machine where left out",
         default=None,
+    )
+    toward: str | None = key(
+        TextKind(of="point", on="reaction"),
+        "point of the body that bears its opposite, towards which the x axis of the force points "
+        "from `point`, wherever both are: a force above 0 pulls them together, as a cylinder or a "
+        "rope between them; in the place of `axes`",
+        default=None,
+        example="S",
     )
 
     @cached_property
@@ -469,6 +481,7 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
         yield ModelError(
             where, Note("from and to must differ, by one turn at most; leave both out for always")
         )
+    yield from wrong_line(where, load, load.reaction, bodies)
     yield from _wrong_table(where, load, forces)
 
 

@@ -17,6 +17,7 @@ from equipoise.keys import (
     TextKind,
     declared,
     key,
+    lacks,
 )
 from equipoise.mechanism.checks import (
     FRAME,
@@ -26,11 +27,12 @@ from equipoise.mechanism.checks import (
     unknown_link,
     unknown_point,
 )
+from equipoise.mechanism.parts.lines import AlongLine, wrong_line
 from equipoise.mechanism.parts.ramps import wrong_rows
 
 
 @declared
-class TimedLoad(Frozen):
+class TimedLoad(AlongLine, Frozen):
     """A force at a point of a link, or a torque on a link, that changes with the time of a run.
 
     It is `force` or `torque` times a factor, linear between rows; before the first row and after
@@ -38,10 +40,16 @@ class TimedLoad(Frozen):
     """
 
     called = to_say("{what} of load {number} over time")
-    file_order = ("link", "point", "on", "force", "torque", "axes", "times", "factors")
+    file_order = ("link", "point", "on", "force", "torque", "axes", "toward", "times", "factors")
     conditions: ClassVar[Conditions] = {
         "oneOf": [{"required": [name]} for name in ("force", "torque")],
-        "dependentRequired": {"force": ["point"], "axes": ["point"], "point": ["force"]},
+        "dependentRequired": {
+            "force": ["point"],
+            "axes": ["point"],
+            "toward": ["point"],
+            "point": ["force"],
+        },
+        "dependentSchemas": {"toward": lacks("axes")},
     }
 
     link: str = key(TextKind(of="link"), "the loaded link", example="ram")
@@ -75,6 +83,17 @@ class TimedLoad(Frozen):
         "frame where left out",
         default=None,
     )
+    toward: str | None = key(
+        TextKind(of="point", on="on"),
+        "point of `on`, towards which the x axis of the force points from `point`, wherever both "
+        "are: a force above 0 pulls them together; in the place of `axes`",
+        default=None,
+        example="S",
+    )
+
+    def axes_angle(self, sliders: Any) -> float:
+        """From the x axis of its link to the one along which its force is given, rad."""
+        return 0.0
 
     def line_after(self, instant: float) -> Callable[[Any], Any]:
         """The line that its factor follows just after an instant, s, by the time, s."""
@@ -106,6 +125,7 @@ def wrong_timed_load(where: str, load: TimedLoad, bodies: Bodies) -> Iterator[Mo
         yield ModelError(f"{where}.axes", Note("goes with a force; leave it out"))
     if load.point is not None:
         yield from unknown_point(f"{where}.point", load.point, load.link, bodies)
+    yield from wrong_line(where, load, load.on, bodies)
     uneven = Note(
         "got {times} times and {factors} factors; give as many of both",
         times=len(load.times),

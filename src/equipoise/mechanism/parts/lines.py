@@ -1,0 +1,59 @@
+"""The line between two points along which a load may act."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, key_names, to_say
+from equipoise.mechanism.checks import FRAME, Bodies, unknown
+
+MEETING = to_say(
+    "{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a load along their "
+    "line has no direction; give another point"
+)
+"""What is wrong where the ends of a load meet."""
+
+
+class AlongLine:
+    """A load whose force may be given along the line from its `point` to the point `toward` of the
+    body that bears its opposite.
+    """
+
+    link: str
+    point: str | None
+    axes: str | None
+    toward: str | None
+
+    @property
+    def turns_axes(self) -> bool:
+        """Whether the axes in which its force is given turn in the frame."""
+        return self.axes is not None or self.toward is not None
+
+
+def wrong_line(where: str, load: Any, body: str | None, bodies: Bodies) -> Iterator[ModelError]:
+    """What is wrong with the point towards which a load points.
+
+    body : that bears the opposite of the load, None if none does.
+    """
+    if load.toward is None or (body is not None and body not in bodies):
+        return
+    at = f"{where}.toward"
+    if load.point is None:
+        yield ModelError(at, Note("goes with a force; leave it out"))
+    elif load.axes is not None:
+        wrong = Note("{toward} gives the direction of the force already; leave it out",
+                     **key_names("toward"))  # fmt: skip
+        yield ModelError(f"{where}.axes", wrong)
+    elif body is None:
+        wrong = Note("missing; the body with the point {toward!r} bears the opposite",
+                     toward=load.toward)  # fmt: skip
+        yield ModelError(f"{where}.reaction", wrong)
+    elif load.toward not in bodies[body]:
+        kind = Note("point of {body}", body=body) if body != FRAME else "point of the frame"
+        yield ModelError(at, unknown(load.toward, bodies[body], kind))
+    elif load.toward in bodies.get(load.link, ()) or load.point in bodies[body]:
+        wrong = Note("{link!r} and {on!r} are pinned there; give other points",
+                     link=load.link, on=body)  # fmt: skip
+        yield ModelError(at, wrong)
