@@ -511,7 +511,7 @@ export class App {
     }
     const k = runPanel.at(player.time, runPanel.poses(state as State).angles);
     if (runPanel.cyclic) player.sample = k;
-    stage.swing = null; // it runs on a fixed frame
+    stage.swing = runPanel.swing(state as State);
     stage.pose(k);
     return k;
   }

@@ -250,6 +250,8 @@ export interface CurveOf {
   stride: number;
   part: number;
   label: string;
+  /** Whether it is points alone, without a line. */
+  points?: boolean;
 }
 
 /** A signal that a chart can show. */
@@ -637,7 +639,7 @@ export interface RunMessage {
   charts: ChartData[];
   /** Poses that come along; 0 where those of the cycle are played. */
   frames: number;
-  /** `run.time`, and `run.cycles`, the crank angle in cycles; poses; curves. */
+  /** `run.time`, and `run.cycles`, the crank angle in cycles; poses, and `run.place` and `run.angle` of a support that moves; curves. */
   arrays: Arrays;
 }
 

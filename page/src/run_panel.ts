@@ -4,8 +4,10 @@ import { blocksOf } from "./blocks";
 import { Chart } from "./chart";
 import { h, show, write } from "./dom";
 import { type Ask, explain } from "./explain";
+import type { Swing } from "./overlay";
 import type { Numbers, RunMessage, State } from "./protocol";
 import { indexAtOrBelow } from "./scale";
+import { moves } from "./support";
 import type { Theme } from "./theme";
 import { say } from "./words";
 
@@ -103,6 +105,12 @@ export class RunPanel {
     const { message, numbers } = this.run ?? {};
     if (!message?.frames || !numbers) return state;
     return { ...state, numbers, angles: message.frames, open: true, arrows_at: null };
+  }
+
+  /** How the support moves in the poses of the run; none on a fixed frame. */
+  swing({ scene: { reference } }: State): Swing | null {
+    const { numbers } = this.run ?? {};
+    return reference && moves(reference, numbers?.get("run.place"), numbers?.get("run.angle"));
   }
 
   /** Whether the poses are those of the cycle. */

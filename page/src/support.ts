@@ -92,18 +92,23 @@ export class Support {
       const shape = this.message?.modes[mode]?.shape;
       return shape ? { reference, at: () => swinging(shape, this.phase) } : null;
     }
-    if (this.select.value !== WORK || !place || !angle) return null;
-    const at = (k: number) => ({
-      place: [place[2 * k] ?? 0, place[2 * k + 1] ?? 0] as Pair,
-      angle: angle[k] ?? 0,
-    });
-    return { reference, at };
+    return this.select.value === WORK ? moves(reference, place, angle) : null;
   }
 
   private choose(): void {
     set(this.select, { title: this.select.selectedOptions[0]?.text ?? null });
     this.changed();
   }
+}
+
+/** Displacements (m, x and y of each sample) and rotations (rad) of a support as it is drawn; none where it stands still. */
+export function moves(reference: Pair, place?: Float32Array, angle?: Float32Array): Swing | null {
+  if (!place || !angle) return null;
+  const at = (k: number) => ({
+    place: [place[2 * k] ?? 0, place[2 * k + 1] ?? 0] as Pair,
+    angle: angle[k] ?? 0,
+  });
+  return { reference, at };
 }
 
 function swinging(shape: number[], phase: number): { place: Pair; angle: number } {

@@ -14,6 +14,7 @@ import equipoise as eq
 from browser.live import LONGEST, OVER_A_SOCKET, Live
 from equipoise.mechanism.parts.run_plans import MOST_TURNS
 from equipoise.present.cells import printed
+from equipoise.running.drives_run import DrivesRun
 from equipoise.web.figures import CHARTS
 from support.chosen import few
 from surface.running import example_text
@@ -189,6 +190,33 @@ def test_drives_that_go_their_own_ways_are_drawn_and_not_dragged(wired: Live) ->
     wired.painted()
     wired.comes_to(joint, of_cycle, 0.01)
     assert wired.machine() == own
+
+
+# On every change `unit/web/test_runs.py` holds what is sent of the support's movement.
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("address", WIRES, indirect=True)
+def test_a_machine_moves_on_its_mounts_while_its_run_is_played(wired: Live) -> None:
+    """All that the support carries turns by its pitch, at the end as much as in the run."""
+    page = wired.page
+    text = f"{example_text('balance-rig')}\n[run]\nsupport = true\nturns = 3\n"
+    run = eq.run(eq.loads(text))
+    assert isinstance(run, DrivesRun) and run.support is not None
+    wired.drop("rig.toml", text)
+    wired.settled()
+    wired.button("Run").click()
+    clock = page.get_by_role("slider", name="Time of the run", exact=True)
+    expect(clock).to_be_visible(timeout=LONGEST * 1000)
+    told = page.get_by_role("region", name="Result of the run", exact=True)
+    expect(told).to_contain_text("movement of the support to scale")
+    clock.fill("1000")
+    expect(clock).to_have_attribute("aria-valuetext", f"{run.end.time:.3f} s after the start")
+    wired.painted()
+    turned = page.locator("svg g[transform*=rotate]").first.get_attribute("transform")
+    angle = re.search(r"rotate\((\S+) ", turned or "")
+    assert angle is not None
+    assert float(angle[1]) == pytest.approx(-np.degrees(run.support.place[2, -1]), abs=1e-3)
+    told.get_by_role("button", name="Close").click()
+    expect(clock).to_be_hidden()
 
 
 @pytest.mark.exhaustive

@@ -46,15 +46,34 @@ def swinging(scene: Scene, response: Response, factor: float | None = None) -> S
     values = response.motion.values(scene.crank_angle)
     values = values - response.motion.amplitudes[:, :1].real
     reach = _reach(scene, values)
-    if factor is None:
-        factor = _round(LARGEST * _size(scene) / reach) if reach else 1.0
-    texts = [say("movement of the support {factor} times as large", factor=shown(factor))]
-    if factor == 1:
-        texts = [say("movement of the support to scale")]
+    factor, texts = _enlarged(scene, reach, factor)
     sizes = [f"{say(ACROSS[name])} {size}" for name, size in _across(scene, values, reach)]
     if sizes:
         texts.append(say("across the drawing, not shown: {sizes}", sizes=", ".join(sizes)))
     return _with(scene, factor * values, texts)
+
+
+def running(scene: Scene, place: Array) -> Scene:
+    """A scene of poses in a run whose support moves with them, so much larger that it can be seen.
+
+    place : displacements (3, N) along surge, heave and pitch, m and rad.
+    """
+    values = np.zeros((len(FREEDOMS), place.shape[1]))
+    values[[*map(FREEDOMS.index, PLANAR)]] = place
+    factor, texts = _enlarged(scene, _reach(scene, values))
+    return _with(scene, factor * values, texts)
+
+
+def _enlarged(scene: Scene, reach: float, factor: float | None = None) -> tuple[float, list[str]]:
+    """By what factor the movement of a support is drawn larger than true, and what is said of it.
+
+    reach : as of `_reach`, m.  factor : the one to be used, where it is given.
+    """
+    if factor is None:
+        factor = _round(LARGEST * _size(scene) / reach) if reach else 1.0
+    if factor == 1:
+        return factor, [say("movement of the support to scale")]
+    return factor, [say("movement of the support {factor} times as large", factor=shown(factor))]
 
 
 def moving(analysis: Analysis, factor: float | None = None) -> tuple[Scene, EquipoiseError | None]:

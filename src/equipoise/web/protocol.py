@@ -164,6 +164,7 @@ class CurveOfValues(TypedDict):
     stride: int
     part: int
     label: str
+    points: NotRequired[Annotated[bool, "Whether it is points alone, without a line."]]
 
 
 class ChoiceValues(UnitValues):
@@ -637,7 +638,8 @@ class RunMessage(TypedDict):
     frames: Annotated[int, "Poses that come along; 0 where those of the cycle are played."]
     arrays: Annotated[
         Arrays,
-        "`run.time`, and `run.cycles`, the crank angle in cycles; poses; curves.",
+        "`run.time`, and `run.cycles`, the crank angle in cycles; poses, and `run.place` and "
+        "`run.angle` of a support that moves; curves.",
     ]
 
 

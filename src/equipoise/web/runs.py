@@ -11,6 +11,8 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
+from equipoise.results.blocks import Block, Text
+from equipoise.signals import Array
 from equipoise.symbols.scene import Scene
 from equipoise.web.block import FloatBlock, Values
 from equipoise.web.drawing import moves_of
@@ -81,11 +83,13 @@ def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:
 
     Arrays: ``run.time`` (M,), s, and ``run.cycles`` (M,), the crank angle in cycles, which goes on
     rising through all turns.  With several drives the whole run is one cycle, whose ``frames``
-    poses come along.
+    poses come along; on a support ``run.place`` (2 frames,), m, and ``run.angle`` (frames,), rad,
+    too: the movement of that, larger than true.
     """
     from equipoise.running.run import Run
 
     block, frames = FloatBlock(), 0
+    captions: list[Block] = []
     if isinstance(run, Run):
         time, angle = run.time, run.crank_angle
         if len(time) > MOST_INSTANTS:
@@ -94,18 +98,33 @@ def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:
         cycles = angle / (2 * pi * base.motion.turns)
     else:
         places = _frames_of(run)
-        moves_of(Scene.of(run.motion_at(places)), block)
+        scene = Scene.of(run.motion_at(places))
+        moves_of(scene, block)
+        captions = _support_moves(run, places, scene, block)
         frames, time = len(places), run.time[places]
         cycles = np.arange(frames) / frames
     block.add("run.time", time)
     block.add("run.cycles", cycles)
     content: Values = {
-        "blocks": [*block_messages((*run.headline(), *run.blocks()))],
+        "blocks": [*block_messages((*run.headline(), *captions, *run.blocks()))],
         "charts": [*panel_charts("run", run.charts().values(), block)],
         "frames": frames,
     }
     content["arrays"] = block.placement
     return content, block.data
+
+
+def _support_moves(run: DrivesRun, places: Array, scene: Scene, block: FloatBlock) -> list[Block]:
+    """Captions of the movement of the support in poses of a run, which goes to the block."""
+    from equipoise.figures.swing import running
+
+    if run.support is None:
+        return []
+    moved = running(scene, run.support.place[:, places]).swing
+    assert moved is not None
+    block.add("run.place", moved.place)
+    block.add("run.angle", moved.angle)
+    return [Text(caption) for caption in moved.captions]
 
 
 def _frames_of(run: DrivesRun) -> np.ndarray[tuple[int], np.dtype[np.intp]]:

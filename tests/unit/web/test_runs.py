@@ -18,9 +18,11 @@ from equipoise.errors import MassError
 from equipoise.present.cells import printed
 from equipoise.results.blocks import Block, Column, Facts, FileText, Notes, Table, Text, Value
 from equipoise.results.charts import Axis, Chart, Curve, Panel
+from equipoise.running.drives_run import DrivesRun
 from equipoise.web import result_blocks, runs
 from equipoise.web.block import FloatBlock
 from equipoise.web.messages import message_of
+from surface.running import example_text
 from unit.web.pages import State, ask, edit, opened, refusal
 
 BARE = {"mass": None, "center_of_mass": None, "inertia": None}
@@ -90,6 +92,25 @@ def test_drives_that_go_their_own_ways_bring_their_poses() -> None:
         "left-crank",
         "right-crank",
     ]
+
+
+def test_a_support_moves_with_the_poses_of_a_run() -> None:
+    """As much larger than true at each instant, in all three of its movements."""
+    text = f"{example_text('balance-rig')}\n[run]\nsupport = true\nturns = 3\n"
+    session, _ = opened("cutter-bar")
+    ask(session, "open", seq=2, name="rig.toml", text=text)
+    _, reply = ask(session, "run", seq=3)
+    told = State(reply.content, np.frombuffer(reply.buffer, "<f4"))
+    run = eq.run(eq.loads(text))
+    assert isinstance(run, DrivesRun) and run.support is not None
+    assert len(told.array("run.angle")) == told.content["frames"] > 100
+    moved = [*told.array("run.place").reshape(-1, 2).T, told.array("run.angle")]
+    true = [np.interp(told.array("run.time"), run.time, each) for each in run.support.place]
+    factor = np.max(np.abs(moved)) / np.max(np.abs(true))  # 1, 2 or 5 and zeros
+    assert f"{factor:.2e}"[0] in "125"
+    assert any("movement of the support" in one.get("text", "") for one in told.content["blocks"])
+    size = np.max(np.abs(moved))
+    np.testing.assert_allclose(moved, factor * np.array(true), atol=1e-4 * size)
 
 
 def test_a_run_is_of_the_design_that_was_shown() -> None:
