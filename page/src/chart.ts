@@ -124,7 +124,7 @@ export class Chart {
       const found = column(source, one.array, one.stride, one.part, this.data.x === "angle");
       if (!found) return [];
       const role = source.role ?? ROLES[i] ?? "third";
-      const model = { label: one.label, role, ...this.kept(scaled(found, choice), source.state) };
+      const model = { label: one.label, role, points: one.points, ...this.kept(scaled(found, choice), source.state) };
       const { array, stride, part } = one;
       const over = this.data.x === "angle" ? source.state.numbers : null;
       const seen = over && measured(over, array, stride, part, found.values.length);

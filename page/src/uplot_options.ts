@@ -9,6 +9,8 @@ export interface Curve {
   role: Role;
   values: Float64Array;
   before?: Float64Array | undefined;
+  /** Whether it is points alone, without a line. */
+  points?: boolean | undefined;
 }
 
 export interface Content {
@@ -99,6 +101,7 @@ export function optionsOf(
 function series(curve: Curve, look: Look, theme: Theme, i: number, count: number): uPlot.Series[] {
   const stroke = () => theme.colours[curve.role];
   const base: uPlot.Series = { stroke, width: 1.6, points: { show: false } };
+  if (curve.points) return [{ ...base, paths: () => null, points: { show: true, size: 7, fill: stroke } }];
   if (!look.bars) {
     const before: uPlot.Series = { ...base, width: 1.2, dash: [1.5, 2.5], alpha: 0.65 };
     const now =

@@ -65,8 +65,13 @@ def link_charts(analysis: Analysis) -> Iterator[tuple[Chart, str]]:
     of_cycles = to_say("Haigh diagram: mean and amplitude of cycles of stress, and their limits.")
     for name in analysis.sections:
         yield along_link(analysis, name), of_loads
-        if _section(analysis, name).fatigue_limit is not None:
-            yield _haigh(analysis, name), of_cycles
+        if has_limit(analysis, name):
+            yield haigh_diagram(analysis, name), of_cycles
+
+
+def has_limit(analysis: Analysis, name: str) -> bool:
+    """Whether a link has a limit of fatigue, to which its cycles of stress can be held."""
+    return _section(analysis, name).fatigue_limit is not None
 
 
 def _section(analysis: Analysis, name: str) -> LinkSection:
@@ -152,7 +157,7 @@ def _stress_panel(x: Axis, at: Array, stress: Array, peak: StressPeak, place: Li
 # -- Haigh's diagram -------------------------------------------------------------------------------
 
 
-def _haigh(analysis: Analysis, name: str) -> Chart:
+def haigh_diagram(analysis: Analysis, name: str) -> Chart:
     """Mean and amplitude of each cycle of stress where one comes nearest to the fatigue limit, and
     that limit and the yield strength, as far as they are given.
     """

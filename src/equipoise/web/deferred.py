@@ -287,14 +287,19 @@ def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, FigureValue]]:
 
 
 def _along_links(analysis: Analysis, block: FloatBlock) -> Iterator[Values]:
-    """Charts of loads and stress along links with a section; their arrays go to the block."""
+    """Charts of loads and stress along links with a section, and of their cycles of stress; their
+    arrays go to the block.
+    """
     if analysis.sections:
-        from equipoise.figures.link_strength import ALONG, along_link
-        from equipoise.web.result_blocks import stacked_chart
+        from equipoise.figures.link_strength import ALONG, along_link, haigh_diagram, has_limit
+        from equipoise.web.result_blocks import marked_chart, stacked_chart
 
         for name in analysis.sections:
             chooser, labels = say("Along {link}", link=name), [f"{name}: {say(w)}" for w in ALONG]
             yield stacked_chart(along_link(analysis, name), labels, chooser, block)
+            if has_limit(analysis, name):
+                label = say("{link}: cycles of stress, amplitude over mean", link=name)
+                yield marked_chart(haigh_diagram(analysis, name), label, block)
 
 
 def _losses_of(analysis: Analysis) -> Iterator[tuple[str, FigureValue]]:

@@ -61,7 +61,7 @@ def chart_of(computed: Computed, name: str, choice: str) -> Chart:
 
         speeds = around(machine.drive, machine.drive.speed)
         return _named(sweep_charts(sweep_speed(machine, *speeds)), "response")
-    if name.startswith("stress-"):
+    if name.startswith(("stress-", "haigh-")):
         from equipoise.figures.link_strength import link_charts
 
         return _named({chart.name: chart for chart, _ in link_charts(analysis)}, name)

@@ -98,6 +98,10 @@ CHARTS = {
         "What a gauge reads from the start of the run. Look for its peak while the machine passes "
         "resonances on its way to its speed, and for how long that lasts."
     ),
+    "haigh": to_say(
+        "Each cycle of stress of the link as a point, its amplitude over its mean, where one comes "
+        "nearest to the limit. Points below both lines last; the farther below, the safer."
+    ),
     "run.mounts": to_say(
         "Force or torque of a mount on the support from the start of the run. Its peak is what "
         "the mount and its fastening have to bear."

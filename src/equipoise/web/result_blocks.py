@@ -5,13 +5,14 @@ curves over the values of their x axis.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from equipoise.present.cells import noted, printed, printed_grid, with_omitted
 from equipoise.results.blocks import Block, Facts, Notes, ReportSection, Table, Text
-from equipoise.results.charts import Axis, Chart, Panel
+from equipoise.results.charts import Axis, Chart, Curve, Mark, Panel
 from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.figures import capital, chart
 
@@ -107,6 +108,36 @@ def stacked_chart(item: Chart, labels: Iterable[str], chooser: str, block: Float
     ]
     over = {"array": x, "at": line.at, **_unit(first.x)}
     return chart(item.name, choices, x=over, chooser=chooser)
+
+
+def marked_chart(item: Chart, label: str, block: FloatBlock) -> Values:
+    """One chart of a picture of one panel: curves over values of their own, and marks as points, of
+    which those of a label are a curve.
+
+    The marker of the chart stands at the mark that has a text.
+    """
+    (panel,) = item.panels
+    marks: dict[str, list[Mark]] = {}
+    for mark in panel.marks:
+        marks.setdefault(mark.label, []).append(mark)
+    every = [*(curve.x for curve in panel.curves), [mark.x for mark in panel.marks]]
+    x = np.sort(np.concatenate(every))
+    curves = [
+        Curve(x, np.interp(x, curve.x, curve.y, left=np.nan, right=np.nan), curve.label)
+        for curve in panel.curves
+    ]
+    for name, own in marks.items():
+        values = np.full(len(x), np.nan)
+        for mark in own:
+            places = np.flatnonzero((x == mark.x) & np.isnan(values))  # as many as marks at least
+            values[places[0]] = mark.y
+        curves.append(Curve(x, values, name))
+    choice = _panel_choice(f"{item.name}.0", replace(panel, curves=tuple(curves)), label, block)
+    for sent in choice["curves"][len(panel.curves) :]:
+        sent["points"] = True
+    block.add(f"{item.name}.x", x)
+    at = next((mark.x for mark in panel.marks if mark.text), 0.0)
+    return chart(item.name, [choice], x={"array": f"{item.name}.x", "at": at, **_unit(panel.x)})
 
 
 def drawn_places(x: Array, curves: Sequence[Array]) -> Array:

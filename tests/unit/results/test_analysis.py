@@ -39,8 +39,10 @@ def test_keys(name: str) -> None:
         "title", "speed", "acceleration", "turns", "crank_angle", "links", "points"
     ]  # fmt: skip
     assert list(found["links"]) == list(machine.links)
-    for link in found["links"].values():
-        assert list(link) == ["angle", "angular_velocity", "angular_acceleration"]
+    along = ["stress", "axial_force", "bending_moment"]
+    for name, link in found["links"].items():
+        more = along if machine.links[name].section is not None else []
+        assert list(link) == ["angle", "angular_velocity", "angular_acceleration", *more]
     for point in found["points"].values():
         assert list(point) == ["x", "y", "vx", "vy", "ax", "ay"]
     for joint in found["joints"].values():
@@ -135,7 +137,13 @@ def test_summary() -> None:
 
 KINKED = dict.fromkeys(
     [
-        *("baler-pickup", "elliptic-quick-return", "four-stroke-engine", "hydraulic-loader"),
+        *(
+            "air-compressor",
+            "baler-pickup",
+            "elliptic-quick-return",
+            "four-stroke-engine",
+            "hydraulic-loader",
+        ),
         *("knife-drive", "pick-and-place", "quick-return", "rotary-transplanter"),
         *("straw-walker", "transplanter", "two-motor-mixer"),
     ],

@@ -40,8 +40,10 @@ def test_they_are_those_of_the_picture(session: Session) -> None:
         return block[begin : begin + length]
 
     charts = {chart["name"]: chart for chart in reply.content["charts"]}
-    assert [*charts] == ["stress-crank", "stress-rod"]
+    assert [*charts] == ["stress-crank", "haigh-crank", "stress-rod", "haigh-rod"]
     for name, chart in charts.items():
+        if name.startswith("haigh-"):
+            continue
         link = name.removeprefix("stress-")
         labels = [choice["label"] for choice in chart["choices"]]
         named = ("axial force", "shear force", "bending moment", "stress")
@@ -56,6 +58,34 @@ def test_they_are_those_of_the_picture(session: Session) -> None:
                 np.testing.assert_allclose(at, curve.x, atol=1e-6)
                 size = np.max(np.abs(curve.y), initial=0.0)
                 np.testing.assert_allclose(values(sent["array"]), curve.y, atol=1e-6 * size)
+
+
+def test_cycles_of_stress_are_points_below_their_limits(session: Session) -> None:
+    """Every cycle of the picture, at its mean, and limits as straight lines between theirs."""
+    reply = strokes_of(session)
+    block, arrays = np.frombuffer(reply.buffer, "<f4"), reply.content["arrays"]
+    chart = next(one for one in reply.content["charts"] if one["name"] == "haigh-rod")
+    begin, length = arrays[chart["x"]["array"]]
+    x = block[begin : begin + length]
+    (panel,) = pictures("engine")["haigh-rod"].panels
+    *limits, cycles = chart["choices"][0]["curves"]
+    assert cycles["points"] and not any("points" in one for one in limits)
+    at, length = arrays[cycles["array"]]
+    values = block[at : at + length]
+    sent = sorted((a, b) for a, b in zip(x, values, strict=True) if not np.isnan(b))
+    assert np.array(sent) == pytest.approx(
+        np.array(sorted((mark.x, mark.y) for mark in panel.marks)), rel=1e-6, abs=1.0
+    )
+    assert chart["x"]["at"] in {mark.x for mark in panel.marks}
+    for limit, curve in zip(limits, panel.curves, strict=True):
+        at, length = arrays[limit["array"]]
+        values = block[at : at + length]
+        assert np.all(np.isnan(values[(x < curve.x[0] - 10.0) | (x > curve.x[-1] + 10.0)]))
+        there = ~np.isnan(values)
+        assert np.count_nonzero(there) >= len(curve.x) - 1
+        wanted = np.interp(x[there], curve.x, curve.y)
+        told = ~np.isnan(wanted)  # beside a gap 32-bit numbers of x may lie in it
+        np.testing.assert_allclose(values[there][told], wanted[told], rtol=1e-5, atol=50.0)
 
 
 def test_they_are_explained_and_can_be_kept(session: Session) -> None:
