@@ -21,6 +21,15 @@ def test_a_motor_on_the_command_line_is_the_one_of_a_file() -> None:
     assert values["crank_speed"][-1] == pytest.approx(wanted.crank_speed[-1], rel=1e-12)
 
 
+def test_a_run_ends_and_a_motor_is_switched_off_at_an_angle() -> None:
+    values = read("run", "cutter-bar", "--turns", "0.75", "--off-turns", ".25")
+    turned = values["crank_angle"][-1] - values["crank_angle"][0]
+    assert turned == pytest.approx(0.75 * 2 * 3.141592653589793, rel=1e-9)
+    for wrong in ("0", "-1", "1e5", "x"):
+        done = equipoise("run", "cutter-bar", "--turns", wrong)
+        assert done.status == 2 and "give a number above 0, up to 10000" in done.err
+
+
 def test_a_motor_has_tables_and_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("motor.csv").write_text("speed [rpm],torque [N m]\n0,20\n288,0\n")

@@ -31,6 +31,7 @@ from equipoise.cli.options import (
     quantity,
     read_by,
     size,
+    some_of,
     tolerance,
     wants,
 )
@@ -304,11 +305,11 @@ def run(
     ] = None,
     /,
     *,
-    turns: Annotated[int | None, count(1, 10_000)] = None,
+    turns: Annotated[float | None, some_of(10_000)] = None,
     speed: Annotated[float | None, size("angular speed")] = None,
     angle: Angle = None,
     off: Annotated[float | None, size("time", "give a time of more than 0")] = None,
-    off_turns: Annotated[int | None, count(1, 10_000)] = None,
+    off_turns: Annotated[float | None, some_of(10_000)] = None,
     fluctuation: Annotated[float | None, read_by(_share, '"2 %"')] = None,
     support: Annotated[bool | None, Parameter(negative="--no-support")] = None,
     motor: Annotated[Any, read_by(_motor, f'"{MOTOR}"')] = None,
@@ -324,7 +325,8 @@ def run(
         Time after which the run ends, such as "2 s"; without it and --turns, it ends when steady or
         at a standstill.
     turns
-        Turns of the crank after which the run ends.
+        Turns of the crank after which the run ends, such as 0.25 for an angle of 90 deg from the
+        start.
     speed
         Speed of the crank at the start: 0 with a motor, else the file's, if not given.
     angle

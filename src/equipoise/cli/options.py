@@ -25,6 +25,7 @@ from equipoise.errors import (
     at_place,
 )
 from equipoise.i18n import LANGUAGES, Note
+from equipoise.quantities.reading import NUMBER
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -106,6 +107,18 @@ def count(least: int, most: int, name: str | None = None) -> Parameter:
         return int(text)
 
     return read_by(read, name=name)
+
+
+def some_of(most: float) -> Parameter:
+    """A number above 0, up to another."""
+
+    def read(option: str, text: str) -> float:
+        if not re.fullmatch(NUMBER, text) or not 0 < float(text) <= most:
+            note = Note("got {text!r}; give a number above 0, up to {most:g}", text=text, most=most)
+            raise UsageError(at_place(option, note))
+        return float(text)
+
+    return read_by(read)
 
 
 def sizes(dimension: str, example: str) -> Parameter:
