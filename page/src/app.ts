@@ -729,7 +729,8 @@ export class App {
     if (!scene) return;
     const frame = grip.kind === "point" && scene.frame.includes(grip.name);
     const holder = scene.bodies.find((body) => body.points.includes(grip.name))?.name ?? null;
-    const link = { mass: grip.name, radius: "cams", point: frame ? "frame" : holder }[grip.kind];
+    const table = scene.circles.find(({ name }) => name === grip.name)?.table ?? null;
+    const link = { mass: grip.name, radius: table, point: frame ? "frame" : holder }[grip.kind];
     this.stage.select(new Set([grip.name]), grip.kind === "mass" ? grip.name : null, grip);
     this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
     this.tools.selected(grip);

@@ -89,13 +89,13 @@ export class Hands<S extends Drawable = State> {
       const grip = gripOf(element);
       const place = this.stage.place(grip);
       if (!place) continue;
-      const [cam] = this.stage.circle(grip) ?? [];
+      const [circle] = this.stage.circle(grip) ?? [];
       const { unit, factor } = lengths();
       set(element, {
-        "aria-valuetext": cam
-          ? `${length(cam.radius)} ${unit}`
+        "aria-valuetext": circle
+          ? `${length(circle.radius)} ${unit}`
           : `x ${length(place[0])} ${unit}, y ${length(place[1])} ${unit}`,
-        "aria-valuenow": ((cam?.radius ?? place[0]) * factor).toFixed(2),
+        "aria-valuenow": ((circle?.radius ?? place[0]) * factor).toFixed(2),
       });
     }
   }
@@ -139,8 +139,8 @@ export class Hands<S extends Drawable = State> {
   private tell(grip: Grip, more: string): void {
     const place = this.stage.place(grip);
     if (!place) return;
-    const [cam] = this.stage.circle(grip) ?? [];
-    const told = cam ? length(cam.radius) : `${length(place[0])}, ${length(place[1])}`;
+    const [circle] = this.stage.circle(grip) ?? [];
+    const told = circle ? length(circle.radius) : `${length(place[0])}, ${length(place[1])}`;
     const where = `${nameOf(grip)}: ${told} ${lengths().unit}`;
     this.told = [grip, more];
     this.page.hint(more ? `${where} · ${more}` : where);
@@ -174,8 +174,8 @@ export class Hands<S extends Drawable = State> {
     const at = this.page.sample();
     if (grip.kind === "point") return { move: grip.name, to, at, keep: this.page.kept(grip.name) };
     if (grip.kind === "mass") return { move_mass: grip.name, to, at };
-    const [cam, axis] = this.stage.circle(grip) ?? [];
-    return cam && axis ? { set: cam.path, value: Math.hypot(to[0] - axis[0], to[1] - axis[1]) } : null;
+    const [circle, axis] = this.stage.circle(grip) ?? [];
+    return circle && axis ? { set: circle.path, value: Math.hypot(to[0] - axis[0], to[1] - axis[1]) } : null;
   }
 
   private press(event: PointerEvent, grip: Grip, element: SVGGElement): void {

@@ -5,8 +5,10 @@ import { h } from "./dom";
 import { TOOLS } from "./palette";
 import { say, toSay } from "./words";
 
-/** Keys as they are labelled, or in words. */
-export const KEYS: [keys: string | (() => string), what: string][] = [
+const LETTERED = TOOLS.filter(({ key }) => key.length === 1);
+
+/** Keys as they are labelled, or in words, and what they do. */
+export const KEYS: [keys: string | (() => string), what: string | (() => string)][] = [
   ["Tab", toSay("next joint, centre of mass, number or button")],
   ["← → ↑ ↓", toSay("move the chosen joint or centre of mass by one step")],
   [() => say("Shift + arrow"), toSay("ten steps")],
@@ -19,7 +21,7 @@ export const KEYS: [keys: string | (() => string), what: string][] = [
   ["Ctrl + Z", toSay("undo")],
   ["Ctrl + Shift + Z", toSay("redo")],
   ["Ctrl + S", toSay("save the file that was opened, or download the model")],
-  ["V P L J X S G B K C D", toSay("tools: select, point, link, pin, separate, slider, gears, belt, rack, cam, drive")],
+  [() => LETTERED.map(({ key }) => key.toUpperCase()).join(" "), () => say("tools: {tools}", { tools: LETTERED.map(({ name }) => say(name)).join(", ") })],
   ["Delete", toSay("delete the joint or link that is chosen")],
   [() => say("menu key"), toSay("what can be done with the chosen joint or link (also: right button, long press)")],
   ["?", toSay("this list")],
@@ -27,7 +29,7 @@ export const KEYS: [keys: string | (() => string), what: string][] = [
 
 export function helpDialog(version: () => string, tour: () => void): HTMLDialogElement {
   const rows = KEYS.map(([keys, what]) =>
-    h("tr", {}, h("th", { scope: "row" }, h("kbd", {}, typeof keys === "string" ? keys : keys())), h("td", {}, say(what))),
+    h("tr", {}, h("th", { scope: "row" }, h("kbd", {}, typeof keys === "string" ? keys : keys())), h("td", {}, typeof what === "string" ? say(what) : what())),
   );
   const tools = TOOLS.map(({ name, first, then }) => {
     const what = [first, then].filter((one) => one).map((one) => say(one));

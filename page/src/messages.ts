@@ -80,9 +80,11 @@ export interface Guide {
   point: string;
 }
 
-/** A base circle that can be dragged, opposite to the point of its follower. */
-export interface BaseCircle {
+/** A circle that can be dragged, opposite to a point. */
+export interface Circle {
   name: string;
+  /** List of the file that has its part. */
+  table: string;
   path: string;
   /** m */
   radius: number;
@@ -129,7 +131,7 @@ export interface Scene {
   mass_centers: string[];
   box: [number, number, number, number];
   movable: string[];
-  cams: BaseCircle[];
+  circles: Circle[];
   /** From the back to the front. */
   signs: Sign[];
   /** Centre of a support's rotation, m. */

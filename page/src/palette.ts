@@ -2,30 +2,13 @@
 
 import { h, icon, set, write } from "./dom";
 import type { Status } from "./protocol";
+import { PART_TOOLS, partTool, RIDERS, RIDING, type PartOptions, type PartToolName, type ToolText } from "./part_tools";
 import { say, toSay } from "./words";
 
-export type Tool =
-  | "select"
-  | "point"
-  | "link"
-  | "pin"
-  | "separate"
-  | "slider"
-  | "gears"
-  | "belt"
-  | "rack"
-  | "cam"
-  | "drive"
-  | "delete";
+export type Tool = "select" | "point" | "link" | "pin" | "separate" | "slider" | PartToolName | "drive" | "delete";
 
-interface Told {
+interface Told extends ToolText {
   tool: Tool;
-  key: string;
-  name: string;
-  /** What to do first, and then. */
-  first: string;
-  then: string;
-  picture: string;
 }
 
 export const TOOLS: Told[] = [
@@ -77,38 +60,7 @@ export const TOOLS: Told[] = [
     then: toSay("click another place of its line: on the sheet, or on the link that guides it"),
     picture: "M2.500 12.500h11M4.500 6h7v4h-7zM2.500 3.500h11",
   },
-  {
-    tool: "gears",
-    key: "g",
-    name: toSay("Gears"),
-    first: toSay("click the link of the driving gear"),
-    then: toSay("click the link of the driven gear"),
-    picture: "M5.500 5.500a3 3 0 1 0 .01 0M11.500 3a2.200 2.200 0 1 0 .01 0",
-  },
-  {
-    tool: "belt",
-    key: "b",
-    name: toSay("Belt"),
-    first: toSay("click the link of the driving pulley"),
-    then: toSay("click the link of the driven pulley"),
-    picture: "M4.500 6.500a2 2 0 1 0 .01 0M12 5a3 3 0 1 0 .01 0M4.500 6.500l7.500-1.500M4.500 10.500l7.500 .5",
-  },
-  {
-    tool: "rack",
-    key: "k",
-    name: toSay("Rack"),
-    first: toSay("click what drives: the link of the pinion, or the block of the rack"),
-    then: toSay("click the other of both: the block of the rack slides on the carrier of the pinion"),
-    picture: "M7 2.500a3 3 0 1 0 .01 0M2 13.500v-2.500h1.500v-1.500h2v1.500h2v-1.500h2v1.500h2v-1.500h2v1.500h.5v2.500z",
-  },
-  {
-    tool: "cam",
-    key: "c",
-    name: toSay("Cam"),
-    first: toSay("click the link that bears the cam"),
-    then: toSay("click the follower, where it rides on the cam: a link that swings, or a slider"),
-    picture: "M6 13.500a3.500 3.500 0 0 1-3.300-4.700l2-5a1.400 1.400 0 0 1 2.600 0l2 5a3.500 3.500 0 0 1-3.300 4.700zM6 9.500a.8.8 0 1 0 .01 0M12.500 2.500v7M11 9.500h3",
-  },
+  ...PART_TOOLS,
   {
     tool: "drive",
     key: "d",
@@ -121,17 +73,10 @@ export const TOOLS: Told[] = [
     tool: "delete",
     key: "Delete",
     name: toSay("Delete"),
-    first: toSay("click the joint, the link, the slider, the gears, the belt, the rack or the cam that is to go"),
+    first: toSay("click the joint, the link, the slider or the part that is to go"),
     then: "",
     picture: "M3 4.500h10M6.500 4.500v-2h3v2M4.500 4.500l.7 9h5.600l.7-9",
   },
-];
-
-/** What of a follower may be on its cam, and what that is called. */
-const RIDERS: [rides: string, name: string][] = [
-  ["roller", toSay("roller")],
-  ["flat", toSay("flat face")],
-  ["knife", toSay("knife edge")],
 ];
 
 export interface Palettes {
@@ -154,7 +99,7 @@ export class Palette {
   });
   private readonly teeth: HTMLInputElement[];
   private readonly meshing: HTMLElement;
-  private readonly rider = h("select", { "aria-label": say("What rides on the cam") });
+  private readonly rider = h("select", { "aria-label": say(RIDING) });
   private readonly riding = h("span", { class: "meshing", hidden: true }, say("follower"), this.rider);
 
   constructor(private readonly page: Palettes) {
@@ -183,15 +128,10 @@ export class Palette {
     );
   }
 
-  /** Numbers of teeth of the next pair of gears, or belt. */
-  get meshes(): [number, number] {
-    const [one, other] = this.teeth.map((input) => Math.round(Number(input.value)));
-    return [one ?? NaN, other ?? NaN];
-  }
-
-  /** What of the next cam's follower is on it. */
-  get rides(): string {
-    return this.rider.value;
+  /** What the next part that a tool adds is to have. */
+  get options(): PartOptions {
+    const [teeth, driven_teeth] = this.teeth.map((input) => Math.round(Number(input.value)));
+    return { teeth: teeth ?? NaN, driven_teeth: driven_teeth ?? NaN, rides: this.rider.value };
   }
 
   /** Which tool is used, and what to do next with it. */
@@ -199,8 +139,9 @@ export class Palette {
     for (const [name, button] of this.buttons) set(button, { "aria-pressed": String(name === tool) });
     const told = TOOLS.find((one) => one.tool === tool);
     write(this.next, tool === "select" || !told ? "" : say(pending ? told.then : told.first));
-    this.meshing.hidden = tool !== "gears" && tool !== "belt";
-    this.riding.hidden = tool !== "cam";
+    const asks = partTool(tool)?.asks;
+    this.meshing.hidden = asks !== "teeth";
+    this.riding.hidden = asks !== "rider";
   }
 
   tell(status: Status): void {

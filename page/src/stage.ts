@@ -3,7 +3,7 @@
 import { Dimensions } from "./dims";
 import { s, set } from "./dom";
 import { type Overlay, type Swing, swung } from "./overlay";
-import type { BaseCircle, Drawable, Pair, Scene, State } from "./protocol";
+import type { Circle, Drawable, Pair, Scene, State } from "./protocol";
 import { at, curve, outside, quarters } from "./shapes";
 import { ruled } from "./sheet";
 import { build, Piece } from "./signs";
@@ -34,7 +34,7 @@ interface Label extends Named {
 
 export type Kind = "point" | "mass" | "radius";
 
-/** What can be taken hold of: a joint, a link's centre of mass, or the base circle of a cam. */
+/** What can be taken hold of: a joint, a link's centre of mass, or a circle of a part. */
 export interface Grip {
   kind: Kind;
   name: string;
@@ -81,9 +81,9 @@ export class Stage<S extends Drawable = State> {
 
   /** Take a state, before it is posed; `other` is of another machine, another build is drawn from scratch. */
   show(state: S, other: boolean): void {
-    const { frame, bodies, movable, mass_centers, cams } = state.scene;
+    const { frame, bodies, movable, mass_centers, circles } = state.scene;
     // While a point is dragged signs may change their order, but what is held must stay the same.
-    const names = JSON.stringify([frame, bodies, movable, mass_centers, cams.map(({ name }) => name)]);
+    const names = JSON.stringify([frame, bodies, movable, mass_centers, circles.map(({ name }) => name)]);
     const signs = build(state.scene);
     const built = names !== this.names;
     this.state = state;
@@ -155,21 +155,21 @@ export class Stage<S extends Drawable = State> {
     return row ? [row[2 * k] as number, row[2 * k + 1] as number] : null;
   }
 
-  /** The base circle that is taken hold of, if one is, and where its cam turns, m. */
-  circle(grip: Grip, k = this.k): [cam: BaseCircle, axis: Pair] | null {
-    const cams = grip.kind === "radius" ? this.state?.scene.cams : [];
-    const cam = cams?.find(({ name }) => name === grip.name);
-    const axis = cam && this.place({ kind: "point", name: cam.axis }, k);
-    return cam && axis ? [cam, axis] : null;
+  /** The circle that is taken hold of, if one is, and its centre, m. */
+  circle(grip: Grip, k = this.k): [circle: Circle, axis: Pair] | null {
+    const circles = grip.kind === "radius" ? this.state?.scene.circles : [];
+    const circle = circles?.find(({ name }) => name === grip.name);
+    const axis = circle && this.place({ kind: "point", name: circle.axis }, k);
+    return circle && axis ? [circle, axis] : null;
   }
 
-  /** On a base circle, across from the follower, m. */
+  /** On a circle, across from its point, m. */
   private across(grip: Grip, k: number): Pair | null {
-    const [cam, axis] = this.circle(grip, k) ?? [];
-    const rider = cam && this.place({ kind: "point", name: cam.point }, k);
+    const [circle, axis] = this.circle(grip, k) ?? [];
+    const rider = circle && this.place({ kind: "point", name: circle.point }, k);
     if (!axis || !rider) return null;
     const [dx, dy] = [axis[0] - rider[0], axis[1] - rider[1]];
-    const share = cam.radius / (Math.hypot(dx, dy) || 1);
+    const share = circle.radius / (Math.hypot(dx, dy) || 1);
     return [axis[0] + share * dx, axis[1] + share * dy];
   }
 
@@ -242,10 +242,10 @@ export class Stage<S extends Drawable = State> {
         if (!place) continue;
         const [px, py] = this.view.px(...place);
         move(element, [px, py]);
-        const [cam, axis] = this.circle({ kind, name }, k) ?? [];
-        if (!cam || !axis) continue;
+        const [circle, axis] = this.circle({ kind, name }, k) ?? [];
+        if (!circle || !axis) continue;
         const [cx, cy] = this.view.px(...axis);
-        set(element.firstElementChild as SVGElement, { cx: cx - px, cy: cy - py, r: cam.radius * this.view.scale });
+        set(element.firstElementChild as SVGElement, { cx: cx - px, cy: cy - py, r: circle.radius * this.view.scale });
       }
     }
   }
@@ -327,7 +327,7 @@ export class Stage<S extends Drawable = State> {
     if (held) this.grips.get(held)?.focus({ preventScroll: true }); // keys go on where they were
   }
 
-  private buildGrips({ movable, mass_centers, cams }: Scene): void {
+  private buildGrips({ movable, mass_centers, circles }: Scene): void {
     this.grips.clear();
     const add = (grip: Grip, ...parts: SVGElement[]) => {
       const halo = [s("circle", { class: "hit", r: 15 }), s("circle", { class: "halo", r: 11 })];
@@ -338,7 +338,7 @@ export class Stage<S extends Drawable = State> {
       this.layer.grips?.append(element);
     };
     // Those that are added later are above: joints are, because they are asked for more often.
-    for (const { name } of cams) add({ kind: "radius", name }, s("path", { class: "knob", d: "M0-6L6 0L0 6L-6 0z" }));
+    for (const { name } of circles) add({ kind: "radius", name }, s("path", { class: "knob", d: "M0-6L6 0L0 6L-6 0z" }));
     for (const name of mass_centers) {
       const signs = [
         s("circle", { class: "rim", r: 6.5 }),

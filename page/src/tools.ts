@@ -4,6 +4,7 @@ import type { Conversation } from "./conversation";
 import { s, set } from "./dom";
 import { degrees, length, lengths, signed } from "./format";
 import { Palette, TOOLS, type Tool } from "./palette";
+import { PART_TOOLS, partTool } from "./part_tools";
 import type { Made, Pair, State } from "./protocol";
 import { turnable, type Turning } from "./rim";
 import { type Hit, meant, type Snapping, step } from "./snap";
@@ -20,8 +21,7 @@ const ARROWS: Record<string, Pair> = {
 };
 
 /** Tools that need two clicks. */
-const COUPLING = new Set<Tool>(["gears", "belt", "rack", "cam"]);
-const TWO = new Set<Tool>(["link", "pin", "slider", ...COUPLING]);
+const TWO = new Set<Tool>(["link", "pin", "slider", ...PART_TOOLS.map(({ tool }) => tool)]);
 
 export interface Making extends Turning, Snapping {
   talk: Conversation;
@@ -296,7 +296,7 @@ export class Tools {
   private put(hit: Hit): void {
     if (TWO.has(this.tool) && !this.pending) {
       if (this.tool === "pin" && !hit.point) return;
-      if (COUPLING.has(this.tool) && !this.linkOf(hit)) return;
+      if (partTool(this.tool) && !this.linkOf(hit)) return;
       this.pending = hit;
       this.palette.show(this.tool, true);
       return;
@@ -310,6 +310,11 @@ export class Tools {
 
   private asked(hit: Hit, first: Hit | null): Made | null {
     const link = this.linkOf(hit);
+    const part = partTool(this.tool);
+    if (part) {
+      const driver = first && this.linkOf(first);
+      return driver && link ? part.made(driver, link, spot(hit), this.palette.options) : null;
+    }
     switch (this.tool) {
       case "point":
         return hit.point ? null : { do: "point", spot: spot(hit), on: hit.link ?? "frame" };
@@ -321,17 +326,6 @@ export class Tools {
         return first?.point ? this.pin(first.point, hit.point) : null;
       case "separate":
         return hit.point ? { do: "separate", point: hit.point } : null;
-      case "gears":
-      case "belt":
-      case "rack": {
-        const [teeth, driven_teeth] = this.palette.meshes;
-        const driver = first && this.linkOf(first);
-        return driver && link ? { do: this.tool, driver, driven: link, teeth, driven_teeth } : null;
-      }
-      case "cam": {
-        const driver = first && this.linkOf(first);
-        return driver && link ? { do: "cam", driver, driven: link, spot: spot(hit), rides: this.palette.rides } : null;
-      }
       case "drive":
         return link ? { do: "drive", link } : null;
       case "delete":
@@ -350,13 +344,12 @@ export class Tools {
   }
 
   /**
-   * The link that is meant; at a joint the one that turns about a point of the frame, and for a rack
-   * or a follower the one that slides.
+   * The link that is meant; at a joint the one that turns about a point of the frame, and for a part
+   * whose link may slide the one that does.
    */
   private linkOf(hit: Hit): string | undefined {
     const { bodies = [], frame = [] } = this.page.state()?.scene ?? {};
-    const slides = this.tool === "rack" || this.tool === "cam";
-    const block = slides && hit.part?.what === "slider" ? hit.part.name : "";
+    const block = partTool(this.tool)?.slides && hit.part?.what === "slider" ? hit.part.name : "";
     const sliding = bodies.find(({ name }) => block.startsWith(`${name} on `));
     if (sliding) return sliding.name;
     const met = bodies.filter(({ points }) => hit.point && points.includes(hit.point));

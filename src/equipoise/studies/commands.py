@@ -28,6 +28,8 @@ from equipoise.mechanism.assembly.steps import KernelCall
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.kinematics.strokes import dimension_of as of_stroke
 from equipoise.mechanism.outputs.declared import declared
+from equipoise.mechanism.parts.element_kinds import part_kinds
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.declaring import (
     ALONG,
     FIGURES_OF_LISTS,
@@ -41,7 +43,6 @@ from equipoise.signals import figures
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
-    from equipoise.mechanism.parts.machine import Machine
     from equipoise.quantities import Dimension
     from equipoise.studies.study import Output, Study
 
@@ -118,7 +119,7 @@ def figure_name(steps: Sequence[Step]) -> Any:
 def scale(values: Values, steps: Sequence[Step]) -> float:
     """By what the error of a figure is measured: the RMS of the signal that it is a figure of.
 
-    A turn where it is a crank angle, itself where it is of a cam, 1 where it is another number.
+    A turn where it is a crank angle, itself where it is of a part, 1 where it is another number.
     """
     if figure_name(steps) in PLACES or "phases" in steps:
         return 2 * pi
@@ -127,7 +128,7 @@ def scale(values: Values, steps: Sequence[Step]) -> float:
         return rms if isfinite(rms) else 1.0
     if isinstance(steps[-1], Of):
         return read(values, (*steps[:-1], Of("rms")))
-    return abs(read(values, steps)) or 1.0 if steps[0] == "cams" else 1.0
+    return abs(read(values, steps)) or 1.0 if steps[0] in part_kinds(Machine) else 1.0
 
 
 def _of_order(numbers: Any, order: float, orders: Any, key: Step) -> Any:

@@ -8,9 +8,10 @@ import numpy as np
 
 from equipoise.mechanism.assembly.cam_fits import CamFit, fitted, sharpest
 from equipoise.mechanism.assembly.cam_shapes import CamShape
+from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.parts.cams import Cam
-from equipoise.symbols.part_signs import Surroundings
+from equipoise.symbols.part_signs import DraggedCircle, Surroundings
 from equipoise.symbols.shapes import Array, BodyMark, circle, line
 
 CORNERS = 360
@@ -41,6 +42,12 @@ def cam_sign(cam: Cam, around: Surroundings) -> Iterator[BodyMark]:
         yield BodyMark(cam.driven, cam.point, circle("rider", 0j, cam.roller_radius))
     elif cam.rides == "flat":
         yield BodyMark(cam.driven, cam.point, line("face", *_face(fit, shape)))
+
+
+def base_circle(cam: Cam, joints: Structure) -> DraggedCircle:
+    """The circle by which the base radius is dragged."""
+    axis = joints.pins_between(cam.driver, cam.carrier)[0]
+    return DraggedCircle(cam.name, "base_radius", axis, cam.point)
 
 
 def _face(fit: CamFit, shape: CamShape) -> Array:

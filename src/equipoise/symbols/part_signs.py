@@ -37,21 +37,42 @@ class Surroundings:
     travel: Callable[[Slider], Any]
 
 
-Sign = Callable[[Any, Surroundings], Iterator[BodyMark]]
+@dataclass(frozen=True)
+class DraggedCircle:
+    """A circle about a point, of which a number of a part is the radius, m.
+
+    name : of the part.  key : of that number.  axis : the point.
+    point : that across from which the circle is dragged.
+    """
+
+    name: str
+    key: str
+    axis: str
+    point: str
 
 
 @cache
-def sign_of(kind: type[PartKind]) -> Sign | None:
-    """What draws parts of a kind; None where this has no sign of its own."""
-    module, _, name = kind.sign.partition(":")
-    sign: Sign | None = getattr(import_module(module), name) if module else None
-    return sign
+def named_function(name: str) -> Callable[..., Any] | None:
+    """The function that a kind of part names as ``module:function``; None where it names none."""
+    module, _, function = name.partition(":")
+    found: Callable[..., Any] | None = getattr(import_module(module), function) if module else None
+    return found
+
+
+def dragged_circles(
+    machine: Machine, joints: Structure
+) -> Iterator[tuple[str, int, PartKind, DraggedCircle]]:
+    """Circles by which numbers of parts are dragged, each with the list of its part, the part's
+    place there from 0, and the part.
+    """
+    for table, place, part in machine.parts:
+        if circle := named_function(part.dragged):
+            yield table, place, part, circle(part, joints)
 
 
 def signs_of(table: str, part: PartKind, around: Surroundings) -> list[BodyMark]:
     """The signs of a part, if its kind has one.  table : key of its list."""
-    kind: Any = type(part)
-    sign = sign_of(kind)
+    sign = named_function(part.sign)
     marks = sign(part, around) if sign else ()
     return [replace(mark, table=table, legend=part.legend) for mark in marks]
 

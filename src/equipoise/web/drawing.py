@@ -14,6 +14,7 @@ from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.looks import LOOKS
+from equipoise.symbols.part_signs import dragged_circles
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape
@@ -24,7 +25,7 @@ UNIT = 1.25
 """Pixels: size of a unit of signs on a page."""
 
 
-def stage_of(scene: Scene, handles: Sequence[str], cams: Sequence[Values] = ()) -> Values:
+def stage_of(scene: Scene, handles: Sequence[str], circles: Sequence[Values] = ()) -> Values:
     """Names and the drawing of a scene.
 
     signs : from the back to the front, each with its ``layer``, the ``link`` that it is, the
@@ -33,7 +34,7 @@ def stage_of(scene: Scene, handles: Sequence[str], cams: Sequence[Values] = ()) 
         role, whether it is closed, radius (m), and that in pixels, then x and y (m) and offsets
         from there (pixels) of each corner.
     looks : role -> style.
-    cams : see `cams_told`.
+    circles : see `circles_of`.
     """
     low, high = scene.box
     symbols = pieces(scene)
@@ -47,7 +48,7 @@ def stage_of(scene: Scene, handles: Sequence[str], cams: Sequence[Values] = ()) 
         "mass_centers": list(scene.mass_centers),
         "box": [low.real, low.imag, high.real, high.imag],
         "movable": list(handles),
-        "cams": list(cams),
+        "circles": list(circles),
         "signs": [
             {**_sign(scene, piece), "shapes": [next(shapes) for _ in piece.shapes]}
             for piece in symbols
@@ -72,20 +73,20 @@ def _sign(scene: Scene, piece: Piece) -> Values:
     }
 
 
-def cams_told(machine: Machine, joints: Structure) -> list[Values]:
-    """What a page needs to change base circles by hand: of each the path and the value of its
-    radius, the point about which the cam turns, and the point of the follower, across from which
-    the circle is taken hold of.
+def circles_of(machine: Machine, joints: Structure) -> list[Values]:
+    """What a page needs to change circles by hand: of each the list of its part, the path and the
+    value of its radius, its centre, and the point across from which it is dragged.
     """
     return [
         {
-            "name": cam.name,
-            "path": str(KeyPath(("cams", number, "base_radius"))),
-            "radius": cam.base_radius,
-            "axis": joints.pins_between(cam.driver, cam.carrier)[0],
-            "point": cam.point,
+            "name": circle.name,
+            "table": table,
+            "path": str(KeyPath((table, number, circle.key))),
+            "radius": getattr(part, circle.key),
+            "axis": circle.axis,
+            "point": circle.point,
         }
-        for number, cam in enumerate(machine.cams)
+        for table, number, part, circle in dragged_circles(machine, joints)
     ]
 
 

@@ -100,10 +100,11 @@ class SignValues(TypedDict):
     shapes: list[Shape]
 
 
-class BaseCircleValues(TypedDict):
-    """A base circle that can be dragged, opposite to the point of its follower."""
+class CircleValues(TypedDict):
+    """A circle that can be dragged, opposite to a point."""
 
     name: str
+    table: Annotated[str, "List of the file that has its part."]
     path: str
     radius: Annotated[float, "m"]
     axis: str
@@ -120,7 +121,7 @@ class SceneValues(TypedDict):
     mass_centers: list[str]
     box: tuple[float, float, float, float]
     movable: list[str]
-    cams: list[BaseCircleValues]
+    circles: list[CircleValues]
     signs: Annotated[list[SignValues], "From the back to the front."]
     reference: Annotated[Pair | None, "Centre of a support's rotation, m."]
     looks: Annotated[dict[str, str], "Role of a shape -> its style."]

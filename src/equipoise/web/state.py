@@ -18,7 +18,7 @@ from equipoise.results.machine_blocks import driven
 from equipoise.signals import Periodic
 from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.completeness import forces_lack
-from equipoise.web.drawing import cams_told, ground_of, moves_of, stage_of
+from equipoise.web.drawing import circles_of, ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed, kept_with_first, movable
 from equipoise.web.figures import charts_of, least_of, signals_of
 from equipoise.web.following import extent_of
@@ -72,7 +72,7 @@ def state_of(
         "length": {"unit": length.name, "factor": length.factor},
         "lacking": lacking,
         "shaken": machine.support is not None and not lacking,
-        "scene": stage_of(scene, movable(machine), cams_told(machine, motion.linkage.joints)),
+        "scene": stage_of(scene, movable(machine), circles_of(machine, motion.linkage.joints)),
         "traced": traced(motion),
         "first": first_of(machine)[0],
         "outputs": outputs_of(analysis),

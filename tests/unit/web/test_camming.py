@@ -148,12 +148,12 @@ def test_a_cam_is_deleted_and_goes_with_its_follower() -> None:
 def test_a_base_circle_is_dragged() -> None:
     page = with_lever(shaft())
     cam(page, "rocker", "roller")
-    (told,) = page.seen.content["scene"]["cams"]
-    assert told == {"name": "crank to rocker", "path": "cams[1].base_radius", "radius": 0.04,
-                    "axis": "A", "point": "D"}  # fmt: skip
+    (told,) = page.seen.content["scene"]["circles"]
+    assert told == {"name": "crank to rocker", "table": "cams", "path": "cams[1].base_radius",
+                    "radius": 0.04, "axis": "A", "point": "D"}  # fmt: skip
     edits = [{"set": told["path"], "value": 0.035}]
     shown = state(ask(page.session, "edit", edits=edits, label="x", commit=True)[0])
-    assert shown.content["scene"]["cams"][0]["radius"] == 0.035
+    assert shown.content["scene"]["circles"][0]["radius"] == 0.035
     assert page.machine.cams[0].base_radius == 0.035
     fields = {one["path"]: one["label"] for one in shown.content["fields"]}
     assert fields["cams[1].roller_radius"] == "crank to rocker, roller radius"

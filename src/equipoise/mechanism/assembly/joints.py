@@ -407,7 +407,7 @@ def given_properties(
     ModelError : there is no such joint, it is named twice, or it has no such property.
     """
     named, tables = named_joints(joints, reactions), dict[str, str]()
-    losing = {(coupling.table, coupling.name) for coupling in machine.couplings if coupling.loses}
+    couplings = {(coupling.table, coupling.name): coupling for coupling in machine.couplings}
     for where, item in numbered("joints", machine.joints):
         if item.joint not in named:
             raise ModelError(f"{where}.joint", unknown(item.joint, named, "joint"))
@@ -420,7 +420,7 @@ def given_properties(
                 )
                 raise ModelError(f"{where}.joint", note)
             in_slot = joint.name in joints.riders
-            loses = (joint.kind, joint.name) in losing
-            for problem in wrong_of_kind(where, item, joint.kind, in_slot, loses):
+            coupling = couplings.get((joint.kind, joint.name))
+            for problem in wrong_of_kind(where, item, joint.kind, in_slot, coupling):
                 raise problem
             yield where, joint, item

@@ -439,6 +439,7 @@ def with_friction(
             law.rates[k],
             joint.reach,
             "" if joint.mesh is None else joint.mesh.table,
+            joint.mesh is None or joint.on_surface,
         )
         for k, joint in enumerate(law.joints)
     ]

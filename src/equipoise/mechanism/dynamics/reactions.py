@@ -29,7 +29,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.cylinders import pushes
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
-from equipoise.mechanism.parts.joint_properties import CAMS, JOINTS
+from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.machine import FRAME
 
 ANGLES = 7
@@ -263,12 +263,14 @@ class JointFriction(Brief):
     """What a joint resists its motion with; arrays (N,).
 
     on, by : it acts on the first body.  is_pin : whether that turns, against the other.
-    effort : torque in a pin, N m, or force along the line of a slider, the surface of a cam, or
-        the pitch curves of gears of varying ratio, N; by damping and drag too.
+    effort : torque in a pin, N m, or force along the line of a slider, the surface that pushes a
+        follower, or the pitch curves of gears of varying ratio, N; by damping and drag too.
     pressing : what presses the surfaces on each other, N.
     rate : of the first body against the other, rad/s or m/s.
     reach : from the rate to the sliding speed: the radius of a pin, m; 1 of what slides.
-    table : list of the file that has it, of gears, belts and cams; empty of a joint.
+    table : list of the file that has it, of a coupling; empty of a joint.
+    wears : whether its surfaces slide by `rate` times `reach`: not of gears and belts, whose flanks
+        slide otherwise than their pitch circles turn.
     """
 
     on: str
@@ -279,6 +281,7 @@ class JointFriction(Brief):
     rate: Array
     reach: float
     table: str = ""
+    wears: bool = True
 
     @property
     def loss(self) -> Array:
@@ -286,16 +289,9 @@ class JointFriction(Brief):
         return -self.effort * self.rate
 
     @property
-    def wears(self) -> bool:
-        """Whether its surfaces slide by `rate` times `reach`: not of gears and belts, whose
-        flanks slide otherwise than their pitch circles turn.
-        """
-        return self.table in ("", CAMS)
-
-    @property
     def sliding_power(self) -> Array:
-        """What presses, times the sliding speed, W: its integral over time is what wears; 0 of
-        gears and belts, of which `wears` is false.
+        """What presses, times the sliding speed, W: its integral over time is what wears; 0 where
+        `wears` is false.
         """
         if not self.wears:
             return 0.0 * self.pressing

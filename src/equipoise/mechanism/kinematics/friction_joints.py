@@ -13,7 +13,6 @@ from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, Reaction, planar, size_of_links
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_kinds import JointKind
@@ -32,9 +31,9 @@ class RubbingJoint:
     name : in outputs.  reaction : its force.  given : what the file says of it.
     slider : the sliding joint that it is; None of a pin.  slot : that of a pin in one.
     still : rad or m by rad of the crank, below which it is at rest.
-    mesh : the gears, the rack or the belt that lose in passing their force on, or the cam on which
-        its follower slides; None of a joint.  A driven rack has its guide as `slider`.
-    pitch_radius : of the driven one of these, m; 1 of a driven rack, of a cam, and of gears of
+    mesh : the coupling that loses in passing its force on, or on whose surface a follower slides;
+        None of a joint.  A driven rack has its guide as `slider`.
+    pitch_radius : of the driven body of it, m; 1 of a driven rack, of a follower, and of gears of
         varying ratio, whose effort is a force along their pitch curves.
     centres : distance of the pins of gears of varying ratio, m; 0 of all else.
     """
@@ -59,23 +58,23 @@ class RubbingJoint:
 
     @property
     def by(self) -> str:
-        """The other body: of gears and belts their carrier, of a follower its cam."""
+        """The other body: of gears and belts their carrier, of a follower what pushes it."""
         if self.mesh is not None:
-            return self.mesh.driver if self.on_cam else self.mesh.carrier
+            return self.mesh.driver if self.on_surface else self.mesh.carrier
         guide = self.slider or self.slot
         return self.reaction.by if guide is None else guide.on
 
     @property
-    def on_cam(self) -> bool:
-        """Whether it is a follower that slides on its cam."""
+    def on_surface(self) -> bool:
+        """Whether it is a follower that slides on the surface that pushes it."""
         return self.mesh is not None and self.mesh.contact == "surface"
 
     @property
     def slides(self) -> bool:
-        """Whether its bodies slide on each other, along a guide, a slot or a cam, and do not
-        turn.
+        """Whether its bodies slide on each other, along a guide, a slot or a surface, and do
+        not turn.
         """
-        return self.slider is not None or self.slot is not None or self.on_cam
+        return self.slider is not None or self.slot is not None or self.on_surface
 
     @property
     def reach(self) -> float:
@@ -124,8 +123,8 @@ class RubbingJoint:
         """How fast it turns (rad) or slides (m) by rad of the crank (N,); 0 where it rests."""
         if self.slot is not None:
             rate = self._rate_along(self.slot, motion)
-        elif self.on_cam:
-            rate = self._rate_on_cam(motion)
+        elif self.on_surface:
+            rate = self._rate_on_surface(motion)
         elif self.slider is None:
             turns = [motion.state[f"w({body})"] for body in (self.on, self.by)]
             rate = np.asarray(turns[0] - turns[1], float) * self.lever(motion)
@@ -136,9 +135,9 @@ class RubbingJoint:
 
     def place(self, motion: Motion) -> Array:
         """Where what slides rubs (N,), m, complex: of a rack where it meets its pinion, of a
-        follower where it is on its cam.
+        follower where it touches what pushes it.
         """
-        if self.on_cam:
+        if self.on_surface:
             contact = motion.state[f"p(contact({self.name}))"]
             return np.asarray(np.broadcast_to(contact, motion.crank_angle.shape))
         if self.mesh is not None:
@@ -151,10 +150,10 @@ class RubbingJoint:
         return motion.point(guide.point).place
 
     def direction(self, motion: Motion) -> Array:
-        """Unit vector (N,) along the line of a slider, along a slot at its pin, or along a cam
-        where its follower is, complex.
+        """Unit vector (N,) along the line of a slider, along a slot at its pin, or along a
+        surface where its follower is, complex.
         """
-        if self.on_cam:
+        if self.on_surface:
             line = -1j * motion.state[f"normal({self.name})"]
         elif self.slot is not None:
             rider = motion.linkage.joints.riders[self.slot.name]
@@ -164,13 +163,15 @@ class RubbingJoint:
             line = motion.state[f"u({self.slider.on})"] * np.exp(1j * self.slider.direction)
         return np.asarray(np.broadcast_to(line, motion.crank_angle.shape), complex)
 
-    def _rate_on_cam(self, motion: Motion) -> Array:
-        """How fast the follower slides along its cam, m by rad of the crank (N,)."""
-        cam, at = self.mesh, self.place(motion)
-        assert isinstance(cam, Cam)
+    def _rate_on_surface(self, motion: Motion) -> Array:
+        """How fast the follower slides along the surface that pushes it, m by rad of the crank
+        (N,).
+        """
+        mesh, at = self.mesh, self.place(motion)
+        assert mesh is not None
         rates = []
-        pin = motion.linkage.joints.pins_between(cam.driver, cam.carrier)[0]
-        for body, point in ((cam.driven, cam.point), (cam.driver, pin)):
+        pin = motion.linkage.joints.pins_between(mesh.driver, mesh.carrier)[0]
+        for body, point in (*mesh.points, (mesh.driver, pin)):
             own = motion.point(point)
             rates.append(own.place_1 + 1j * motion.state[f"w({body})"] * (at - own.place))
         return np.asarray(dot(self.direction(motion), rates[0] - rates[1]))
@@ -222,7 +223,7 @@ def _rubbing(linkage: Linkage) -> Iterator[RubbingJoint]:
 def _passing_on(
     linkage: Linkage, mesh: Coupling, reaction: Reaction, entry: JointProperties, still: float
 ) -> RubbingJoint:
-    """A coupling that loses a share of what it passes on, or a cam on which its follower slides;
+    """A coupling that loses a share of what it passes on, or on whose surface a follower slides;
     still : m by rad of the crank.
     """
     guide = guide_of(linkage, mesh)

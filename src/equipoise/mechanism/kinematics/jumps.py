@@ -25,8 +25,7 @@ from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.signals import JumpSampling
 
 ANGLES = 720
-"""In a turn, between two of which a cam passes a knot of its law, or a tip the soil's surface, once
-at most."""
+"""In a turn, between two of which a law passes a knot at most once, or a tip the surface."""
 SAME = 1e-9
 """rad, within which jumps are one."""
 ACCELERATION = 2

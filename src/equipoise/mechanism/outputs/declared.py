@@ -126,7 +126,7 @@ def body_named(name: str) -> str:
 
 
 def coupling_named(name: str) -> str:
-    """A gear, belt or cam by its two bodies, such as ``frame to idler``, in words."""
+    """A coupling by its two bodies, such as ``frame to idler``, in words."""
     return " → ".join(map(body_named, name.split(" to ")))
 
 
@@ -523,7 +523,7 @@ def _members_of(table: str) -> dict[str, Any]:
 
 
 def of_mesh(table: str) -> None:
-    """Declare what gears, belts or cams of a list of the file lose in passing their force on."""
+    """Declare what couplings of a list of the file lose in passing their force on."""
 
     def members(machine: Any) -> list[str]:
         given = {joint.joint for joint in machine.joints if joint.rubs}

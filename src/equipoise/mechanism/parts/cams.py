@@ -39,6 +39,7 @@ class Cam(Coupling):
     called = to_say("{what} of cam {number}")
     table: ClassVar[str] = "cams"
     sign = "equipoise.symbols.cams:cam_sign"
+    dragged = "equipoise.symbols.cams:base_circle"
     noun = to_say("cam")
     group = to_say("cams")
     columns: ClassVar[Mapping[PathPattern, Set[str]]] = {

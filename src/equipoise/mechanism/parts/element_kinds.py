@@ -68,6 +68,8 @@ class PartKind(Frozen):
     legend : role among its signs, and what a picture's legend calls that; empty where none does.
     sign : ``module:function`` of the room of symbols that draws it, from the part and its
         surroundings to marks; empty where it has no sign of its own.
+    dragged : ``module:function`` of the room of symbols that tells by which circle a number of the
+        part is dragged on a drawing; empty where none is.
     tables : ``module:function`` that shows what an analysis says of all parts of the kind, by the
         chapter in which that stands, ``motion`` or ``joints``.
     special : what it is called by formats of other programs, some of which lack it; empty of what
@@ -78,6 +80,7 @@ class PartKind(Frozen):
     group: ClassVar[str]
     special: ClassVar[Any] = ""
     sign: ClassVar[str] = ""
+    dragged: ClassVar[str] = ""
     tables: ClassVar[Mapping[str, str]] = {}
     legend: ClassVar[tuple[str, str] | None] = None
 

@@ -7,11 +7,14 @@ or clearance, is a further key here.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import Conditions, Frozen, KeyTable, Number, TextKind, any_of, declared, key
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.parts.couplings import Coupling
 
 EXPONENTS = {"ball": 3.0, "roller": 10 / 3}
 """By which a bearing's life falls with its load, ISO 281."""
@@ -50,8 +53,6 @@ class RollingBearing(Frozen):
 
 JOINTS = ("pin", "slider")
 """Kinds of joints that hold bodies together, which no coupling is."""
-CAMS = "cams"
-"""The list of couplings whose followers slide, with friction as sliders have it."""
 OF_PIN = ("radius", "torsional_damping", "drag_torque", "width", "bearing")
 OF_SLIDER = ("guide_length", "damping", "drag_force")
 LOADED = ("friction", "mesh_loss")
@@ -235,14 +236,17 @@ def _wrong_friction(where: str, properties: JointProperties) -> Iterator[ModelEr
 
 
 def wrong_of_kind(
-    where: str, properties: JointProperties, kind: str, in_slot: bool, loses: bool = False
+    where: str,
+    properties: JointProperties,
+    kind: str,
+    in_slot: bool,
+    coupling: Coupling | None = None,
 ) -> Iterator[ModelError]:
     """Report properties that a joint of this kind does not have, or lacks.
 
-    in_slot : whether it is a pin in a slot.  loses : whether it may lose a share of what it passes
-        on.
+    in_slot : whether it is a pin in a slot.  coupling : that the joint is.
     """
-    if properties.mesh_loss is not None and not loses:
+    if properties.mesh_loss is not None and not (coupling is not None and coupling.loses):
         note = Note("{joint!r} is no belt, rack or pair of gears; leave it out",
                     joint=properties.joint)  # fmt: skip
         yield ModelError(f"{where}.mesh_loss", note)
@@ -253,7 +257,8 @@ def wrong_of_kind(
         note = Note("{joint!r} is no pin and has no radius; leave it out", joint=properties.joint)
         yield ModelError(f"{where}.radius", note)
     yield from _wrong_for_motion(where, properties, kind, in_slot)
-    if properties.friction is not None and kind not in (*JOINTS, CAMS):
+    slides = coupling is not None and coupling.contact == "surface"
+    if properties.friction is not None and not (slides or kind in JOINTS):
         what = to_say("{joint!r} is no pin, slider or cam; leave friction out")
         note = Note(what, joint=properties.joint)
         yield ModelError(f"{where}.friction", note)
