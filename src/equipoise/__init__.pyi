@@ -16,9 +16,9 @@ from .exchange.export import export as export
 from .exchange.reading.formats import import_machine as import_machine
 from .mechanism.dynamics.forces import forces as forces
 from .mechanism.kinematics.motion import move as move
-from .mechanism.parts.machine import Cam as Cam
+from .mechanism.parts.cams import Cam as Cam
+from .mechanism.parts.gears import Gear as Gear
 from .mechanism.parts.machine import Drive as Drive
-from .mechanism.parts.machine import Gear as Gear
 from .mechanism.parts.machine import Link as Link
 from .mechanism.parts.machine import Load as Load
 from .mechanism.parts.machine import Machine as Machine

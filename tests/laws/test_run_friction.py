@@ -169,9 +169,9 @@ def with_losses(name: str, loss: float = 0.05) -> eq.Machine:
         if not hasattr(force, "normal")
     ]
     joints += [
-        JointProperties(f"{mesh.table}.{mesh.name}", mesh_loss=loss)
+        JointProperties(f"{mesh.list_name}.{mesh.name}", mesh_loss=loss)
         for mesh in machine.couplings
-        if mesh.table in ("gears", "racks", "belts")
+        if mesh.list_name in ("gears", "racks", "belts")
     ]
     return replace(machine, joints=tuple(joints), balance=None, run=None)
 

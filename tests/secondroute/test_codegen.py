@@ -18,9 +18,10 @@ from equipoise.errors import UsageError
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.reactions import idle_told
+from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.laws import LengthLaw
-from equipoise.mechanism.parts.machine import Gear, Machine
+from equipoise.mechanism.parts.machine import Machine
 from support import free_bodies, machines_cams
 from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of, wanted_of
 from support.chosen import DISTINCT, few, model_of

@@ -23,7 +23,8 @@ from scipy.optimize import differential_evolution, minimize
 from scipy.signal import resample
 
 import equipoise as eq
-from equipoise.mechanism.parts.machine import Gear, Link, Machine
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import Link, Machine
 from support.poses import Array, drive_pivot
 
 SAMPLES = 720

@@ -18,7 +18,8 @@ from equipoise.codegen.emit import can_emit
 from equipoise.codegen.figures import Figure
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.outputs.declared import declared
-from equipoise.mechanism.parts.machine import Gear, Machine, Slider
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import Machine, Slider
 from equipoise.signals import EQUAL, Figures
 from support.designs import Array, size_of
 from support.machines import KINDS, make

@@ -22,7 +22,8 @@ from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
-from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Gear, Machine
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Machine
 from equipoise.mechanism.parts.racks import Rack
 from support.cams import line_of_force
 from support.loads import loads_by_end, on_links, springs_on_links

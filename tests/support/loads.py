@@ -11,7 +11,8 @@ from scipy.optimize import minimize_scalar
 
 import equipoise as eq
 from equipoise.mechanism.parts.field import Planting
-from equipoise.mechanism.parts.machine import FRAME, Load, LoadTable, Machine, Spring, Vector
+from equipoise.mechanism.parts.machine import FRAME, Load, LoadTable, Machine, Vector
+from equipoise.mechanism.parts.springs import Spring
 from support.machines_torsion import torsion_on_links
 from support.poses import Array, Poses, cross
 

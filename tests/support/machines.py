@@ -14,18 +14,18 @@ from typing import Literal
 import numpy as np
 from hypothesis import strategies as st
 
+from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import (
     FRAME,
     Drive,
-    Gear,
     Link,
     Load,
     LoadTable,
     Machine,
     Slider,
-    Spring,
     Vector,
 )
+from equipoise.mechanism.parts.springs import Spring
 from support import machines_belts
 from support.machines_drives import moved, two_driven
 from support.machines_torsion import torsion_sprung

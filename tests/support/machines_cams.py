@@ -13,7 +13,8 @@ import numpy as np
 from equipoise.errors import ModelError, MotionError
 from equipoise.mechanism.parts.cams import RIDES, Cam
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
-from equipoise.mechanism.parts.machine import FRAME, Drive, Machine, Position, Slider, Spring
+from equipoise.mechanism.parts.machine import FRAME, Drive, Machine, Position, Slider
+from equipoise.mechanism.parts.springs import Spring
 from support.cams import Cut
 from support.machines import Case, Draft, _draft, _four_bar, _scaled, _unit
 from unit.mechanism.build import heavy

@@ -8,7 +8,8 @@ from fractions import Fraction
 import numpy as np
 
 from equipoise.mechanism.parts.gear_shapes import GearShape
-from equipoise.mechanism.parts.machine import FRAME, Gear
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.pitch_curves import law_of
 from support.machines import Case, _four_bar, _scaled, _spot, arm_with_planet
 

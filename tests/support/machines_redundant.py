@@ -9,7 +9,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Gear, Slider
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Slider
 from support.machines import Case, Draft, _draft, _spot, _unit, slider_crank
 from support.newton import Constraints, closed
 from support.poses import Array

@@ -14,7 +14,8 @@ import numpy as np
 
 from equipoise.exchange.formats import Job
 from equipoise.exchange.mjcf import export_bytes
-from equipoise.mechanism.parts.machine import FRAME, Machine, Spring, Vector
+from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
+from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from support.loads import work_per_crank_angle
 from support.poses import Array, Poses, cross, drive_pivot, quarter, turned

@@ -16,15 +16,8 @@ import numpy as np
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
-from equipoise.mechanism.parts.machine import (
-    FRAME,
-    Drive,
-    FurtherDrive,
-    Gear,
-    Machine,
-    Slider,
-    Vector,
-)
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Machine, Slider, Vector
 from equipoise.mechanism.parts.racks import Rack
 from support.driving import driven
 from support.driving import followed as followed_law

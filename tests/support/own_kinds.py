@@ -18,10 +18,11 @@ from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.javascript import javascript
 from equipoise.errors import ModelError, UsageError
+from equipoise.keys import KeyTable, Tables, declared, key
 from equipoise.mechanism import Machine
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.outputs.declared import GROUPS, declaring
-from equipoise.mechanism.parts.element_kinds import declare_outputs
+from equipoise.mechanism.parts.element_kinds import PartKind, declare_outputs
 from equipoise.schema.reading import Context, read_table
 from equipoise.schema.writing import Writer, toml_text
 from equipoise.symbols.pieces import pieces
@@ -34,6 +35,13 @@ from equipoise.web.tables import tables_of
 from secondroute.test_javascript import run
 
 Made = TypeVar("Made", bound=Machine)
+
+
+def machine_with(kind: type[PartKind]) -> type[Machine]:
+    """Machines that may have parts of a kind, as `part_lists` would have them."""
+    lists = key(Tables(KeyTable(kind)), kind.list_text, default=(), kw_only=True)
+    body = {"__annotations__": {kind.list_name: tuple[kind, ...]}, kind.list_name: lists}
+    return declared(type(f"MachineWith{kind.__name__}", (Machine,), body))
 
 
 def own_outputs(of: type[Machine]) -> Any:

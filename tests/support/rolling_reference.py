@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from scipy.special import roots_legendre
 
 from equipoise.mechanism.parts.gear_shapes import GearShape
-from equipoise.mechanism.parts.machine import Gear
+from equipoise.mechanism.parts.gears import Gear
 
 STEP = 1e-30
 NODES, WEIGHTS = roots_legendre(30)

@@ -35,7 +35,8 @@ from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.formulas.kernels import about
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.balance import Balance, BalanceShafts, GearedWeight
-from equipoise.mechanism.parts.machine import Gear, Link, Machine, Vector
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import Link, Machine, Vector
 from equipoise.signals import Array
 
 GRID, COARSE, WAYS = 33, 13, 24

@@ -290,5 +290,5 @@ def numbered(machine: Machine) -> Iterator[tuple[KeyPath, Coupling]]:
     """Couplings, each with its path in the file."""
     counts: Counter[str] = Counter()
     for coupling in machine.couplings:
-        yield KeyPath((coupling.table, counts[coupling.table])), coupling
-        counts[coupling.table] += 1
+        yield KeyPath((coupling.list_name, counts[coupling.list_name])), coupling
+        counts[coupling.list_name] += 1

@@ -38,7 +38,7 @@ def ratios(analysis: Analysis) -> Iterator[Chart]:
             signal = {ALL: with_figures(analysis, driven / driver)}
             panel = compared(angle_axis(analysis), label, None, signal)
             what = say("Speed ratio on the carrier")
-            name = f"{item.table}-{item.driven.translate(FORBIDDEN)}"
+            name = f"{item.list_name}-{item.driven.translate(FORBIDDEN)}"
             yield Chart(name, analysis.machine.title, title(analysis, what), (panel,))
 
 
@@ -58,6 +58,6 @@ def curves(analysis: Analysis) -> Iterator[tuple[Chart, str]]:
     for item in analysis.machine.couplings:
         if item.curves is not None:
             outputs, what, caption = item.curves
-            names = [f"{item.table}.{item.name}.{output}" for output in outputs]
+            names = [f"{item.list_name}.{item.name}.{output}" for output in outputs]
             name = f"{item.noun.replace(' ', '-')}-{item.driven.translate(FORBIDDEN)}"
             yield outputs_chart(analysis, names, name, say(what)), caption

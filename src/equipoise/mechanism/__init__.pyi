@@ -14,6 +14,7 @@ from .parts.belts import Belt as Belt
 from .parts.bodies import Body as Body
 from .parts.bodies import Hole as Hole
 from .parts.bushings import Bushing as Bushing
+from .parts.cams import Cam as Cam
 from .parts.circular_slots import CircularSlot as CircularSlot
 from .parts.curved_slots import CurvedSlot as CurvedSlot
 from .parts.dampers import Damper as Damper
@@ -25,12 +26,11 @@ from .parts.field import SoilTable as SoilTable
 from .parts.force_elements import GasTable as GasTable
 from .parts.force_elements import Motor as Motor
 from .parts.force_elements import MotorTable as MotorTable
+from .parts.gears import Gear as Gear
 from .parts.indicator_diagrams import IndicatorDiagram as IndicatorDiagram
 from .parts.joint_properties import JointProperties as JointProperties
 from .parts.joint_properties import RollingBearing as RollingBearing
-from .parts.machine import Cam as Cam
 from .parts.machine import Drive as Drive
-from .parts.machine import Gear as Gear
 from .parts.machine import Link as Link
 from .parts.machine import Load as Load
 from .parts.machine import LoadTable as LoadTable

@@ -270,8 +270,8 @@ def sided_meshes(linkage: Linkage) -> tuple[RubbingJoint, ...]:
     return tuple(
         RubbingJoint(
             mesh.name,
-            by_name[mesh.table, mesh.name],
-            JointProperties(f"{mesh.table}.{mesh.name}"),
+            by_name[mesh.list_name, mesh.name],
+            JointProperties(f"{mesh.list_name}.{mesh.name}"),
             None,
             0.0,
             mesh,

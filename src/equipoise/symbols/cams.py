@@ -31,7 +31,7 @@ def cam_sign(cam: Cam, around: Surroundings) -> Iterator[BodyMark]:
         flanks = {"groove": shape.offset_curve(2 * shape.radius), **flanks}
     for role, flank in flanks.items():
         yield BodyMark(
-            cam.driver, fit.cam_pin, line(role, *flank, closed=True), (cam.table, cam.name)
+            cam.driver, fit.cam_pin, line(role, *flank, closed=True), (cam.list_name, cam.name)
         )
     if cam.closed_by == "ribs":
         inside = -min(RIB * cam.base_radius, sharpest(fit)[0] / 2)

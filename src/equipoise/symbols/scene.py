@@ -56,7 +56,7 @@ def called(wheels: Sequence[Wheel]) -> str:
     """What these are called together."""
     if any(wheel.curve is not None for wheel in wheels):
         return say("pitch curves of gears")
-    if any(wheel.part[0] == Gear.table for wheel in wheels):
+    if any(wheel.part[0] == Gear.list_name for wheel in wheels):
         return say("pitch circles of gears")
     return say("pitch circles of pulleys and pinions")
 
@@ -78,7 +78,7 @@ def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) ->
             curves = _curves(coupling, coupling.law, driver - driven, angles)
         for (body, radius), pin, curve in zip(wheels, pins, curves, strict=False):
             size = radius if curve is None else float(np.max(np.abs(curve)))
-            yield Wheel(body, pin, size, (coupling.table, coupling.name), curve)
+            yield Wheel(body, pin, size, (coupling.list_name, coupling.name), curve)
 
 
 def _distance(joints: Structure, bodies: Bodies, coupling: Coupling) -> float:

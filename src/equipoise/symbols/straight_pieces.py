@@ -30,7 +30,7 @@ def strand_sign(belt: Belt, around: Surroundings) -> Iterator[BodyMark]:
         return
     for side in (LEFT, RIGHT):
         strand = line("strand", *strands.ends(side))
-        yield BodyMark(belt.carrier, driver, strand, (belt.table, belt.name))
+        yield BodyMark(belt.carrier, driver, strand, (belt.list_name, belt.name))
 
 
 def rack_sign(rack: Rack, around: Surroundings) -> Iterator[BodyMark]:
@@ -50,7 +50,7 @@ def rack_sign(rack: Rack, around: Surroundings) -> Iterator[BodyMark]:
     toward = 1j * rack.left  # the pinion, of a bar along the x axis
     corners = low + 1j * foot.imag + _bar(high - low, rack.radius, toward)
     bar = line("wheel", *(corners / guide.turn), closed=True)
-    yield BodyMark(rack.rack, guide.point, bar, (rack.table, rack.name))
+    yield BodyMark(rack.rack, guide.point, bar, (rack.list_name, rack.name))
 
 
 def _bar(length: float, radius: float, toward: complex) -> Array:

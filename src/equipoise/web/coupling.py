@@ -17,7 +17,8 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.couplings import Coupling
-from equipoise.mechanism.parts.machine import FRAME, Gear
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean
 from equipoise.web.additions import COINCIDENT, check_body, the
@@ -95,8 +96,8 @@ def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
 
 
 def _added(sketch: Sketch, coupling: Coupling) -> Sketch:
-    others = sketch.rest.get(coupling.table, ())
-    return replace(sketch, rest={**sketch.rest, coupling.table: (*others, coupling)})
+    others = sketch.rest.get(coupling.list_name, ())
+    return replace(sketch, rest={**sketch.rest, coupling.list_name: (*others, coupling)})
 
 
 def _shared(sketch: Sketch, body: str, carrier: str) -> list[str]:

@@ -90,7 +90,7 @@ def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> Values | None:
     coupling = next(
         coupling
         for coupling in joints.couplings
-        if (coupling.table, coupling.name) == (table, name)
+        if (coupling.list_name, coupling.name) == (table, name)
     )
     link = FRAME if piece.hold is None else piece.hold.link
     if shape.role == "strand":
@@ -170,7 +170,7 @@ def _strand(motion: Motion, shape: Shape, belt: Any) -> Values | None:
 def _made_of(motion: Motion, table: str, name: str) -> Iterator[str]:
     """Numbers from which the shape of a coupling, as it is drawn, is computed."""
     joints = motion.linkage.joints
-    couplings = [coupling for coupling in joints.couplings if coupling.table == table]
+    couplings = [coupling for coupling in joints.couplings if coupling.list_name == table]
     number, coupling = next(
         (k, coupling) for k, coupling in enumerate(couplings) if coupling.name == name
     )

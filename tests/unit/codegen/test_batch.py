@@ -19,7 +19,8 @@ from equipoise.codegen.figures import GATHERED, PLACES, Figure, Gathered, figure
 from equipoise.errors import ChangePointError, ModelError, RangeError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.gear_shapes import GearShape
-from equipoise.mechanism.parts.machine import Gear, Load, LoadTable, Machine, Slider
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import Load, LoadTable, Machine, Slider
 from support.batches import WRITTEN, by_numpy, known_of, wanted_of
 from support.chosen import few
 from support.designs import (

@@ -20,7 +20,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note
-from equipoise.keys import KeyTable, Listing, Quantity, Tables, declared, key
+from equipoise.keys import Listing, Quantity, declared, key
 from equipoise.mechanism import Gear, Machine
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import Bodies
@@ -36,6 +36,7 @@ from support.own_kinds import (
     drawn,
     exported,
     found_in_the_gallery,
+    machine_with,
     on_the_page,
     own_outputs,
     read_back,
@@ -52,7 +53,8 @@ class Rollers(Turning):
     """Two rollers that drive each other by friction."""
 
     called = "{what} of rollers {number}"
-    table: ClassVar[str] = "rollers"
+    list_name = "rollers"
+    list_text = "rollers"
     noun = "pair of rollers"
     group = "rollers"
     heading = Note("Rollers")
@@ -101,13 +103,7 @@ class Rollers(Turning):
                 loop=lambda value: value("coupling part", "friction"))  # fmt: skip
 
 
-@declared
-class Rolled(Machine):
-    """A machine that may have rollers."""
-
-    rollers: tuple[Rollers, ...] = key(Tables(KeyTable(Rollers)), "rollers", default=())
-
-
+Rolled = machine_with(Rollers)
 BASE = eq.load("geared-counterweight")
 (GEAR,) = BASE.gears
 RADII = (0.05, 0.05 / abs(GEAR.speed_ratio))
@@ -115,7 +111,7 @@ ROLLERS = Rollers(GEAR.driver, GEAR.driven, RADII, carrier=GEAR.carrier, start=G
 NAME = ROLLERS.name
 
 
-def rolled(*rollers: Rollers) -> Rolled:
+def rolled(*rollers: Rollers) -> Machine:
     return with_own(Rolled, BASE, gears=(), balance=None, rollers=rollers)
 
 

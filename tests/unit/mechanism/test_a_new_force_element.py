@@ -13,7 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.keys import KeyTable, Tables, TextKind, declared, key
+from equipoise.keys import TextKind, declared, key
 from equipoise.mechanism import Machine
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_link
 from equipoise.mechanism.parts.element_kinds import Placed
@@ -25,6 +25,7 @@ from support.own_kinds import (
     designs_by_numbers,
     drawn,
     exported,
+    machine_with,
     on_the_page,
     own_outputs,
     read_back,
@@ -39,6 +40,8 @@ class Magnet(ForceElement):
     """It draws a point of a link towards a point of the frame, by a force that falls with way."""
 
     called = "{what} of magnet {number}"
+    list_name = "magnets"
+    list_text = "magnets"
     sign = f"{__name__}:magnet_sign"
     title = "Magnets"
     group = "magnets"
@@ -102,14 +105,10 @@ def magnet_sign(one: Magnet, *_: Any) -> Iterator[BodyMark]:
     yield BodyMark(one.link, one.point, circle("spiral", 0j, 0.01))
 
 
-@declared
-class Magnetic(Machine):
-    """A machine that may have magnets."""
-
-    magnets: tuple[Magnet, ...] = key(Tables(KeyTable(Magnet)), "magnets", default=())
+Magnetic = machine_with(Magnet)
 
 
-def magnetic(*magnets: Magnet) -> Magnetic:
+def magnetic(*magnets: Magnet) -> Machine:
     return with_own(Magnetic, eq.load("spring-balanced-crank"), springs=(), magnets=magnets)
 
 

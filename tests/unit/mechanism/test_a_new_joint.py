@@ -17,7 +17,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.keys import KeyTable, Tables, TextKind, declared, key, with_fields
+from equipoise.keys import TextKind, declared, key, with_fields
 from equipoise.mechanism import Machine
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import JointKind, Rider
@@ -31,6 +31,7 @@ from support.own_kinds import (
     drawn,
     exported,
     found_in_the_gallery,
+    machine_with,
     on_the_page,
     own_outputs,
     read_back,
@@ -46,6 +47,8 @@ class StraightSlot(JointKind):
     """A pin of a link in a straight slot of a body."""
 
     called = "{what} of straight slot {number}"
+    list_name = "straight_slots"
+    list_text = "straight slots"
     sign = f"{__name__}:slot_sign"
     base = "through"
     title = "Straight slots"
@@ -85,21 +88,13 @@ def slot_sign(one: StraightSlot, *_: Any) -> Iterator[BodyMark]:
     yield BodyMark(one.on, one.through, circle("path-edge", 0j, 0.01))
 
 
-@declared
-class Slotted(Machine):
-    """A machine that may have straight slots."""
-
-    straight_slots: tuple[StraightSlot, ...] = key(
-        Tables(KeyTable(StraightSlot)), "straight slots", default=()
-    )
-
-
+Slotted = machine_with(StraightSlot)
 SLOT = StraightSlot("rod", "C", "frame", "A", 0.1, 0.01)
 BASE = eq.load("slider-crank-engine")
 ROD = Link({"B": (0.0, 0.0), "C": (0.14, 0.0)}, mass=0.4, center_of_mass=(0.05, 0.01), inertia=1e-3)
 
 
-def slotted(*slots: StraightSlot) -> Slotted:
+def slotted(*slots: StraightSlot) -> Machine:
     """A crank and a rod whose end is in a slot."""
     links = {"crank": BASE.links["crank"], "rod": ROD}
     sides = {one.name: "forward" for one in slots}

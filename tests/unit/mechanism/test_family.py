@@ -22,7 +22,8 @@ from equipoise.mechanism.assembly.family import (
 )
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.parts.gear_shapes import GearShape
-from equipoise.mechanism.parts.machine import Gear, Machine
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.pitch_curves import law_of
 from support.batches import every_dyad
 from support.chosen import few

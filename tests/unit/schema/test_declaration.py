@@ -13,7 +13,7 @@ from jsonschema import Draft202012Validator
 from equipoise.errors import ModelError
 from equipoise.handheld import design_plan, shaft, station
 from equipoise.handheld import model as tool
-from equipoise.keys import Frozen, KeyTable, Number, Tables, TextKind, declared, key, wrong_values
+from equipoise.keys import Frozen, Number, TextKind, declared, key, wrong_values
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts import (
     balance,
@@ -62,6 +62,7 @@ from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
 from equipoise.web.messages import Entry
 from equipoise.web.tables import entered, tables_of
+from support.own_kinds import machine_with
 from support.refusals import refused
 from unit.schema.samples import FOUR_BAR
 
@@ -179,13 +180,7 @@ class LossySpring(Spring):
     loss: float = key("damping", "of the spring itself", default=0.0, at_least=0)
 
 
-@declared
-class LossyMachine(Machine):
-    """Machines with such springs."""
-
-    springs: tuple[LossySpring, ...] = key(Tables(KeyTable(LossySpring)), "springs", default=())
-
-
+LossyMachine = machine_with(LossySpring)
 SPRING = '\n[[springs]]\nlink = "rocker"\npoint = "C"\nto = "A"\nstiffness = "2 kN/m"\n'
 LOSSY = f'{SPRING}loss = "3 N s/m"\n'
 

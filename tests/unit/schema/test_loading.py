@@ -13,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from equipoise.errors import EquipoiseError, ModelError
-from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Gear
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import STANDARD_GRAVITY
 from equipoise.schema import examples, load, loads, open_files
 from support.refusals import refused
 from unit.schema.samples import EVERYTHING, FOUR_BAR

@@ -27,7 +27,9 @@ from equipoise.exchange.reading.spatial import (
 )
 from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.machine_draft import STILL, LinkPlacement, MachineDraft
-from equipoise.mechanism.parts.machine import FRAME, Gear, Link, Slider, Spring, Vector
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import FRAME, Link, Slider, Vector
+from equipoise.mechanism.parts.springs import Spring
 from equipoise.quantities import clean_place
 
 SAME = 1e-9

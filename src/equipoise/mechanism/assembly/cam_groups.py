@@ -71,7 +71,7 @@ class CamPush:
         base = end(cam.carrier, fit.pin if fit.guide is None else fit.guide.base)
         kernel, numbers = cam.relation
         return CamLoop(
-            cam.name, cam.table, on, by, cam.carrier, kernel, numbers, 0.0, self, None,
+            cam.name, cam.list_name, on, by, cam.carrier, kernel, numbers, 0.0, self, None,
             end(cam.driven, cam.point), end(cam.carrier, fit.cam_pin), base,
         )  # fmt: skip
 
@@ -239,7 +239,7 @@ def _at(cam: Cam) -> str:
 def _forces(builder: Builder, joints: Structure, fit: CamFit) -> tuple[Any, ...]:
     """Reactions of joint and cam on the follower, and the step that finds them."""
     cam, link = fit.cam, fit.cam.driven
-    push = Reaction(cam.name, cam.table, link, cam.driver, _at(cam), f"R({cam.name}/{link})")
+    push = Reaction(cam.name, cam.list_name, link, cam.driver, _at(cam), f"R({cam.name}/{link})")
     pressed = (*push.outputs, f"T({cam.name})")
     touching = (f"p({_at(cam)})", f"normal({cam.name})")
     inputs: tuple[str, ...] = (*demand_names(link), f"p({fit.joint})", *touching)

@@ -116,7 +116,7 @@ class Flank:
         name, link = self.coupling.name, self.driven.body
         at, couple = (self.pin, f"C({name}/{link})") if self.couples else (f"pitch({name})", None)
         force = f"R({name}/{link})"
-        return Reaction(name, self.coupling.table, link, self.driver.body, at, force, couple)
+        return Reaction(name, self.coupling.list_name, link, self.driver.body, at, force, couple)
 
     def steps(self, ground: Reaction) -> tuple[Step, ...]:
         """Steps that find the push, and what holds the driven body on the carrier: `ground`.
@@ -191,7 +191,7 @@ class Flank:
                 rides = Rides(own, end(coupling.carrier, entry.guide.base), entry.guide.along)
         placed = replace(self, arm=end(coupling.carrier, self.pin).arm)
         kernel, numbers = coupling.relation
-        return CouplingLoop(coupling.name, coupling.table, on, by, coupling.carrier, kernel,
+        return CouplingLoop(coupling.name, coupling.list_name, on, by, coupling.carrier, kernel,
                             numbers, 0.0, placed, rides)  # fmt: skip
 
     def place(self, poses: Poses) -> Any:

@@ -201,8 +201,8 @@ def drive_pivot(joints: Structure, drive: str, where: str = "drive.link") -> str
 
 def place_in_file(joints: Structure, coupling: Coupling) -> str:
     """Where a coupling stands in the model file, such as ``belts[2]``."""
-    alike = [item for item in joints.couplings if item.table == coupling.table]
-    return f"{coupling.table}[{alike.index(coupling) + 1}]"
+    alike = [item for item in joints.couplings if item.list_name == coupling.list_name]
+    return f"{coupling.list_name}[{alike.index(coupling) + 1}]"
 
 
 def coupling_pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
@@ -375,7 +375,7 @@ def joint_names(joints: Structure) -> set[str]:
              if not joints.hides(point, *bodies)}  # fmt: skip
     names |= {family_of("slider") + slider.name for slider in joints.sliders
               if not joints.hides(slider.name, slider.link, slider.on)}  # fmt: skip
-    return names | {f"{coupling.table}.{coupling.name}" for coupling in joints.couplings}
+    return names | {f"{coupling.list_name}.{coupling.name}" for coupling in joints.couplings}
 
 
 def pin_radii(joints: Structure, given: Iterable[JointProperties]) -> dict[str, float]:
@@ -407,7 +407,7 @@ def given_properties(
     ModelError : there is no such joint, it is named twice, or it has no such property.
     """
     named, tables = named_joints(joints, reactions), dict[str, str]()
-    couplings = {(coupling.table, coupling.name): coupling for coupling in machine.couplings}
+    couplings = {(coupling.list_name, coupling.name): coupling for coupling in machine.couplings}
     for where, item in numbered("joints", machine.joints):
         if item.joint not in named:
             raise ModelError(f"{where}.joint", unknown(item.joint, named, "joint"))

@@ -438,7 +438,7 @@ def with_friction(
             size[k],
             law.rates[k],
             joint.reach,
-            "" if joint.mesh is None else joint.mesh.table,
+            "" if joint.mesh is None else joint.mesh.list_name,
             joint.mesh is None or joint.on_surface,
         )
         for k, joint in enumerate(law.joints)
@@ -532,7 +532,7 @@ def _locked(
     power = np.abs(ways[-1] * law.rates[:, worst])
     leading = power >= LEADING * np.max(power)
     names = [
-        f"{'joints' if joint.mesh is None else joint.mesh.table}.{joint.name}"
+        f"{'joints' if joint.mesh is None else joint.mesh.list_name}.{joint.name}"
         for joint, leads in zip(law.joints, leading, strict=True)
         if leads
     ]

@@ -406,7 +406,7 @@ class JointReactions:
         }
         for coupling in self.motion.machine.couplings:
             force = self._force(coupling, reactions[coupling.name], preload(coupling))
-            coupling_forces[coupling.table][coupling.name] = force
+            coupling_forces[coupling.list_name][coupling.name] = force
         return coupling_forces
 
     def force_on(self, name: str) -> CouplingForce:

@@ -204,7 +204,7 @@ def _rubbing(linkage: Linkage) -> Iterator[RubbingJoint]:
     machine = linkage.machine
     names = {item.force: name for name, item in linkage.named_reactions}
     sliders = {slider.name: slider for slider in machine.sliders}
-    couplings = {(coupling.table, coupling.name): coupling for coupling in machine.couplings}
+    couplings = {(coupling.list_name, coupling.name): coupling for coupling in machine.couplings}
     size = size_of_links(machine)
     for _, reaction, entry in given_properties(machine, linkage.joints, linkage.reactions):
         if not entry.rubs:

@@ -234,7 +234,7 @@ class MachineDraft:
                 start = clean(remainder(start_drawn, 2 * pi), "angle")
                 turnings[k] = replace(entry, start=start)
             angles[entry.driven] = start, start + way
-        return {key: tuple(item for item in turnings if item.table == key) for key in lists}
+        return {key: tuple(item for item in turnings if item.list_name == key) for key in lists}
 
     def _engaged(self, machine: Machine) -> tuple[Rack, ...]:
         """Racks that start so that what they drive comes to where it is drawn."""

@@ -43,13 +43,15 @@ class Belt(Turning):
     """A toothed belt, or a chain, about two links pinned to the same carrier."""
 
     called = to_say("{what} of belt {number}")
+    list_name = "belts"
+    list_text = "toothed belts and chains"
+    order = 2
     file_order = ("between", "teeth", "pitch", "radii", "crossed", "carrier", "start", "tension")
     conditions: ClassVar[Conditions] = {
         "oneOf": [{"required": ["teeth"]}, {"required": ["radii"]}],
         "dependentRequired": {"teeth": ["pitch"], "pitch": ["teeth"]},
     }
 
-    table: ClassVar[str] = "belts"
     sign = "equipoise.symbols.straight_pieces:strand_sign"
     noun = to_say("belt")
     group = to_say("belts")

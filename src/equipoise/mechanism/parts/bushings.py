@@ -27,6 +27,9 @@ class Bushing(BetweenPoints, RatedElement):
     """
 
     called = to_say("{what} of bushing {number}")
+    list_name = "bushings"
+    list_text = "bushings, elastic in two axes and about their pin"
+    order = 5
     file_order = ("link", "point", "to", "on", "direction", "stiffness", "damping", "preload",
                   "torsional_stiffness", "torsional_damping", "angle", "torque")  # fmt: skip
     conditions: ClassVar[Conditions] = {

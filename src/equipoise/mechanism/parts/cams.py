@@ -37,7 +37,9 @@ class Cam(Coupling):
     """
 
     called = to_say("{what} of cam {number}")
-    table: ClassVar[str] = "cams"
+    list_name = "cams"
+    list_text = "cams with their followers"
+    order = 4
     sign = "equipoise.symbols.cams:cam_sign"
     dragged = "equipoise.symbols.cams:base_circle"
     noun = to_say("cam")

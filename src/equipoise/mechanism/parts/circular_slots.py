@@ -24,6 +24,9 @@ class CircularSlot(JointKind):
     """A pin at `point` of `link` in a slot of the body `on`, a circle about `center` of that."""
 
     called = to_say("{what} of circular slot {number}")
+    list_name = "circular_slots"
+    list_text = "pins in circular slots"
+    order = 1
     file_order = ("link", "point", "on", "center", "radius", "arc", "label")
 
     base = "center"

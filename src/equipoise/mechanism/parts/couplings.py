@@ -119,7 +119,7 @@ class RollingLine:
 class Coupling(PartKind):
     """Two bodies of which one drives the other, both on a carrier.
 
-    table : key of its list in the model file, which is the `kind` of its `Reaction` too.
+    list_name : of its list in the model file, and the `kind` of its `Reaction` too.
     noun : what one is called.  counted : how several are counted, a text with forms by ``{count}``.
     pushes : whether it is one force at one place, told as a whole and in parts.
     preload : what its sides pull with where no torque is passed on, N.
@@ -136,7 +136,6 @@ class Coupling(PartKind):
         that forces inside the linkage are not linear in the masses.
     """
 
-    table: ClassVar[str]
     noun: ClassVar[str]
     counted: ClassVar[str]
     pushes: ClassVar[bool] = True

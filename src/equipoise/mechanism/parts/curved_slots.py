@@ -64,6 +64,9 @@ class CurvedSlot(JointKind):
     """A pin at `point` of `link` in a slot of the body `on`, along a curve through points."""
 
     called = to_say("{what} of curved slot {number}")
+    list_name = "curved_slots"
+    list_text = "pins in slots along smooth curves"
+    order = 2
     file_order = (
         "link",
         "point",

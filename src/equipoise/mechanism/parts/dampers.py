@@ -43,6 +43,9 @@ class Damper(BetweenPoints, Damping):
     """
 
     called = to_say("{what} of damper {number}")
+    list_name = "dampers"
+    list_text = "dampers between links, or links and frame"
+    order = 3
     file_order = ("link", "point", "to", "on", "damping", "speeds", "forces", "table")
     conditions: ClassVar[Conditions] = one_law("forces")
 

@@ -63,6 +63,8 @@ class Placed(Protocol):
 class PartKind(Frozen):
     """What a machine has in a list of its file, and what declares itself.
 
+    list_name : key of its list in the model file.  list_text : what that is, for its readers.
+    order : place of that list among those of its base: couplings, force elements, kinds of joints.
     most : that a machine may have.
     group : what several are called, above their outputs and their numbers.
     legend : role among its signs, and what a picture's legend calls that; empty where none does.
@@ -76,6 +78,9 @@ class PartKind(Frozen):
         all have.
     """
 
+    list_name: ClassVar[str]
+    list_text: ClassVar[str]
+    order: ClassVar[int] = 99
     most: ClassVar[int] = 200
     group: ClassVar[str]
     special: ClassVar[Any] = ""

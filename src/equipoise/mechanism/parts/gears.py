@@ -52,6 +52,9 @@ class Gear(Turning):
     """A pair of gears, both pinned to the same carrier; either ratio or teeth."""
 
     called = to_say("{what} of gear {number}")
+    list_name = "gears"
+    list_text = "pairs of gears"
+    order = 1
     extra_keys: ClassVar[Keys] = {
         **Turning.extra_keys,
         "mesh": Key("mesh", TextKind(MESHES), "goes with `teeth`", default=None, shown="external"),
@@ -62,7 +65,6 @@ class Gear(Turning):
         "dependentRequired": {"mesh": ["teeth"]},
     }
 
-    table: ClassVar[str] = "gears"
     noun = to_say("pair of gears")
     group = to_say("gears")
     loses = True

@@ -17,7 +17,6 @@ from equipoise.i18n import Note, say
 from equipoise.keys import (
     SCHEMA_VERSION,
     VERSION,
-    Frozen,
     Keys,
     KeyTable,
     Listing,
@@ -47,14 +46,8 @@ from equipoise.mechanism.checks import (
     unknown_link,
     wrong_text,
 )
-from equipoise.mechanism.parts.belts import Belt
-from equipoise.mechanism.parts.bushings import Bushing
-from equipoise.mechanism.parts.cams import Cam
-from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.constraints import Constraint, changed_points
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
-from equipoise.mechanism.parts.curved_slots import CurvedSlot
-from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.drive_checks import wrong_drive, wrong_further, wrong_together
 from equipoise.mechanism.parts.drives import (
     TURNING,
@@ -77,7 +70,6 @@ from equipoise.mechanism.parts.force_elements import (
     wrong_load,
 )
 from equipoise.mechanism.parts.force_kinds import ForceElement, force_kinds
-from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_kinds import (
     JointKind,
     Rider,
@@ -97,21 +89,17 @@ from equipoise.mechanism.parts.links import (
     wrong_points,
     wrong_slider,
 )
+from equipoise.mechanism.parts.part_lists import PartLists
 from equipoise.mechanism.parts.places import Frame, Position, wrong_position
-from equipoise.mechanism.parts.racks import Rack
-from equipoise.mechanism.parts.resistances import Resistance
 from equipoise.mechanism.parts.run_plans import DutyState, RunPlan
 from equipoise.mechanism.parts.shown_units import PARAMETERS, ShownUnits
-from equipoise.mechanism.parts.springs import Spring
-from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.support import Row, Support, wrong_support
 from equipoise.mechanism.parts.timed_loads import TimedLoad, wrong_timed_load
-from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
-from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.quantities import PER_RPM, display, number
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.balance import Balance
+    from equipoise.mechanism.parts.springs import Spring
 
 MOST = {"links": 100, "points": 2000, "sliders": 200, "loads": 500, "joints": 500,
         "drives": 20, "constraints": 200, "timed_loads": 200}  # fmt: skip
@@ -183,17 +171,14 @@ def _too_much(machine: Any) -> Iterator[ModelError]:
 
 __all__ = [
     "FRAME",
-    "Cam",
     "Drive",
     "FurtherDrive",
-    "Gear",
     "Link",
     "Load",
     "LoadTable",
     "Machine",
     "Position",
     "Slider",
-    "Spring",
     "Vector",
     "size_of",
     "unknown",
@@ -212,17 +197,16 @@ STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
 
 @declared
-class Machine(Driven, Displayed, Frozen):
-    """A planar linkage with its drive, loads, springs and gravity."""
+class Machine(Driven, Displayed, PartLists):
+    """A planar linkage with its drive, its parts, loads and gravity."""
 
     extra_keys: ClassVar[Keys] = {"schema": VERSION}
     handed_on = frozenset({TURNING})
     file_order = ("schema", "title", "description", "units", "parameters", "gravity", "drive",
                   "drives", "frame", "links", "constraints", "bearings", "assembly", "sliders",
-                  "circular_slots", "curved_slots", "gears", "belts", "racks", "cams", "loads",
-                  "timed_loads", "springs", "torsion_springs", "dampers", "torsion_dampers",
-                  "bushings", "stops", "resistances", "joints", "position", "planting", "support",
-                  "rows", "duty", "run", "balance")  # fmt: skip
+                  *joint_kinds(PartLists), *coupling_kinds(PartLists), "loads", "timed_loads",
+                  *force_kinds(PartLists), "joints", "position", "planting", "support", "rows",
+                  "duty", "run", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(KeyTable(Drive), "the link that is driven")
@@ -235,8 +219,6 @@ class Machine(Driven, Displayed, Frozen):
         factory=dict,
     )
     sliders: tuple[Slider, ...] = key(Tables(KeyTable(Slider)), "sliding joints", default=())
-    gears: tuple[Gear, ...] = key(Tables(KeyTable(Gear)), "pairs of gears", default=())
-    cams: tuple[Cam, ...] = key(Tables(KeyTable(Cam)), "cams with their followers", default=())
     loads: tuple[Load, ...] = key(
         Tables(KeyTable(Load)), "forces and torques from outside", default=()
     )
@@ -264,9 +246,6 @@ class Machine(Driven, Displayed, Frozen):
         "what may be changed to quieten it, and what is to become small",
         default=None,
     )
-    springs: tuple[Spring, ...] = key(
-        Tables(KeyTable(Spring)), "springs between links, or links and frame", default=()
-    )
     drives: tuple[FurtherDrive, ...] = key(
         Tables(KeyTable(FurtherDrive)), "links that are driven besides", default=()
     )
@@ -281,34 +260,6 @@ class Machine(Driven, Displayed, Frozen):
     )
     units: ShownUnits | None = key(
         KeyTable(ShownUnits), "in which values are shown, as by `--units`", default=None
-    )
-    belts: tuple[Belt, ...] = key(Tables(KeyTable(Belt)), "toothed belts and chains", default=())
-    racks: tuple[Rack, ...] = key(Tables(KeyTable(Rack)), "racks with their pinions", default=())
-    torsion_springs: tuple[TorsionSpring, ...] = key(
-        Tables(KeyTable(TorsionSpring)), "springs that turn links against each other", default=()
-    )
-
-    dampers: tuple[Damper, ...] = key(
-        Tables(KeyTable(Damper)), "dampers between links, or links and frame", default=()
-    )
-    bushings: tuple[Bushing, ...] = key(
-        Tables(KeyTable(Bushing)), "bushings, elastic in two axes and about their pin", default=()
-    )
-    stops: tuple[Stop, ...] = key(
-        Tables(KeyTable(Stop)), "one-sided stops with stiffness and restitution", default=()
-    )
-    resistances: tuple[Resistance, ...] = key(
-        Tables(KeyTable(Resistance)), "resistances against the motion of points", default=()
-    )
-    torsion_dampers: tuple[TorsionDamper, ...] = key(
-        Tables(KeyTable(TorsionDamper)), "dampers of links that turn against each other", default=()
-    )
-
-    circular_slots: tuple[CircularSlot, ...] = key(
-        Tables(KeyTable(CircularSlot)), "pins in circular slots", default=()
-    )
-    curved_slots: tuple[CurvedSlot, ...] = key(
-        Tables(KeyTable(CurvedSlot)), "pins in slots along smooth curves", default=()
     )
 
     parameters: Mapping[str, str | float] = key(

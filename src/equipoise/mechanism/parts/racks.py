@@ -35,8 +35,10 @@ class Rack(Coupling):
     """A rack and its pinion, which is pinned to the carrier on which the rack slides."""
 
     called = to_say("{what} of rack {number}")
+    list_name = "racks"
+    list_text = "racks with their pinions"
+    order = 3
 
-    table: ClassVar[str] = "racks"
     sign = "equipoise.symbols.straight_pieces:rack_sign"
     noun = to_say("rack")
     group = to_say("racks")

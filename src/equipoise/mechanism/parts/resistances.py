@@ -59,6 +59,9 @@ class Resistance(BetweenPoints, RatedElement):
     """
 
     called = to_say("{what} of resistance {number}")
+    list_name = "resistances"
+    list_text = "resistances against the motion of points"
+    order = 7
     file_order = ("link", "point", "to", "on", "direction", "one_way", "force", "damping",
                   "positions", "forces", "table", "speed")  # fmt: skip
     conditions: ClassVar[Conditions] = {

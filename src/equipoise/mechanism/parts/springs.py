@@ -70,6 +70,9 @@ class Spring(BetweenPoints, ForceElement):
     """
 
     called = to_say("{what} of spring {number}")
+    list_name = "springs"
+    list_text = "springs between links, or links and frame"
+    order = 1
     file_order = ("link", "point", "to", "stiffness", "free_length", "preload", "lengths", "forces",
                   "table", "on")  # fmt: skip
     conditions: ClassVar[Conditions] = {

@@ -44,6 +44,9 @@ class Stop(BetweenPoints, RatedElement):
     """
 
     called = to_say("{what} of stop {number}")
+    list_name = "stops"
+    list_text = "one-sided stops with stiffness and restitution"
+    order = 6
     file_order = ("link", "point", "to", "on", "direction", "stiffness", "restitution", "speed")
     still = ("restitution",)
 

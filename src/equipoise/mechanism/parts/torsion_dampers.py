@@ -39,6 +39,9 @@ class TorsionDamper(BetweenBodies, Damping):
     """A damper without mass that resists the angular speed of `link` relative to `on`."""
 
     called = to_say("{what} of torsion damper {number}")
+    list_name = "torsion_dampers"
+    list_text = "dampers of links that turn against each other"
+    order = 4
     file_order = ("link", "on", "damping", "speeds", "torques", "table")
     conditions: ClassVar[Conditions] = one_law("torques")
 

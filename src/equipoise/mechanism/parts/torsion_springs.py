@@ -52,6 +52,9 @@ class TorsionSpring(BetweenBodies, ForceElement):
     """A spring without mass that turns `link` against `on` by the angle between both."""
 
     called = to_say("{what} of torsion spring {number}")
+    list_name = "torsion_springs"
+    list_text = "springs that turn links against each other"
+    order = 2
     file_order = ("link", "on", "stiffness", "angle", "preload", "angles", "torques", "table")
     conditions: ClassVar[Conditions] = {
         "oneOf": [
