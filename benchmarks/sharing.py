@@ -1,8 +1,8 @@
 """Designs shared out among two processes, beside one: what both cost in processor time.
 
-What two free processors would take follows from that: the time of this process, which waits while
-others compute, and half of that of the two others, starting them included.  So the ratio does not
-depend on what else the computer does.
+What two free processors would take follows from that: the time of the busier of this process and of
+the other, starting it included, which end at about the same time.  So the ratio does not depend on
+what else the computer does, as long as both get the same share of it.
 """
 
 from __future__ import annotations
@@ -130,8 +130,8 @@ def main() -> None:
         two, here, there = spent(task, 2)
         if not np.array_equal(np.asarray(one), np.asarray(two), equal_nan=True):
             raise SystemExit(f"{name}: two processes give other figures than one")
-        print(f"{name}: {alone:.1f} s in one; {here:.1f} s here and {there:.1f} s in two others")
-        table.value(f"{name}: how many times as fast", [alone / (here + there / 2)], "", ASKED)
+        print(f"{name}: {alone:.1f} s in one; {here:.1f} s here and {there:.1f} s in another")
+        table.value(f"{name}: how many times as fast", [alone / max(here, there)], "", ASKED)
     table.print()
 
 

@@ -93,6 +93,11 @@ class Pool(ABC):
     def close(self) -> None:
         """Stop, and leave what is not finished."""
 
+    @property
+    def is_ready(self) -> bool:
+        """Whether a chunk would be computed at once, and not after what computes has started."""
+        return True
+
     def look(self) -> None:  # noqa: B027
         """See whether somebody is still at work; `StoppedError` if not.
 
@@ -104,11 +109,15 @@ class Pool(ABC):
         return None
 
 
-def computed(pool: Pool, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Any]]:
+def computed(
+    pool: Pool, chunks: Iterable[Chunk], here: Callable[[Chunk], Any] | None = None
+) -> Iterator[tuple[Chunk, Any]]:
     """Compute chunks, and give each with its result once it is finished.
 
     They come in any order, and few are under way at a time.  What was lost because a process died
     is begun again, which changes nothing in it.
+
+    here : computes chunks in this process too, while the pool computes others.
 
     Raises
     ------
@@ -117,10 +126,14 @@ def computed(pool: Pool, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Any]]
     left, under_way = deque(chunks), dict[Future[Any], Chunk]()
     deaths, looked = 0, monotonic()
     while left or under_way:
-        while left and len(under_way) < pool.room:
+        kept = 0 if here is None else 1 if pool.is_ready else len(left)
+        while len(left) > kept and len(under_way) < pool.room:
             chunk = left.popleft()
             under_way[pool.submit(chunk)] = chunk
-        finished, _ = wait(under_way, TICK, FIRST_COMPLETED)
+        if here is not None and left:
+            chunk = left.popleft()
+            yield chunk, here(chunk)
+        finished, _ = wait(under_way, 0.0 if here and left else TICK, FIRST_COMPLETED)
         if monotonic() - looked > TICK:
             pool.look()
             looked = monotonic()
@@ -153,6 +166,7 @@ class Runner(Generic[Chunk, Result]):
     make : makes the same in another process, to which it goes as bytes.
     workers : threads or processes; as many as this machine has processors if not given.
     threads : whether threads of this process are enough, since what computes holds no lock.
+    helps : whether this process is one of the workers, and computes chunks while others do.
     elsewhere : begins a pool of others, such as a cluster, which is begun at once and takes the
         place of those of this machine.
 
@@ -168,9 +182,11 @@ class Runner(Generic[Chunk, Result]):
         workers: int | None = None,
         *,
         threads: bool = False,
+        helps: bool = False,
         elsewhere: Callable[[ChunkTask], Pool] | None = None,
     ) -> None:
         self.alone, self.make, self.threads = alone, make, threads and elsewhere is None
+        self.helps = helps and elsewhere is None
         self.workers = processors() if workers is None else workers
         if self.workers < 1:
             raise UsageError(Note("got {workers} workers; give 1 or more", workers=self.workers))
@@ -191,12 +207,12 @@ class Runner(Generic[Chunk, Result]):
         """The pool, begun where it is not yet."""
         if self.pool is None:
             kind = Threads if self.threads else Processes
-            self.pool = kind(self._task(), self.workers)
+            self.pool = kind(self._task(), self.workers - self.helps)
         return self.pool
 
     def each(self, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Result]]:
         """Chunks, each with its result; see `computed`."""
-        return computed(self.begin(), chunks)
+        return computed(self.begin(), chunks, self.alone if self.helps else None)
 
     def _task(self) -> ChunkTask:
         if self.threads:
@@ -207,6 +223,11 @@ class Runner(Generic[Chunk, Result]):
 def _compute(packed: bytes, chunk: Any) -> Any:
     """In another process: a chunk."""
     return _load_function(packed)(chunk)
+
+
+def _make(packed: bytes) -> None:
+    """In another process: make what computes, for chunks to come."""
+    _load_function(packed)
 
 
 @lru_cache(maxsize=2)
@@ -235,7 +256,8 @@ class Threads(Pool):
 
 
 class Processes(Pool):
-    """Processes that are started for it, and started again when one of them dies.
+    """Processes that are started for it, and started again when one of them dies; the first thing
+    that they do is to make what computes.
 
     They end when the other end of a pipe closes: at once when the work is over or stopped, and also
     when this process is killed.
@@ -250,6 +272,13 @@ class Processes(Pool):
         context = get_context("spawn")  # others have threads of libraries in them, half alive
         self.watched, self.pipe_end = context.Pipe(duplex=False)
         self.executor = ProcessPoolExecutor(self.workers, context, _begin, (self.watched,))
+        with _apart():  # all are started, each by one of these
+            self.made = [self.executor.submit(_make, self.task.study) for _ in range(self.workers)]
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether one of them has made what computes."""
+        return any(future.done() for future in self.made)
 
     def submit(self, chunk: Any) -> Future[Any]:
         try:
@@ -309,11 +338,13 @@ OnDesigns = Callable[[int], None]
 """Is called with the designs of a call that are computed so far."""
 
 PATIENCE = 2.0
-"""Time of computing alone after which processes are started, which takes about as long, s."""
+"""Time of computing alone after which processes are started, which takes them about as long, s; at
+once where designs that are still to come take longer."""
 QUICK = 0.2
 """Time below which twice as many designs are computed alone before the clock is read again, s."""
-SHARES = 4
-"""Parts for each process at least, so that all end at about the same time."""
+SHARES = 2
+"""Each part is what is left over this and the workers: parts become small towards the end, so that
+all end at about the same time."""
 HANDY = 0.05
 """Time of designs that are computed here though there are processes, s: to send them there and back
 takes some milliseconds, and whoever descends asks for few at a time."""
@@ -340,8 +371,7 @@ class PooledEvaluator(Generic[Figures]):
     alone : computes designs here.
     make : makes the same in another process, to which it goes as bytes.
     join : what several parts give, one after the other, as one.
-    workers : processes; as many as this machine has processors if not given.  With one, designs
-        are computed here.
+    workers : processes, this one among them; as many as this machine has processors if not given.
     shared : whether processes help at all; not where loops use all processors.
     batch_size : designs that are sent together where there are as many for each process: those that
         one run of arrays computes take longer in small parts.
@@ -366,11 +396,15 @@ class PooledEvaluator(Generic[Figures]):
     ) -> None:
         self.alone, self.join, self.batch_size = alone, join, batch_size
         self.runner: Runner[DesignSlice, Figures] = Runner(
-            lambda part: alone(part.values), partial(_of_parts, make), workers, elsewhere=elsewhere
+            lambda part: alone(part.values),
+            partial(_of_parts, make),
+            workers,
+            helps=True,
+            elsewhere=elsewhere,
         )
         self.shared = elsewhere is not None or (self.runner.workers > 1 and shared)
         self.patience = PATIENCE if elsewhere is None else QUICK
-        self.spent, self.count, self.step = 0.0, 0, 1
+        self.spent, self.count, self.step, self.begun = 0.0, 0, 1, False
 
     def __enter__(self) -> Self:
         return self
@@ -384,8 +418,8 @@ class PooledEvaluator(Generic[Figures]):
 
     @property
     def is_shared_out(self) -> bool:
-        """Whether others compute, since computing alone has taken long."""
-        return self.shared and self.spent > self.patience
+        """Whether others compute, since computing alone has taken long or would."""
+        return self.shared and (self.begun or self.spent > self.patience)
 
     def __call__(self, values: Array, progress: OnDesigns | None = None) -> Figures:
         """What is computed of designs (P, d), SI units, in their order.
@@ -410,23 +444,31 @@ class PooledEvaluator(Generic[Figures]):
             if took < QUICK:
                 self.step *= 2
             tell(begin)
+            # The first part took as long as all that is imported for it.
+            long = len(outcomes) > 1 and took * (len(values) - begin) > PATIENCE * len(part)
+            self.begun = self.begun or (self.spent > QUICK and long)
         if begin < len(values):
             outcomes += self._shared_out(values[begin:], lambda k: tell(begin + k))
         return self.join(outcomes)
 
     def _shared_out(self, values: Array, tell: OnDesigns) -> list[Figures]:
-        workers = self.runner.workers
-        share = -(-len(values) // (SHARES * workers))
-        size = max(1, min(share, int(PART * self.count / max(self.spent, 1e-9))))
-        size = max(size, min(self.batch_size, -(-len(values) // workers)))
-        starts = range(0, len(values), size)
-        parts = (DesignSlice(start, values[start : start + size]) for start in starts)
+        self.begun = True
         result, done = {}, 0
-        for part, outcome in self.runner.each(parts):
+        for part, outcome in self.runner.each(self._parts(values)):
             result[part.begin] = outcome
             done += len(part.values)
             tell(done)
-        return [result[start] for start in starts]
+        return [result[start] for start in sorted(result)]
+
+    def _parts(self, values: Array) -> Iterator[DesignSlice]:
+        """Designs in parts, the first ones large."""
+        workers, begin = self.runner.workers, 0
+        least = min(self.batch_size, -(-len(values) // workers))
+        most = max(1, int(PART * self.count / max(self.spent, 1e-9)))
+        while begin < len(values):
+            size = max(least, min(most, -(-(len(values) - begin) // (SHARES * workers))))
+            yield DesignSlice(begin, values[begin : begin + size])
+            begin += size
 
 
 def _of_parts(make: Callable[[], Evaluate[Any]]) -> Callable[[DesignSlice], Any]:

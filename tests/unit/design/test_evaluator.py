@@ -41,13 +41,14 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     parts: list[Any] = []
     computed = pooling.computed
 
-    def counted(pool: Any, chunks: Any) -> Any:
-        for part, outcome in computed(pool, chunks):
+    def counted(pool: Any, chunks: Any, here: Any = None) -> Any:
+        for part, outcome in computed(pool, chunks, here):
             parts.append(part)
             yield part, outcome
 
     monkeypatch.setattr(pooling, "PATIENCE", -1.0)
     monkeypatch.setattr(pooling, "HANDY", 0.0)
+    monkeypatch.setattr(pooling.Processes, "is_ready", True)  # else this process does it all
     monkeypatch.setattr(pooling, "computed", counted)
     return parts
 
