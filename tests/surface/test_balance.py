@@ -16,7 +16,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.advice import advise
 from equipoise.balancing.objectives import measured
+from equipoise.balancing.outcome import reasons_to_leave
 from equipoise.cli.plan import read_objective
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from support.chosen import EXHAUSTIVE, few
@@ -181,6 +183,20 @@ def test_objectives_in_words(asked: str, name: str) -> None:
     assert list(content["objectives"]) == [name]
     values = content["objectives"][name]
     assert values["after"] < values["before"]
+
+
+def test_an_objective_alone_is_reduced_within_the_assumed_room() -> None:
+    """It was refused, as no change is permitted, though `balance` itself proposes the option."""
+    content = read("balance", "yamashita-1", "--objective", "shaking_force.y")
+    values = content["objectives"]["rms of shaking_force.y"]
+    assert values["after"] < 0.7 * values["before"]
+
+
+def test_where_no_mass_acts_on_the_objective_it_is_named() -> None:
+    """The largest figure was named, which may be another."""
+    plan = Balance(objectives=(Objective("drive_torque"),))
+    [sentence] = reasons_to_leave(advise(eq.load("scotch-yoke").with_balance(plan)))
+    assert "drive torque, RMS" in sentence
 
 
 def test_another_speed() -> None:

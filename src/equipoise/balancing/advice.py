@@ -269,7 +269,7 @@ class _Adviser:
         aims = plan.objectives
         values = {aim.name: value for aim, value in zip(aims, self.values(aims), strict=True)}
         aim = self.before.largest_aim(aims)
-        asked = bool(self.own.objectives)
+        asked = self.requested
         return Comparison(self.machine, plan, rooms, self.watched, aim, values, asked)
 
     def most_mass(self, plan: Balance) -> float:
@@ -277,7 +277,7 @@ class _Adviser:
         if self.own.added_mass is not None:
             return self.own.added_mass
         aim = self.before.largest_aim(plan.objectives)
-        much = bool(self.own.objectives) or aim is None or aim.is_large
+        much = self.requested or aim is None or aim.is_large
         return (MOST_ADDED_MASS if much else LITTLE_MASS) * self.machine.mass
 
     def counterweights(self, plan: Balance, rooms: tuple[Room, ...]) -> Iterator[Remedy]:
@@ -360,27 +360,28 @@ class _Adviser:
             enough = enough and outweighs(balanced.gain, self.mounts)
         if balanced.added_mass > 0:
             enough = enough and not self.is_for_more_arms(balanced)
-        if not self.own.objectives and unbalances(self.machine):
+        if not self.requested and unbalances(self.machine):
             enough = False  # it may be what the machine is for
         offered, before = enough and not worse, self.before.headline
         beyond = self.beyond
         if offered:  # what else helps is for the machine with the remedy
             mounts = self.mounts if balanced.gain < ALL_BUT_GONE else None
             beyond = beyond_masses(after.analysis, after.headline, mounts, self.beyond)
-        return replace(balanced, advice=Advice(before, after.headline, worse, offered, beyond))
+        advice = Advice(before, after.headline, worse, offered, beyond, self.requested)
+        return replace(balanced, advice=advice)
 
     def is_for_more_arms(self, balanced: Balanced) -> bool:
         """Whether more arms on a carrier, which make up for each other, take off more of what is
         not large, against which nobody builds a weight then.
         """
         arms, aim = self.beyond.spaced, self.before.largest_aim(balanced.plan.objectives)
-        small = aim is not None and not aim.is_large and not self.own.objectives
+        small = aim is not None and not aim.is_large and not self.requested
         return small and arms is not None and arms.gain >= balanced.gain
 
     def figure_gain(self, balanced: Balanced, after: AssessedMachine) -> float:
         """Share that is gone of the figure that is large; 1 of aims that somebody asked for."""
         aims = balanced.plan.objectives
-        return 1.0 if self.own.objectives else self.before.figure_gain(aims, after)
+        return 1.0 if self.requested else self.before.figure_gain(aims, after)
 
     @cached_property
     def beyond(self) -> Beyond:
@@ -403,7 +404,7 @@ class _Adviser:
     def mounts(self) -> ResonantMounts | None:
         """The resonance beside a speed at which the machine runs, and other mounts."""
         aims = self.loud_gauges
-        if not aims or (unbalances(self.machine) and not self.own.objectives):
+        if not aims or (unbalances(self.machine) and not self.requested):
             return None
         speeds = {speed for aim in aims for speed in aim.speeds} or {self.machine.drive.speed}
         before, plan = self.values(aims), Balance(objectives=aims)
@@ -426,7 +427,13 @@ class _Adviser:
         plan = replace(self.own, objectives=objectives)
         result = self.result(self.machine, (), plan)
         headline = self.before.headline
-        return replace(result, advice=Advice(headline, headline, (), False, self.beyond))
+        advice = Advice(headline, headline, (), False, self.beyond, self.requested)
+        return replace(result, advice=advice)
+
+    @property
+    def requested(self) -> bool:
+        """Whether the objectives are the user's, and not the largest figures."""
+        return bool(self.own.objectives)
 
 
 def _in_whole_degrees(balanced: Balanced) -> Balanced:

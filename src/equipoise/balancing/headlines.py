@@ -43,6 +43,7 @@ class Advice:
     worse : figures that are worse, before and after: headline figures, single joints, components.
     offered : whether the remedy gains enough for its mass, and leaves no figure worse.
     beyond : what helps beyond masses.
+    requested : whether the objectives are the user's, and not the largest figures.
     """
 
     before: tuple[FigureAssessment, ...]
@@ -50,6 +51,7 @@ class Advice:
     worse: Pairs
     offered: bool
     beyond: Beyond
+    requested: bool
 
 
 @dataclass(frozen=True)

@@ -174,12 +174,11 @@ def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
     advice = balanced.advice
     assert advice is not None
     largest = next(iter(advice.before), None)
-    own = balanced.original.balance
-    asked = own is not None and bool(own.objectives)
-    if not asked and (words := rotor_sentence(balanced.original)):
+    requested = advice.requested
+    if not requested and (words := rotor_sentence(balanced.original)):
         yield words
         return
-    if (largest is None or not largest.is_large) and not (asked and balanced.changes):
+    if (largest is None or not largest.is_large) and not (requested and balanced.changes):
         yield say("Leave the machine as it is: no figure is large relative to its reference value.")
     elif balanced.changes:
         yield say(
@@ -187,7 +186,7 @@ def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
             "reduces {aims} by {gain} %; {why}.",
             **_best_tried(balanced),
         )
-    elif largest is not None and largest.is_shaking:
+    elif requested or (largest is not None and largest.is_shaking):
         yield say(
             "Leave the masses as they are: within the assumed space, no change of a mass about a "
             "frame pivot reduces {aims} noticeably.",
@@ -427,8 +426,7 @@ def _fall_of_figure(balanced: Balanced) -> str | None:
     """
     assert balanced.advice is not None
     share = max(balanced.added_mass, 0.0) / (balanced.original.mass or 1.0)
-    own = balanced.original.balance
-    if not is_worth(balanced.gain, share) or (own is not None and own.objectives):
+    if not is_worth(balanced.gain, share) or balanced.advice.requested:
         return None
     outputs = {
         f"{rows}{objective.output}" for objective in balanced.plan.objectives for rows in ("", ROWS)

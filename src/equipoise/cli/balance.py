@@ -56,8 +56,8 @@ def balance(
     ----------
     machine
         Path of a model file, or the name of a bundled example.  Its table [balance] has the
-        permitted changes and the objectives; the options below replace them.  Without both,
-        remedies that can be built are tried.
+        permitted changes and the objectives; the options below replace them.  Without permitted
+        changes, remedies that can be built are tried.
     objective
         Objective: "shaking_force.y", "peak shaking_moment about D".  May be repeated.
     limit
@@ -79,8 +79,10 @@ def balance(
     plan = plan_of(machine, freed, objective, limit)
     with counted("step") as progress:
         solve = partial(optimisation.balance, progress=progress)
-        asked = freed.any or objective or limit
-        balanced = solve(machine, plan) if asked else advice.advise(machine, solve)
+        if freed.any or objective or limit:
+            machine = machine.with_balance(plan)
+        frees = freed.any or ((objective or limit) and not plan.changes_nothing)
+        balanced = solve(machine, plan) if frees else advice.advise(machine, solve)
     for option, path in {"--out": out, "--drawing": drawing}.items():
         if path is not None and not balanced.helps:
             _refuse(balanced, option)
