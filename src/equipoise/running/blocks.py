@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import degrees, inf, pi
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from equipoise.running.flywheel import Flywheel
     from equipoise.running.integration import Event
     from equipoise.running.run import Run
+    from equipoise.running.stop_contacts import StopContact
 
 EVENTS = {
     "off": to_say("motor switched off"),
@@ -245,6 +246,34 @@ def losses_table(run: Run | DrivesRun) -> Iterator[Block]:
     yield Table.of(say("Friction in joints from the start to the end"), columns, rows)
 
 
+def contacts_table(contacts: Sequence[StopContact]) -> Iterator[Table]:
+    """The last contacts of a run; nothing where there are none."""
+    if not contacts:
+        return
+    title = say("Contacts of stops")
+    if len(contacts) > MOST_EVENTS:
+        title = say("Contacts of stops, the last {shown} of {count}", shown=MOST_EVENTS,
+                    count=len(contacts))  # fmt: skip
+    heads = (
+        "",
+        Column(say("from"), "time"),
+        Column(say("to"), "time"),
+        Column(say("speed of approach"), "speed"),
+        Column(say("largest force"), "force"),
+    )
+    rows = [
+        (
+            contact.points.said(),
+            Value(contact.begin),
+            None if contact.end is None else Value(contact.end),
+            Value(contact.approach),
+            Value(contact.force),
+        )
+        for contact in contacts[-MOST_EVENTS:]
+    ]
+    yield Table.of(title, heads, rows)
+
+
 def event_named(event: Event) -> str:
     """What happened, in words."""
     return say(EVENTS[event.kind])
@@ -283,3 +312,4 @@ def run_blocks(run: Run) -> Iterator[Block]:
         Column(say("crank speed"), "angular speed", "rpm"),
     )
     yield Table.of(say("Events"), heads, events)
+    yield from contacts_table(run.contacts)

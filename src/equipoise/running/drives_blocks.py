@@ -12,7 +12,7 @@ from equipoise.i18n import say, to_say
 from equipoise.quantities import PER_RPM, number
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
 from equipoise.running.blocks import EVENTS as OF_A_RUN
-from equipoise.running.blocks import MOST_EVENTS, NO_MOTOR, losses_table, lossiest
+from equipoise.running.blocks import MOST_EVENTS, NO_MOTOR, contacts_table, losses_table, lossiest
 from equipoise.running.drives_run import FREE, GIVEN, MOTOR
 from equipoise.running.friction import FRICTION
 from equipoise.running.support_equation import MOUNTS
@@ -110,6 +110,7 @@ def run_blocks(run: DrivesRun) -> Iterator[Block]:
     ]
     heads = ("", Column(say("time"), "time"), say("turns of the crank"))
     yield Table.of(say("Events"), heads, rows)
+    yield from contacts_table(run.contacts)
 
 
 def event_named(event: DriveEvent) -> str:

@@ -21,6 +21,7 @@ from equipoise.running.drives_linkage import pose_of
 from equipoise.running.electric import Electric
 from equipoise.running.energy_balance import energy_error, losses_apart
 from equipoise.running.integration import Limits
+from equipoise.running.stop_contacts import StopContact, stop_contacts
 from equipoise.signals import Array
 from equipoise.vibration.support_motion import SupportMotion
 
@@ -161,6 +162,13 @@ class DrivesRun(Result):
         linkage = self.equation.linkage
         return pose_of(linkage, crank, angles[:count], speeds[:count], references).moving
 
+    @cached_property
+    def contacts(self) -> tuple[StopContact, ...]:
+        """Contacts of stops of the first row, in the order in which they begin."""
+        if not self.machine.stops:
+            return ()
+        return stop_contacts(self.motion_at(np.arange(len(self.time))), self.time, 1.0)
+
     @property
     def last_cycle(self) -> Array | None:
         """Which of the M instants are in the last whole cycle of the crank; None without one."""
@@ -200,6 +208,7 @@ class DrivesRun(Result):
             "drives": {link: course.to_dict() for link, course in self.drives.items()},
             "energy_error": self.energy_error,
             "events": [vars(event) for event in self.events],
+            "contacts": [contact.to_dict() for contact in self.contacts],
             "time": self.time,
             "crank_angle": self.crank_angle,
             "kinetic_energy": self.kinetic_energy,

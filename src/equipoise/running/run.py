@@ -14,6 +14,7 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note
+from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.run_plans import MOST_TURNS, RunPlan
 from equipoise.quantities import Dimension, in_si
@@ -29,6 +30,7 @@ from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
 from equipoise.running.integration import Event, Integration, Limits
 from equipoise.running.piece_motion import ELECTRIC, Instant
 from equipoise.running.sources import LOADS
+from equipoise.running.stop_contacts import StopContact, stop_contacts
 from equipoise.running.support_equation import SupportedEquation
 from equipoise.signals import Array
 
@@ -128,6 +130,13 @@ class Run(Result):
         if self.electric is not None:
             circuits = [(Driver.of(self.machine), self.electric, self.work[DRIVE])]
         return energy_error(self.kinetic_energy, self.work.values(), circuits)
+
+    @cached_property
+    def contacts(self) -> tuple[StopContact, ...]:
+        """Contacts of stops, in the order in which they begin."""
+        if not self.machine.stops:
+            return ()
+        return stop_contacts(move(self.machine, self.crank_angle), self.time, self.crank_speed)
 
     @cached_property
     def last_cycle(self) -> LastCycle | None:
@@ -246,6 +255,7 @@ class Run(Result):
             "flywheel": None if self.flywheel is None else self.flywheel.to_dict(),
             "energy_error": self.energy_error,
             "events": [vars(event) for event in self.events],
+            "contacts": [contact.to_dict() for contact in self.contacts],
             "time": self.time,
             "crank_angle": self.crank_angle,
             "crank_speed": self.crank_speed,
