@@ -22,7 +22,13 @@ from equipoise.mechanism.dynamics.plain_bearing_duty import PlainBearingDuty
 from equipoise.mechanism.dynamics.reactions import refuse_unbounded
 from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.kinematics.strokes import DeadPosition, Stroke, declared_figures
-from equipoise.mechanism.outputs.declared import DECLARED, GROUPS, Declared, declared
+from equipoise.mechanism.outputs.declared import (
+    DECLARED,
+    GROUPS,
+    Declared,
+    declared,
+    kept_until_declared,
+)
 from equipoise.quantities import SI, Dimension, Display, display
 from equipoise.signals import Array, Figures, Periodic
 
@@ -118,28 +124,13 @@ class AnalysisOutputs:
     """
 
     def __init__(self, analysis: Any) -> None:
-        had = [
-            declaration
-            for declaration in DECLARED.values()
-            if declaration.read and _can_be_had(declaration, analysis)
-        ]
-        members: dict[Any, dict[str, None]] = {}  # those of several declarations are the same
         # with friction that is solved already, and names are the same
         named = analysis.resolved if analysis.machine.rubs else analysis
+        had = analysis.solved is not None, analysis.has_rows_total
+        members = tuple(tuple(of.items_of(named)) for of in _families(*had))
         self._analysis = analysis
-        self._items: dict[str, tuple[Declared, str]] = {}
+        self._items = _indexed(*had, members)
         self._outputs: dict[str, AnalysisOutput] = {}
-        for _, group in groupby(had, key=lambda declaration: declaration.group):
-            own = []
-            for declaration in group:
-                who = declaration.items or declaration.members
-                if who not in members:
-                    members[who] = dict.fromkeys(declaration.items_of(named))
-                own.append((declaration, members[who]))
-            for item in dict.fromkeys(item for _, items in own for item in items):
-                for declaration, items in own:
-                    if item in items:
-                        self._items[declaration.named(item)] = declaration, item
 
     def __iter__(self) -> Iterator[AnalysisOutput]:
         return map(self.__getitem__, self._items)
@@ -209,10 +200,48 @@ class AnalysisOutputs:
         return {group: ones for group, ones in by_group.items() if ones}
 
 
-def _can_be_had(declared: Declared, analysis: Any) -> bool:
-    if declared.needs == "motion":
-        return True
-    return analysis.solved is not None and (declared.is_of_row or analysis.has_rows_total)
+# What follows is kept: machines of one build have the same outputs, as at each move of a drag.
+
+
+@kept_until_declared(4)
+def _available(forces: bool, rows: bool) -> list[Declared]:
+    """Outputs of an analysis with forces or without, and with those of all rows or without."""
+    return [
+        item
+        for item in DECLARED.values()
+        if item.read and (item.needs == "motion" or (forces and (item.is_of_row or rows)))
+    ]
+
+
+def _who(declaration: Declared) -> Any:
+    """What lists the members of an output, which several have in common."""
+    return declaration.items or declaration.members
+
+
+@kept_until_declared(4)
+def _families(forces: bool, rows: bool) -> list[Declared]:
+    """The first of the available outputs whose members are listed by the same."""
+    return [*{_who(item): item for item in reversed(_available(forces, rows))}.values()]
+
+
+@kept_until_declared(16)
+def _indexed(
+    forces: bool, rows: bool, members: tuple[tuple[str, ...], ...]
+) -> dict[str, tuple[Declared, str]]:
+    """Name of each output -> its declaration and member, member by member of each group.
+
+    members : of each of `_families`.
+    """
+    index: dict[str, tuple[Declared, str]] = {}
+    families = zip(_families(forces, rows), members, strict=True)
+    members_of = {_who(item): dict.fromkeys(had) for item, had in families}
+    for _, group in groupby(_available(forces, rows), key=lambda item: item.group):
+        own = [(declaration, members_of[_who(declaration)]) for declaration in group]
+        for item in dict.fromkeys(item for _, had in own for item in had):
+            for declaration, had in own:
+                if item in had:
+                    index[declaration.named(item)] = declaration, item
+    return index
 
 
 def unit_of(name: str) -> str:

@@ -92,9 +92,7 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
         for guide in scene.guides
     ]
     items += _pieces(scene, "riders")
-    items += [
-        Piece("joints", tuple(_marks(scene, body, traced)), _with(body)) for body in scene.bodies
-    ]
+    items += _joints(scene, traced)
     if field and scene.field is not None and scene.field.tray:
         items.append(Piece("tray", (line("tray", *scene.field.tray),)))
     items += _sense(scene)
@@ -290,28 +288,32 @@ def _pin(scene: Scene, point: str, place: complex) -> Shape:
     return circle("pin", place, radius, 0.0 if radius else PIN)
 
 
-def _marks(scene: Scene, body: LinkOutline, traced: Collection[str]) -> Iterator[Shape]:
-    """Pins, traced points and centre of mass of a link."""
-    others = scene.bodies[: scene.bodies.index(body)]
+def _joints(scene: Scene, traced: Collection[str]) -> Iterator[Piece]:
+    """Pins, traced points and centres of mass, a point with the first link that has it."""
     hung = {point for ends in scene.stretched for point in ends}
     hung |= {point for drive in scene.drives for point in drive.between or ()}
-    points = {*scene.frame, *(point for other in others for point in other.points)}
-    for point in body.points:
-        if point in points:
-            continue
-        place = scene.local(body, scene.places[point])
-        if point in traced:
-            yield circle("tip", place, grown=4.6)
-        elif point in scene.pins or point in hung:
-            yield _pin(scene, point, place)
-        else:
-            yield circle("dot", place, grown=2.0)
-    center = scene.mass_centers.get(body.name)
-    if center is not None:
-        place = scene.local(body, center)
-        pins = (scene.places[point] for point in body.points if point in scene.pins)
-        if all(abs(place - scene.local(body, pin)) > 2 * scene.unit for pin in pins):
-            yield from mass(place)
+    signed, apart = {*scene.frame}, 2 * scene.unit
+    for body in scene.bodies:
+        own = [point for point in body.points if point not in signed]
+        signed.update(own)
+        shapes = [_point(scene, point, scene.local(body, scene.places[point]), traced, hung)
+                  for point in own]  # fmt: skip
+        center = scene.mass_centers.get(body.name)
+        pins = [scene.places[point][0] for point in body.points if point in scene.pins]
+        if center is not None and all(abs(center[0] - pin) > apart for pin in pins):
+            shapes += mass(scene.local(body, center))
+        yield Piece("joints", tuple(shapes), _with(body))
+
+
+def _point(
+    scene: Scene, point: str, place: complex, traced: Collection[str], hung: Collection[str]
+) -> Shape:
+    """A point of a link at its place in it.  hung : points at which something is stretched."""
+    if point in traced:
+        return circle("tip", place, grown=4.6)
+    if point in scene.pins or point in hung:
+        return _pin(scene, point, place)
+    return circle("dot", place, grown=2.0)
 
 
 def _sense(scene: Scene) -> Iterator[Piece]:

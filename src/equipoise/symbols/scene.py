@@ -475,12 +475,27 @@ class Scene:
 
     def local(self, body: LinkOutline, place: Array) -> complex:
         """Where a place (N,) of a link is from its first point, in the link's own axes, m."""
-        arm = place[0] - self.places[body.points[0]][0]
-        return complex(arm * np.exp(-1j * self.angles[body.name][0]))
+        if body.name not in self._axes:  # each link has several places
+            turned = complex(np.exp(-1j * self.angles[body.name][0]))
+            self._axes[body.name] = complex(self.places[body.points[0]][0]), turned
+        origin, turned = self._axes[body.name]
+        return (complex(place[0]) - origin) * turned
 
     def corners(self, body: LinkOutline) -> Array:
         """Corners of what lies around a link, (n,)."""
-        return np.array([self.local(body, self.places[name]) for name in body.outline])
+        if body.name not in self._corners:  # which several signs of a link go by
+            places = [self.local(body, self.places[name]) for name in body.outline]
+            self._corners[body.name] = np.array(places)
+        return self._corners[body.name]
+
+    @cached_property
+    def _axes(self) -> dict[str, tuple[complex, complex]]:
+        """First point of a link (m), and its direction turned back, at the first crank angle."""
+        return {}
+
+    @cached_property
+    def _corners(self) -> dict[str, Array]:
+        return {}
 
 
 def _box(places: Array) -> tuple[complex, complex]:

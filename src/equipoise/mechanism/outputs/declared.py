@@ -25,6 +25,7 @@ from equipoise.mechanism.outputs.declaring import (
     declare_as,
     declared,
     declaring,
+    kept_until_declared,
     looked_up,
     matches,
     output,
@@ -162,6 +163,7 @@ __all__ = [
     "OutputSource",
     "declared",
     "declaring",
+    "kept_until_declared",
     "matches",
     "output",
 ]

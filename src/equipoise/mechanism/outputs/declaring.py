@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from itertools import dropwhile
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, say, speaking, spoken, to_say
@@ -24,6 +24,7 @@ from equipoise.quantities import SI, Dimension
 if TYPE_CHECKING:
     from equipoise.signals import Array
 
+Result = TypeVar("Result")
 Needs = Literal["motion", "masses", "planes", "rows", "support"]
 Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
 """What is told of an output as one number; see `mechanism.parts.objectives`."""
@@ -246,12 +247,32 @@ class OutputSource:
 
 DECLARED: dict[str, Declared] = {}
 """Everything that is declared, by name, in the order in which it is told."""
+_FORGETTING: list[Callable[[], None]] = []
+
+
+def kept_until_declared(most: int) -> Callable[[Callable[..., Result]], Callable[..., Result]]:
+    """A function whose last results are kept until another output is declared.
+
+    most : number of results.
+    """
+
+    def keeping(function: Callable[..., Result]) -> Callable[..., Result]:
+        kept = lru_cache(most)(function)
+        _FORGETTING.append(kept.cache_clear)
+        return kept
+
+    return keeping
+
+
+def _forget() -> None:
+    for forget in _FORGETTING:
+        forget()
 
 
 def declare_as(declared: Declared) -> None:
     """Declare an output as it is."""
     DECLARED[declared.name] = declared
-    _matches.cache_clear()
+    _forget()
 
 
 def output(
@@ -311,7 +332,7 @@ def declaring() -> Iterator[None]:
         for known, values in before:
             known.clear()
             known.update(values)  # type: ignore[arg-type]
-        _matches.cache_clear()
+        _forget()
 
 
 @contextmanager
@@ -324,7 +345,7 @@ def of_parts() -> Iterator[None]:
     yield
     for known, values in last:
         known.update(values)
-    _matches.cache_clear()
+    _forget()
 
 
 def matches(name: str) -> tuple[tuple[Declared, str], ...]:
@@ -336,7 +357,7 @@ def matches(name: str) -> tuple[tuple[Declared, str], ...]:
     return _matches(name)
 
 
-@lru_cache(8192)
+@kept_until_declared(8192)
 def _matches(name: str) -> tuple[tuple[Declared, str], ...]:
     """Matching outputs, kept until another is declared: advice asks a hundred thousand times."""
     values = [(entry, item) for entry in DECLARED.values() for item in [entry.item_of(name)]]
