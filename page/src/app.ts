@@ -103,6 +103,7 @@ export class App {
   private turned = true;
   private held = false;
   private resumes = false;
+  private filming = false;
   private opened = "";
 
   constructor(
@@ -700,26 +701,33 @@ export class App {
     this.command({ type: "download", kind, language, at, ...(format && { format }) });
   }
 
-  /** Record one cycle, or the run, as it is played, and hand it out. */
+  /** Record one cycle, or the run, as it is played, and hand it out, unless something else comes to be shown. */
   private async film(): Promise<void> {
     const { state, player } = this;
-    if (!state) return;
+    if (!state || this.filming) return;
     const { share, playing } = player;
+    const runs = player.time !== null;
+    const shown = () => this.state?.design === state.design && (player.time !== null) === runs;
+    this.filming = true;
     player.playing = false;
     this.tell(player.time === null ? say("Recording one cycle …") : say("Recording the run …"), false);
     const show = (now: number) => {
+      if (!shown()) return false;
       player.share = now;
       this.point();
+      return true;
     };
     try {
       const areas = [this.board.root, this.side].filter((area) => area.checkVisibility());
-      const { blob, suffix } = await record({ root: this.el, areas, seconds: player.duration, show });
-      handOut(`${state.name.replace(/\.toml$/, "")}.${suffix}`, blob.type, blob);
+      const video = await record({ root: this.el, areas, seconds: player.duration, show });
+      if (!video) return this.tell(say("The recording was ended, as something else is shown now."), true);
+      handOut(`${state.name.replace(/\.toml$/, "")}.${video.suffix}`, video.blob.type, video.blob);
       this.tell("", false);
     } catch {
       this.tell(say("This browser does not record pages; take the motion as a GIF."), true);
     } finally {
-      [player.share, player.playing] = [share, playing];
+      this.filming = false;
+      if (shown()) [player.share, player.playing] = [share, playing];
       this.stir();
     }
   }

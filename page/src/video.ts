@@ -17,8 +17,8 @@ export interface Scenery {
   areas: HTMLElement[];
   /** How long what moves takes as it is played, s. */
   seconds: number;
-  /** Show the moment at which a share of it is over. */
-  show(share: number): void;
+  /** Show the moment at which a share of it is over; tells whether it can still be shown. */
+  show(share: number): boolean;
 }
 
 export interface Video {
@@ -35,8 +35,8 @@ function kind(): string | undefined {
   return KINDS.find((one) => MediaRecorder.isTypeSupported(one));
 }
 
-/** Record what moves from its start to its end: a picture at every frame that the browser gives. */
-export async function record({ root, areas, seconds, show }: Scenery): Promise<Video> {
+/** Record what moves from its start to its end: a picture at every frame that the browser gives; null where it is shown no more. */
+export async function record({ root, areas, seconds, show }: Scenery): Promise<Video | null> {
   const mimeType = kind() as string;
   const reel = new Reel(root, areas);
   const stream = reel.canvas.captureStream(0);
@@ -51,8 +51,10 @@ export async function record({ root, areas, seconds, show }: Scenery): Promise<V
   recorder.start();
   const start = performance.now();
   // However slow a browser draws, the first and the last moment are recorded.
+  let shown = true;
   for (let share = 0; ; share = Math.min((performance.now() - start) / 1000 / whole, 1)) {
-    show(share);
+    shown = show(share);
+    if (!shown) break;
     await reel.draw();
     track.requestFrame();
     await new Promise((resolve) => requestAnimationFrame(resolve));
@@ -61,7 +63,7 @@ export async function record({ root, areas, seconds, show }: Scenery): Promise<V
   recorder.stop();
   await stopped;
   for (const one of stream.getTracks()) one.stop();
-  return { blob: new Blob(parts, { type: mimeType }), suffix: mimeType.slice(6, 10).replace(";", "") };
+  return !shown ? null : { blob: new Blob(parts, { type: mimeType }), suffix: mimeType.slice(6, 10).replace(";", "") };
 }
 
 /** A canvas on which parts of the page are drawn as they stand. */

@@ -120,3 +120,8 @@ def test_drawing_and_charts_are_recorded_as_a_video(live: Live, what: str, tmp_p
     shown = page.evaluate("window.shown")
     assert len({*shown}) > 2
     assert shown[0] == ("0.000 s after the start" if what == "run" else "0.0 degrees")
+    if what == "run":  # and nothing is handed out of what is half a run and half a cycle
+        page.get_by_label("Download", exact=True).click()
+        page.get_by_role("button", name="Drawing and charts as video").click()
+        page.get_by_role("button", name="Back to the cycle").click()
+        expect(live.told("The recording was ended")).to_be_visible()
