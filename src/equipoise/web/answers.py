@@ -7,11 +7,15 @@ from typing import Protocol
 
 from equipoise.errors import EquipoiseError
 from equipoise.web.messages import Message, message_of
-from equipoise.web.replies import Reply, completed, refused
+from equipoise.web.replies import Reply, busy, completed, refused
 
 
 class Counterpart(Protocol):
     """What a page talks to."""
+
+    @property
+    def language(self) -> str:
+        """That the reader speaks."""
 
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message."""
@@ -35,6 +39,8 @@ def answers(to: Counterpart, content: object) -> Iterator[Reply]:
     except EquipoiseError as error:
         yield refused(None, error)
         return
+    if (begun := busy(message, to.language)) is not None:
+        yield begun
     yield from to.receive(message)
     if message.preview:
         return

@@ -41,7 +41,7 @@ from equipoise.web.edits import Computed, solved
 from equipoise.web.figures import compared, figures_of
 from equipoise.web.incomplete import Incomplete
 from equipoise.web.messages import Message
-from equipoise.web.replies import Reply, busy
+from equipoise.web.replies import Reply
 
 Values = dict[str, Any]
 MAIN = ("rms", "peak")
@@ -411,5 +411,4 @@ def adopted(
 def answered(session: BalanceSession, message: Message) -> Iterator[Reply]:
     """Balance a session's machine at once, and show what came of it."""
     base = session.current()
-    yield busy(message, session.language)
     yield from adopted(session, base, computed(session, base, message), message)

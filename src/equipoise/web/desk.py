@@ -164,6 +164,11 @@ class PageBackend:
         yield from replies
 
     @property
+    def language(self) -> str:
+        """That the reader speaks."""
+        return self.session.language
+
+    @property
     def has_more(self) -> bool:
         """Whether there is more to tell, which takes longer."""
         return self._of_session and self.session.has_more

@@ -11,7 +11,6 @@ from typing import Any
 from equipoise.errors import UsageError
 from equipoise.i18n import LANGUAGES, Note, speaking
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.charts import Chart
 from equipoise.schema.files import to_csv
 from equipoise.schema.models import taken_along
@@ -66,7 +65,7 @@ def chart_of(computed: Computed, name: str, choice: str) -> Chart:
 
         return _named({chart.name: chart for chart, _ in link_charts(analysis)}, name)
     if name.startswith("run."):
-        return _named(_charts_of_run(machine), name)
+        return _named(_charts_of_run(computed), name)
     if name in SAME:
         from equipoise.figures.pictures import analysis_pictures
 
@@ -74,14 +73,14 @@ def chart_of(computed: Computed, name: str, choice: str) -> Chart:
     return _over_crank(computed, choice)
 
 
-def _charts_of_run(machine: Machine) -> dict[str, Chart]:
+def _charts_of_run(computed: Computed) -> dict[str, Chart]:
     """Each panel of the charts of a machine's run as a chart, by its name on the page."""
-    from equipoise.running.run import run
     from equipoise.web.result_blocks import panel_name
+    from equipoise.web.runs import run_of
 
     return {
         panel_name("run", item, number): replace(item, panels=(panel,))
-        for item in run(machine).charts().values()
+        for item in run_of(computed).charts().values()
         for number, panel in enumerate(item.panels)
     }
 

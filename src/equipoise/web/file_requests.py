@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager
 from typing import Protocol
 
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, say
+from equipoise.i18n import Note
 from equipoise.schema.documents import dumps
 from equipoise.web.design import Design
 from equipoise.web.disk import NOT_OF_FILE, Disk
@@ -17,9 +17,6 @@ from equipoise.web.gallery import pictured
 from equipoise.web.history import History
 from equipoise.web.messages import Message
 from equipoise.web.replies import Reply
-
-SLOW = ("report", "drawing", "chart", "film", "played")
-"""Files that take longer than a moment."""
 
 
 class DesignsSession(Protocol):
@@ -61,10 +58,6 @@ def _save(session: DesignsSession, message: Message) -> Iterator[Reply]:
 
 def _download(session: DesignsSession, message: Message) -> Iterator[Reply]:
     current = session.current()
-    if message.text("kind") in SLOW:
-        with session.telling():
-            what = say("making the file")
-        yield Reply({"type": "busy", "seq": message.seq, "what": what})
 
     def everything(language: str) -> Iterator[Reply]:
         """All that a page could be told of the design."""

@@ -10,11 +10,11 @@ import ctypes
 import sys
 import time
 from collections.abc import Callable
-from concurrent.futures import Executor
+from concurrent.futures import Executor, Future
 from concurrent.futures import ThreadPoolExecutor as Threads
 from contextlib import AbstractContextManager, ExitStack
 from threading import Lock, Timer, get_ident
-from typing import TypeVar
+from typing import Any, TypeVar
 
 Answer = TypeVar("Answer")
 
@@ -90,7 +90,22 @@ class PageWork:
     def __init__(self) -> None:
         self.spent = 0.0
         self._lock, self._threads = Lock(), set[int]()
+        self._step: Future[Any] | None = None
         self._ended = self._committed = False
+
+    def submit(
+        self, lane: Executor, compute: Callable[[], Answer], timed: bool = False
+    ) -> Future[Answer]:
+        """Compute as soon as a thread of a lane is free; `end` cancels what still waits for one.
+
+        Raises
+        ------
+        EndedError : it has been ended before.
+        """
+        if self._ended:
+            raise EndedError
+        self._step = step = lane.submit(self.timed if timed else self.do, compute)
+        return step
 
     def do(self, compute: Callable[[], Answer]) -> Answer:
         """Compute in this thread; `EndedError` as soon as `end` is called."""
@@ -141,6 +156,8 @@ class PageWork:
                 again = Timer(AGAIN, self.end)
                 again.daemon = True
                 again.start()
+        if self._step is not None:
+            self._step.cancel()
 
     def _enter(self, thread: int) -> None:
         with self._lock:

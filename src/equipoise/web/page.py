@@ -6,11 +6,11 @@ import asyncio
 import sys
 import traceback
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from starlette.websockets import WebSocketDisconnect
 
@@ -19,12 +19,11 @@ from equipoise.i18n import Note
 from equipoise.web.desk import PageBackend
 from equipoise.web.lanes import MOMENT, EndedError, Lanes, PageWork, give_back
 from equipoise.web.messages import SLOW, Message, makes_way, read
-from equipoise.web.replies import CANCELLED, Reply, completed, packed, refused, unexpected
+from equipoise.web.replies import CANCELLED, Reply, busy, completed, packed, refused, unexpected
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
-Do = Callable[[Callable[[], Any]], Any]
 MOST_WAITING, MOST_QUESTIONS = 100, 3
 PAUSE = 0.2
 """s without a message, after which what takes longer is told too."""
@@ -32,7 +31,7 @@ NEXT = 0.1
 """s in which a drag that goes on has its next move here; else what follows a state is told too."""
 SELDOM = 0.2
 """s after which that is told of a drag that never pauses."""
-BUSY = Note("questions that take long are still being answered; wait for them")
+FULL = Note("questions that take long are still being answered; wait for them")
 FLOODED = "too many messages at once; load the page again"
 POLICY_VIOLATION, TRY_LATER = 1008, 1013
 
@@ -117,13 +116,15 @@ class Page:
             self.last = message
             known = message.kind != "open" and self.work.spent < MOMENT
             lane = self.lanes.quick if known else self.lanes.heavy
-            await self._answer(self.desk.receive(message), message, lane, self.work.timed)
+            await self._answer(self.desk.receive(message), message, lane, timed=True)
             self._go_on(message)
         elif self.questions.full():
-            await self._send(refused(message.seq, UsageError(BUSY)))
+            await self._send(refused(message.seq, UsageError(FULL)))
             self._go_on(message)
         else:
             self.questions.put_nowait(message)
+            if (begun := busy(message, self.desk.language)) is not None:
+                await self._send(begun)  # also while others' questions are answered
 
     async def _work(self) -> None:
         """Answer what takes long, one after the other, beside what does not."""
@@ -133,8 +134,8 @@ class Page:
             self.desk.session.before_change = self.question.commit
             try:
                 replies, lane = self.desk.receive(message), self.lanes.long
-                await self._answer(replies, message, lane, self.question.do)
-            except EndedError:
+                await self._answer(replies, message, lane, self.question)
+            except (EndedError, asyncio.CancelledError):
                 if self.closed:
                     raise
                 self.cancelled.appendleft(message)
@@ -183,17 +184,23 @@ class Page:
                 break
 
     async def _answer(
-        self, replies: Iterator[Reply], to: Message | None, lane: Executor, do: Do | None = None
+        self,
+        replies: Iterator[Reply],
+        to: Message | None,
+        lane: Executor,
+        work: PageWork | None = None,
+        timed: bool = False,
     ) -> None:
         """Send replies as they are computed; a mistake of the program must not end the page."""
-        loop, do = asyncio.get_running_loop(), do or self.work.do
+        loop, work = asyncio.get_running_loop(), work or self.work
         try:
             while True:
-                run_in_executor = await loop.run_in_executor(lane, do, partial(next, replies, None))
-                if run_in_executor is None:
+                step = work.submit(lane, partial(next, replies, None), timed)
+                reply = await asyncio.wrap_future(step)
+                if reply is None:
                     self.whole = loop.time()
                     break
-                await self._send(run_in_executor)
+                await self._send(reply)
                 if to is not None and to.preview and await self._overtaken(loop.time()):
                     break
         except Exception as error:  # whatever it is, the last good state is still there

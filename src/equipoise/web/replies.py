@@ -19,8 +19,14 @@ LONGEST = 800
 """Signs of a sentence."""
 CANCELLED = Note("cancelled; nothing was changed")
 MISTAKE = Note("this went wrong inside the program, and nothing was changed; please report it")
-BUSY = {"balance": to_say("balancing"), "run": to_say("running the machine")}
+BUSY = {
+    "balance": to_say("balancing"),
+    "run": to_say("running the machine"),
+    "download": to_say("making the file"),
+}
 """What is under way, by the kind of message that asks for it."""
+LONG_FILES = ("report", "drawing", "chart", "film", "played")
+"""Kinds of files that take longer than a moment."""
 
 
 @dataclass(frozen=True)
@@ -63,8 +69,14 @@ def unexpected(error: Exception) -> UsageError:
     )
 
 
-def busy(message: Message, language: str) -> Reply:
-    """Say that what takes long has begun, which needs nothing of what computes it."""
+def busy(message: Message, language: str) -> Reply | None:
+    """What a page is told at once of a question that takes long, also while it waits for others;
+    None of one that takes a moment.
+    """
+    if message.kind not in BUSY:
+        return None
+    if message.kind == "download" and message.values.get("kind") not in LONG_FILES:
+        return None
     with speaking(language):
         return Reply({"type": "busy", "seq": message.seq, "what": say(BUSY[message.kind])})
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from math import pi
 from typing import TYPE_CHECKING, Protocol
@@ -16,10 +16,10 @@ from equipoise.signals import Array
 from equipoise.symbols.scene import Scene
 from equipoise.web.block import FloatBlock, Values
 from equipoise.web.drawing import moves_of
-from equipoise.web.edits import Computed
+from equipoise.web.edits import Computed, kept_with_first
 from equipoise.web.incomplete import Incomplete
 from equipoise.web.messages import Message
-from equipoise.web.replies import Reply, busy
+from equipoise.web.replies import Reply
 from equipoise.web.result_blocks import block_messages, panel_charts
 
 if TYPE_CHECKING:
@@ -53,9 +53,7 @@ class RunSession(Protocol):
 
 def answered(session: RunSession, message: Message) -> Iterator[Reply]:
     """Run a session's machine at once, and show what came of it."""
-    base = session.current()
-    yield busy(message, session.language)
-    yield computed(session, base, message)
+    yield computed(session, session.current(), message)
 
 
 def computed(session: RunSession, base: Computed, message: Message) -> Reply:
@@ -65,17 +63,29 @@ def computed(session: RunSession, base: Computed, message: Message) -> Reply:
     ------
     UsageError : the machine is no longer `base`; others as of `run`.
     """
-    from equipoise.running.run import run
 
     def progress(turns: int, most: int) -> None:
         if session.current_state is not base:
             raise UsageError(CHANGED)
 
-    result = run(base.analysis.machine, progress=progress)
+    result = run_of(base, progress)
     with session.telling():
         content, data = run_message(result, base)
     head = {"type": "run", "seq": message.seq, "design": session.number_of(base)}
     return Reply({**head, **content}, data)
+
+
+@kept_with_first
+def run_of(base: Computed, progress: Callable[[int, int], None] | None = None) -> Run | DrivesRun:
+    """The run of a design, which its charts that are downloaded later are drawn from.
+
+    Raises
+    ------
+    EquipoiseError : as of `run`.
+    """
+    from equipoise.running.run import run
+
+    return run(base.analysis.machine, progress=progress)
 
 
 def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:

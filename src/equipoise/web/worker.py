@@ -25,7 +25,6 @@ from equipoise.web.desk import PageBackend
 from equipoise.web.edits import Computed, solved
 from equipoise.web.messages import SLOW, Message, makes_way, read
 from equipoise.web.replies import (
-    BUSY,
     CANCELLED,
     Reply,
     busy,
@@ -202,8 +201,8 @@ class Foreground:
             self._replies = iter([refused(None, message)])
         elif message.kind in SLOW and self._is_for_background(message):
             session = self.desk.session
-            if message.kind in BUSY:
-                self._replies = iter([busy(message, session.language)])
+            if (begun := busy(message, session.language)) is not None:
+                self._replies = iter([begun])
             current = session.current() if message.kind in OF_MACHINE else None
             self._begin(message, current, None, sweep=False)
         else:
@@ -271,7 +270,7 @@ class Foreground:
 
 
 class Background:
-    """Computes tasks, each from nothing but itself."""
+    """Computes tasks, each from nothing but itself and what was computed of the same design."""
 
     def __init__(self) -> None:
         self.missing: str | None = None
@@ -279,6 +278,8 @@ class Background:
         self._refused_packages: set[str] = set()
         self._task: SlowTask | None = None
         self._steps: Iterator[tuple[str, bytes]] | None = None
+        self._last: tuple[int, Computed | None] = 0, None
+        """The last design that the page shows, by its number, with what was computed of it."""
 
     def begin(self, data: Buffer) -> None:
         """Begin a task."""
@@ -312,11 +313,19 @@ class Background:
         self._steps = iter([("result", b"")])
         return "reply", packed(refused(seq, error, self._task.language))
 
+    def _solved(self, task: SlowTask) -> Computed | None:
+        """The design of a task; as it was computed for the last task, where it is the same."""
+        if task.design is None:
+            return None
+        if task.number == 0 or task.number != self._last[0]:
+            self._last = task.number, solved(task.design)
+        return self._last[1]
+
     def _run(self, task: SlowTask) -> Iterator[tuple[str, bytes]]:
         session = Session(language=task.language)
         result = b""
         try:
-            outcome = None if task.design is None else solved(task.design)
+            outcome = self._solved(task)
             if outcome is not None:
                 session.open(outcome.design, outcome)
                 session.wanted, session.numbered = task.wanted, (outcome, task.number)

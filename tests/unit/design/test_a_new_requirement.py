@@ -132,7 +132,7 @@ def test_the_page_balances_within_it(added: None, tmp_path: Path) -> None:
     session = Session()
     session.open(opened_file(path))
     ask(session, "ready")
-    _, told, _ = ask(session, "balance")
+    told, _ = ask(session, "balance")
     found = eq.balance(eq.load(path))
     aim = told.content["aims"][0]
     assert aim["after"] == pytest.approx(found.after["shaking_force.y.rms"], rel=1e-3)

@@ -107,7 +107,7 @@ def test_balance_chooses_gears_by_it(added: RandomSearch) -> None:
 
 def test_the_page_balances_by_it(added: RandomSearch) -> None:
     session, _ = opened("balance-geared-a")
-    _, shown, _ = ask(session, "balance")
+    shown, _ = ask(session, "balance")
     assert len(added.seen) == 1
     found = eq.balance(eq.load("balance-geared-a"))
     assert shown.content["aims"][0]["after"] == pytest.approx(

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import MassError
+from equipoise.errors import MassError, UsageError
 from equipoise.present.cells import printed
 from equipoise.results.blocks import Block, Column, Facts, FileText, Notes, Table, Text, Value
 from equipoise.results.charts import Axis, Chart, Curve, Panel
@@ -32,8 +32,8 @@ BARE = {"mass": None, "center_of_mass": None, "inertia": None}
 def run_of(name: str) -> tuple[State, State]:
     """The state of an example, and its run."""
     session, shown = opened(name)
-    busy, reply = ask(session, "run", seq=3)
-    assert (busy.content["type"], reply.content["type"]) == ("busy", "run")
+    (reply,) = ask(session, "run", seq=3)
+    assert reply.content["type"] == "run"
     return shown, State(reply.content, np.frombuffer(reply.buffer, "<f4"))
 
 
@@ -117,23 +117,24 @@ def test_a_run_is_of_the_design_that_was_shown() -> None:
     """By its number, which is another after each edit and move of a drag, and else stays."""
     session, shown = opened("cutter-bar")
     mass = {"set": "links.crank.mass", "text": "9 kg"}
-    replies = session.receive(message_of({"type": "run", "seq": 1}))
-    assert next(replies).content["type"] == "busy"
+    base = session.current()
     after = edit(session, mass)
     assert after.content["design"] != shown.content["design"]
-    assert refusal([next(replies)]) == runs.CHANGED
+    with pytest.raises(UsageError) as refused:
+        runs.computed(session, base, message_of({"type": "run", "seq": 1}))
+    assert refused.value.note == runs.CHANGED
     (again,) = ask(session, "outputs", seq=4, names=["drive_torque"])
     assert again.content["design"] == after.content["design"]
     moved = edit(session, {**mass, "text": "10 kg"}, commit=False)
     assert moved.content["design"] != after.content["design"]
-    assert ask(session, "run", seq=5)[1].content["design"] == 0
+    assert ask(session, "run", seq=5)[0].content["design"] == 0
 
 
 def test_what_cannot_run_is_told_in_the_sentence_of_the_command() -> None:
     session, _ = opened("cutter-bar")
     massless = eq.load("cutter-bar").with_link("crank", **BARE)
     ask(session, "open", seq=2, name="massless.toml", text=eq.dumps(massless))
-    _, told = ask(session, "run", seq=3)
+    (told,) = ask(session, "run", seq=3)
     with pytest.raises(MassError) as refused:
         eq.run(massless)
     assert refusal([told]) == refused.value.message()
@@ -142,8 +143,7 @@ def test_what_cannot_run_is_told_in_the_sentence_of_the_command() -> None:
 def test_a_run_is_told_in_the_language_of_the_page() -> None:
     session, _ = opened("cutter-bar")
     ask(session, "speak", seq=2, languages=["de"])
-    busy, told = ask(session, "run", seq=3)
-    assert busy.content["what"] == "die Maschine läuft"
+    (told,) = ask(session, "run", seq=3)
     assert told.content["blocks"][0]["text"].startswith(
         "Die Maschine steht nach 3,789\N{NO-BREAK SPACE}s"
     )

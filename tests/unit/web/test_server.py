@@ -38,6 +38,7 @@ from equipoise.web.gallery import opened_example
 from equipoise.web.incomplete import Incomplete
 from equipoise.web.lanes import MOMENT, EndedError, Lanes, PageWork, print_no_endings
 from equipoise.web.page import MOST_WAITING
+from equipoise.web.replies import CANCELLED
 from equipoise.web.server import (
     FULL,
     HOST,
@@ -274,7 +275,8 @@ def test_a_question_too_many_has_all_its_answers_too(
         assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
         for seq in range(2, most + 1):
             page.send(json.dumps({"type": "balance", "seq": seq}))
-        refused = hear(page)
+        *waiting, refused = [hear(page) for _ in range(2, most + 1)]
+        assert {one["type"] for one in waiting} == {"busy"}
         assert (refused["type"], refused["seq"]) == ("refused", most)
         rested.set()
         assert any(hear(page) == {"type": "told", "seq": most} for _ in range(100))
@@ -453,6 +455,29 @@ def test_what_takes_long_is_cancelled_and_asked_again(
         assert ask(page, {"type": "balance", "seq": 3})["type"] == "busy"
         again = hear(page)
         assert (again["type"], again["seq"]) == ("balanced", 3)
+
+
+def test_what_waits_for_another_page_says_so_and_is_cancelled(
+    here: Here, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At once, while the other page's question is still computed, which then has its answer."""
+    begun, go_on = threading.Event(), threading.Event()
+
+    def slowly(design: Design, hold: bool) -> Balanced:
+        begun.set()
+        assert go_on.wait(300)
+        return balanced(design, hold)
+
+    monkeypatch.setattr(balanced_module, "balanced", slowly)
+    with here.page() as first, here.page() as second:
+        for page in (first, second):
+            hear(page)
+        assert ask(first, {"type": "balance", "seq": 1})["type"] == "busy"
+        assert begun.wait(300)
+        assert ask(second, {"type": "run", "seq": 1})["what"] == "running the machine"
+        assert ask(second, {"type": "cancel"})["message"] == CANCELLED
+        go_on.set()
+        assert hear(first)["type"] == "balanced"
 
 
 def test_a_balance_that_changes_the_machine_is_not_cancelled(

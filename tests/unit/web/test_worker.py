@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from itertools import count
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 
@@ -111,6 +112,25 @@ def test_a_run_is_computed_beside_of_the_design_that_was_shown(page: Foreground)
     (old,) = [one for one in done_beside(page) if one["type"] == "run"]
     assert old["design"] == run["design"]
     assert old["design"] != page.desk.session.number_of(page.desk.session.current())
+
+
+def test_a_design_is_computed_once_for_all_that_is_asked_of_it(
+    page: Foreground, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As its run is, and another one is computed anew."""
+    beside, designs = Background(), []
+    solved = Mock(side_effect=worker.solved)
+    monkeypatch.setattr(worker, "solved", solved)
+    for kind in ("csv", "csv"):
+        asked(page, "download", kind=kind)
+    asked(page, "edit", label="mass", edits=[MASS])
+    asked(page, "download", kind="csv")
+    while page.tasks:
+        beside.begin(memoryview(page.tasks.popleft()))
+        while (step := beside.step()) is not None and step[0] != "result":
+            designs.append(unpacked(step[1])[0]["type"])
+    assert designs == ["file", "file", "file"]
+    assert solved.call_count == 2
 
 
 @pytest.mark.exhaustive(but=["run"])
