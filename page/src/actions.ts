@@ -40,7 +40,8 @@ function atJoint(point: string, state: State, page: Doing): Action[] {
   const fixed = frame.includes(point);
   const meets = holders.length + (fixed ? 1 : 0) > 1;
   const actions: (Action | false)[] = [
-    { name: say("Spring …"), act: () => page.add("springs", link ? { link, point } : { to: point }) },
+    // A spring pulls a link at a point that moves, and ends in the frame.
+    { name: say("Spring …"), act: () => page.add("springs", link && !fixed ? { link, point } : { to: point }) },
     !!link && { name: say("Load …"), act: () => page.add("loads", { link, point }) },
     !!link && { name: say("Cylinder …"), act: () => page.change("drive", { link, between: [point] }, "between") },
     ...blocks.map(({ name }) => ({

@@ -134,6 +134,11 @@ def test_a_joint_has_a_menu_by_the_right_button(live: Live) -> None:
     form = live.page.get_by_role("form", name="New: springs")
     expect(form.get_by_label("link", exact=True)).to_have_value("coupler")
     expect(form.get_by_label("point", exact=True)).to_have_value("C")
+    form.get_by_role("button", name="Cancel").click()
+    live.joint("D").click(button="right")  # where a spring ends
+    menu(live, "D").get_by_role("menuitem", name="Spring …").click()
+    expect(form.get_by_label("other point", exact=True)).to_have_value("D")
+    expect(form.get_by_label("point", exact=True)).to_have_value("")
 
 
 @pytest.mark.exhaustive
