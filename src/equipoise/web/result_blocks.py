@@ -120,8 +120,8 @@ def marked_chart(item: Chart, label: str, block: FloatBlock) -> Values:
     marks: dict[str, list[Mark]] = {}
     for mark in panel.marks:
         marks.setdefault(mark.label, []).append(mark)
-    every = [*(curve.x for curve in panel.curves), [mark.x for mark in panel.marks]]
-    x = np.sort(np.concatenate(every))
+    every = [curve.x for curve in panel.curves]
+    x: Array = np.sort(np.concatenate([*every, np.array([mark.x for mark in panel.marks])]))
     curves = [
         Curve(x, np.interp(x, curve.x, curve.y, left=np.nan, right=np.nan), curve.label)
         for curve in panel.curves

@@ -242,7 +242,8 @@ def questions(linkage: Linkage) -> Iterator[Note | str]:
     ends = (end for *_, element in machine.elements for end in element.points)
     used |= {point for body, point in ends if body == FRAME} | linkage.joints.pins.keys()
     used |= {point for drive in machine.driven for point in drive.between or ()}
-    used |= {load.toward for load in (*machine.loads, *machine.timed_loads) if load.toward}
+    used |= {load.toward for load in machine.loads if load.toward}
+    used |= {load.toward for load in machine.timed_loads if load.toward}
     used |= {spring.to for spring in machine.balance.springs} if machine.balance else set()
     for point in machine.frame:
         if point not in used:
