@@ -219,9 +219,9 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"stiffness": None}, "[1]: give exactly one of stiffness, lengths with forces, and table"),
     ({"lengths": (0.0, 1.0)}, "[1]: give exactly one of stiffness, lengths with forces, and table"),
     ({"stiffness": None, "lengths": (0.0, 1.0), "forces": (0.0, 1.0)},
-     "[1].free_length: goes with a stiffness"),
+     "[1].free_length: goes with stiffness"),
     ({"stiffness": None, "free_length": 0.0, "lengths": (0.0, 1.0), "forces": (0.0, 1.0)},
-     "[1].preload: goes with a stiffness"),
+     "[1].preload: goes with stiffness"),
     ({"preload": np.inf}, "[1].preload: got inf; give a finite number"),
 ]  # fmt: skip
 

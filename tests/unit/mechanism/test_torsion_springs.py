@@ -150,7 +150,10 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"stiffness": -1.0}, "[1].stiffness: got -1 N m/rad; give more than 0"),
     ({"stiffness": None}, "[1]: give exactly one of stiffness, angles with torques, and table"),
     ({"angles": (0.0, 1.0)}, "[1]: give exactly one of stiffness, angles with torques, and table"),
-    ({"stiffness": None, "angles": (0.0, 1.0), "torques": (1.0,)}, "[1].angle: goes with a"),
+    (
+        {"stiffness": None, "angles": (0.0, 1.0), "torques": (1.0,)},
+        "[1].angle: goes with stiffness",
+    ),
 ]
 
 

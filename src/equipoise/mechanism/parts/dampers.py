@@ -11,9 +11,10 @@ from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, d
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.damping import Damping, one_law
+from equipoise.mechanism.parts.damping import Damping
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action
+from equipoise.mechanism.parts.row_laws import one_law
 from equipoise.mechanism.parts.springs import wrong_ends
 from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 from equipoise.quantities import Dimension, format_quantity
@@ -47,9 +48,9 @@ class Damper(BetweenPoints, Damping):
     list_text = "dampers between links, or links and frame"
     order = 3
     file_order = ("link", "point", "to", "on", "damping", "speeds", "forces", "table")
-    conditions: ClassVar[Conditions] = one_law("forces")
+    conditions: ClassVar[Conditions] = one_law("damping", ("speeds", "forces"))
 
-    efforts_key = "forces"
+    lists = ("speeds", "forces")
     special = to_say("damper")
     legend = ("damper", to_say("damper"))
     sign = "equipoise.symbols.dampers:damper_sign"
@@ -104,13 +105,6 @@ class Damper(BetweenPoints, Damping):
     )
 
     @property
-    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Speeds, m/s, and forces, N, of a table; empty of a linear damper."""
-        if self.table is not None:
-            return self.table.extension_rate, self.table.force
-        return self.speeds, self.forces
-
-    @property
     def meeting(self) -> str:
         """What is wrong where its ends meet."""
         return to_say(
@@ -152,14 +146,7 @@ class Damper(BetweenPoints, Damping):
             "{point!r} is pinned to the frame, where a damper does nothing; give a point that moves"
         )
         yield from wrong_ends(where, self, bodies, idle)
-        given_twice = Note("give exactly one of damping, speeds with forces, and table")
-        speeds, forces = self.rows
-        uneven = Note(
-            "got {speeds} speeds and {forces} forces; give as many of both",
-            speeds=len(speeds),
-            forces=len(forces),
-        )
-        yield from self.wrong_law(where, given_twice, uneven)
+        yield from self.wrong_law(where)
 
     def sentence(self) -> Note:
         """Damping of a damper and its ends, for a report."""

@@ -2,50 +2,28 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Conditions, lacks, needs
 from equipoise.mechanism.parts.force_kinds import RatedElement
-from equipoise.mechanism.parts.ramps import ramp_value, ramps_of, wrong_rows
+from equipoise.mechanism.parts.ramps import ramp_value, ramps_of
+from equipoise.mechanism.parts.row_laws import RowLaw
 
 ZERO = 1e-9
 """Of the largest effort of a table, below which its effort at standstill is rounding."""
 
 
-def one_law(efforts: str) -> Conditions:
-    """Check that a damper gives its resistance in one way; efforts : key of the list of them."""
-    return {
-        "oneOf": [
-            {**needs("damping"), **lacks("speeds", efforts, "table")},
-            {**needs("table"), **lacks("damping", "speeds", efforts)},
-            {**needs("speeds", efforts), **lacks("damping", "table")},
-        ]
-    }
-
-
-class Damping(RatedElement):
-    """A damper, which resists one speed between its bodies.
-
-    efforts_key : key of the list of what it resists with, beside `speeds`.
-    """
+class Damping(RowLaw, RatedElement):
+    """A damper, which resists one speed between its bodies."""
 
     cause = "damper"
     cause_label = to_say("dampers")
-    efforts_key: ClassVar[str]
+    constant = "damping"
 
     damping: Any
-    speeds: tuple[float, ...]
-    table: Any
-
-    @property
-    @abstractmethod
-    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Speeds and efforts of a table; empty of a linear damper."""
 
     @property
     def linear(self) -> bool:
@@ -62,20 +40,10 @@ class Damping(RatedElement):
         ((_, speed),) = ways
         return (-self.resistance(speed),)
 
-    def wrong_law(self, where: str, given_twice: Note, uneven: Note) -> Iterator[ModelError]:
-        """What is wrong with its resistance.
-
-        given_twice : sentence for less or more than one law.  uneven : for lists of different
-            lengths.
-        """
-        listed = bool(self.speeds or getattr(self, self.efforts_key))
-        if [self.damping is not None, listed, self.table is not None].count(True) != 1:
-            yield ModelError(where, given_twice)
-        elif self.damping is None:
-            at = f"{where}.table" if self.table is not None else f"{where}.speeds"
-            falling = Note("the speeds must rise from row to row")
-            wrong = [*wrong_rows(at, *self.rows, uneven, falling)]
-            yield from wrong or self._driving(at)
+    def wrong_rows(self, where: str) -> Iterator[ModelError]:
+        """What is wrong with the rows, by which it must not drive."""
+        wrong = [*super().wrong_rows(where)]
+        yield from wrong or self._driving(self.rows_at(where))
 
     def _driving(self, where: str) -> Iterator[ModelError]:
         """A table by which it would not resist, but drive."""
@@ -92,4 +60,4 @@ class Damping(RatedElement):
         """What has to be true of its damping and speeds, or of columns of them."""
         if self.damping is not None:
             yield self.damping >= 0
-        yield from (after > before for before, after in pairwise(self.rows[0]))
+        yield from self.rising()

@@ -52,16 +52,20 @@ def ramp_integral(ramps: Ramps, place: Any) -> Any:
 
 
 def wrong_rows(
-    where: str, places: Sequence[Any], values: Sequence[Any], uneven: Note, falling: Note
+    where: str, keys: tuple[str, str], places: Sequence[Any], values: Sequence[Any]
 ) -> Iterator[ModelError]:
-    """What is wrong with the rows of a table.
-
-    uneven, falling : sentences for lists of different lengths and for places that do not rise.
-    """
+    """What is wrong with the rows of a table; keys : of both lists, as the file has them."""
     if len(places) != len(values):
-        yield ModelError(where, uneven)
+        wrong = Note(
+            "got {count} {places} and {others} {values}; give as many of both",
+            count=len(places),
+            places=keys[0],
+            others=len(values),
+            values=keys[1],
+        )
+        yield ModelError(where, wrong)
     elif not 2 <= len(places) <= MOST_ROWS:
         wrong = Note("got {rows} rows; give 2 to {most}", rows=len(places), most=MOST_ROWS)
         yield ModelError(where, wrong)
     elif any(after <= before for before, after in pairwise(places)):
-        yield ModelError(where, falling)
+        yield ModelError(where, Note("the {what} must rise from row to row", what=keys[0]))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import pairwise
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -26,7 +25,8 @@ from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross, positive
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement, TableArgument
-from equipoise.mechanism.parts.ramps import table_value, wrong_rows
+from equipoise.mechanism.parts.ramps import table_value
+from equipoise.mechanism.parts.row_laws import TableRows
 from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 from equipoise.quantities import Dimension, format_quantity
 
@@ -52,7 +52,7 @@ class ResistanceTable(CsvTable):
 
 
 @declared
-class Resistance(BetweenPoints, RatedElement):
+class Resistance(BetweenPoints, TableRows, RatedElement):
     """A force against the motion of `point` of `link` over the body `on`, which bears its opposite.
 
     Dry and viscous parts, and one by the way, add up.  With a direction it acts along that alone.
@@ -74,6 +74,7 @@ class Resistance(BetweenPoints, RatedElement):
         },
         "dependentSchemas": {"table": lacks("positions", "forces")},
     }
+    lists = ("positions", "forces")
     freedoms = 2
 
     cause = "resistance"
@@ -158,13 +159,6 @@ class Resistance(BetweenPoints, RatedElement):
     @property
     def linear(self) -> bool:
         return self.force is None and not self.rows[0] and not self.one_way
-
-    @property
-    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Positions, m, and forces, N, of a dry part by the way; empty where there is none."""
-        if self.table is not None:
-            return self.table.position, self.table.force
-        return self.positions, self.forces
 
     def _moving(self, at: Placed) -> tuple[Any, Any, tuple[tuple[Any, Any], ...]]:
         """As `relative_motion`, along its direction; of one without, along the other body's x."""
@@ -260,33 +254,23 @@ class Resistance(BetweenPoints, RatedElement):
             wrong = Note("missing; what acts by the way or one way needs a direction")
             yield ModelError(f"{where}.direction", wrong)
         if by_way:
-            yield from self._wrong_rows(where)
+            yield from self.wrong_rows(where)
 
-    def _wrong_rows(self, where: str) -> Iterator[ModelError]:
-        positions, forces = self.rows
-        at, at_forces = (f"{where}.{name}" for name in ("positions", "forces"))
-        if self.table is not None:
-            at = at_forces = f"{where}.table"
-        uneven = Note(
-            "got {positions} positions and {forces} forces; give as many of both",
-            positions=len(positions),
-            forces=len(forces),
-        )
-        falling = Note("the positions must rise from row to row")
-        yield from wrong_rows(at, positions, forces, uneven, falling)
-        if any(force < 0 for force in forces):
-            wrong = Note("a resistance does not push; give forces of 0 or more")
-            yield ModelError(at_forces, wrong)
+    def wrong_rows(self, where: str) -> Iterator[ModelError]:
+        """What is wrong with the rows."""
+        yield from super().wrong_rows(where)
+        if any(force < 0 for force in self.rows[1]):
+            at = f"{where}.{'forces' if self.table is None else 'table'}"
+            yield ModelError(at, Note("a resistance does not push; give forces of 0 or more"))
 
     def demands(self) -> Iterator[Any]:
         """What has to be true of its numbers, or of columns of them."""
-        positions, forces = self.rows
-        for size in (self.force, self.damping, *forces):
+        for size in (self.force, self.damping, *self.rows[1]):
             if size is not None:
                 yield size >= 0
         if self.speed is not None:
             yield self.speed > 0
-        yield from (after > before for before, after in pairwise(positions))
+        yield from self.rising()
 
     def sentence(self) -> Note:
         """What it resists, for a report."""

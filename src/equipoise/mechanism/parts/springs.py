@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import pairwise
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -18,15 +17,14 @@ from equipoise.keys import (
     declared,
     inside,
     key,
-    lacks,
-    needs,
 )
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement, TableArgument
-from equipoise.mechanism.parts.ramps import Ramps, ramp_value, ramps_of, wrong_rows
+from equipoise.mechanism.parts.ramps import Ramps, ramp_value, ramps_of
+from equipoise.mechanism.parts.row_laws import RowLaw, one_law
 from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 from equipoise.quantities import Dimension, format_quantity
 
@@ -64,7 +62,7 @@ IDLE = to_say(
 
 
 @declared
-class Spring(BetweenPoints, ForceElement):
+class Spring(BetweenPoints, RowLaw, ForceElement):
     """A spring without mass: it pulls `point` of `link` towards the point `to` of `on`, by their
     distance.
     """
@@ -75,13 +73,8 @@ class Spring(BetweenPoints, ForceElement):
     order = 1
     file_order = ("link", "point", "to", "stiffness", "free_length", "preload", "lengths", "forces",
                   "table", "on")  # fmt: skip
-    conditions: ClassVar[Conditions] = {
-        "oneOf": [
-            {**needs("stiffness"), **lacks("lengths", "forces", "table")},
-            {**needs("table"), **lacks("stiffness", "free_length", "preload", "lengths", "forces")},
-            {**needs("lengths", "forces"), **lacks("stiffness", "free_length", "preload", "table")},
-        ]
-    }
+    constant, lists, beside = "stiffness", ("lengths", "forces"), ("free_length", "preload")
+    conditions: ClassVar[Conditions] = one_law(constant, lists, beside)
 
     title = to_say("Springs, each with its crank angle; below 0 they push their ends apart")
     group = to_say("springs")
@@ -146,18 +139,6 @@ class Spring(BetweenPoints, ForceElement):
     )
 
     @property
-    def idle_keys(self) -> tuple[str, ...]:
-        """Keys that count for nothing beside a table."""
-        return () if self.stiffness is not None else ("free_length", "preload")
-
-    @property
-    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Lengths, m, and pulls, N, of a table; empty of a linear spring."""
-        if self.table is not None:
-            return self.table.length, self.table.force
-        return self.lengths, self.forces
-
-    @property
     def proportional(self) -> bool:
         """Whether its pull is stiffness times the length beyond the free one."""
         return self.stiffness is not None and self.preload is None
@@ -217,30 +198,15 @@ class Spring(BetweenPoints, ForceElement):
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
         yield from wrong_ends(where, self, bodies)
-        listed = bool(self.lengths or self.forces)
-        if [self.stiffness is not None, listed, self.table is not None].count(True) != 1:
-            wrong = Note("give exactly one of stiffness, lengths with forces, and table")
-            yield ModelError(where, wrong)
-        elif self.stiffness is None:
-            yield from self._wrong_rows(where)
+        yield from self.wrong_law(where)
 
-    def _wrong_rows(self, where: str) -> Iterator[ModelError]:
-        lengths, forces = self.rows
-        at = f"{where}.lengths" if self.table is None else f"{where}.table"
-        for key_name in ("free_length", "preload"):
-            if getattr(self, key_name):
-                wrong = Note("goes with a stiffness; the rows say it already, leave it out")
-                yield ModelError(f"{where}.{key_name}", wrong)
-        uneven = Note(
-            "got {lengths} lengths and {forces} forces; give as many of both",
-            lengths=len(lengths),
-            forces=len(forces),
-        )
-        falling = Note("the lengths must rise from row to row")
-        wrong_table = [*wrong_rows(at, lengths, forces, uneven, falling)]
-        yield from wrong_table
-        if not wrong_table and lengths[0] < 0:
-            yield ModelError(at, Note("a length cannot be negative, give 0 or more"))
+    def wrong_rows(self, where: str) -> Iterator[ModelError]:
+        """What is wrong with the rows."""
+        wrong = [*super().wrong_rows(where)]
+        yield from wrong
+        if not wrong and self.rows[0][0] < 0:
+            below = Note("a length cannot be negative, give 0 or more")
+            yield ModelError(self.rows_at(where), below)
 
     def sentence(self) -> Note:
         """Stiffness of a spring and its ends, for a report."""
@@ -288,7 +254,7 @@ class Spring(BetweenPoints, ForceElement):
         """What has to be true of stiffness and lengths, or of columns of them."""
         if self.stiffness is not None:
             yield (self.stiffness > 0) & (self.free_length >= 0)
-        yield from (after > before for before, after in pairwise(self.rows[0]))
+        yield from self.rising()
 
 
 def wrong_ends(where: str, spring: Any, bodies: Bodies, idle: str = IDLE) -> Iterator[ModelError]:

@@ -126,12 +126,6 @@ def wrong_timed_load(where: str, load: TimedLoad, bodies: Bodies) -> Iterator[Mo
     if load.point is not None:
         yield from unknown_point(f"{where}.point", load.point, load.link, bodies)
     yield from wrong_line(where, load, load.on, bodies)
-    uneven = Note(
-        "got {times} times and {factors} factors; give as many of both",
-        times=len(load.times),
-        factors=len(load.factors),
-    )
-    falling = Note("the times must rise from row to row")
-    yield from wrong_rows(f"{where}.times", load.times, load.factors, uneven, falling)
+    yield from wrong_rows(f"{where}.times", ("times", "factors"), load.times, load.factors)
     if load.times and load.times[0] < 0:
         yield ModelError(f"{where}.times", Note("a run begins at 0 s; give times of 0 or more"))

@@ -10,9 +10,10 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
-from equipoise.mechanism.parts.damping import Damping, one_law
+from equipoise.mechanism.parts.damping import Damping
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action
+from equipoise.mechanism.parts.row_laws import one_law
 from equipoise.mechanism.parts.two_body_elements import BetweenBodies
 from equipoise.quantities import Dimension, format_quantity
 
@@ -43,9 +44,9 @@ class TorsionDamper(BetweenBodies, Damping):
     list_text = "dampers of links that turn against each other"
     order = 4
     file_order = ("link", "on", "damping", "speeds", "torques", "table")
-    conditions: ClassVar[Conditions] = one_law("torques")
+    conditions: ClassVar[Conditions] = one_law("damping", ("speeds", "torques"))
 
-    efforts_key = "torques"
+    lists = ("speeds", "torques")
     special = to_say("torsion damper")
     legend = ("vane", to_say("torsion damper"))
     sign = "equipoise.symbols.dampers:torsion_damper_sign"
@@ -94,13 +95,6 @@ class TorsionDamper(BetweenBodies, Damping):
         example="damper.csv",
     )
 
-    @property
-    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Speeds, rad/s, and torques, N m, of a table; empty of a linear damper."""
-        if self.table is not None:
-            return self.table.speed, self.table.torque
-        return self.speeds, self.torques
-
     def _speed(self, at: Placed) -> Any:
         """Angular speed of the link relative to the other body, rad/s."""
         return at.rate(self.link) - at.rate(self.on)
@@ -128,14 +122,7 @@ class TorsionDamper(BetweenBodies, Damping):
         if self.link == self.on:
             wrong = Note("{link!r} cannot be turned against itself", link=self.link)
             yield ModelError(f"{where}.on", wrong)
-        given_twice = Note("give exactly one of damping, speeds with torques, and table")
-        speeds, torques = self.rows
-        uneven = Note(
-            "got {speeds} speeds and {torques} torques; give as many of both",
-            speeds=len(speeds),
-            torques=len(torques),
-        )
-        yield from self.wrong_law(where, given_twice, uneven)
+        yield from self.wrong_law(where)
 
     def sentence(self) -> Note:
         """Damping of a torsion damper and its bodies, for a report."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import pairwise
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -18,14 +17,13 @@ from equipoise.keys import (
     declared,
     inside,
     key,
-    lacks,
-    needs,
 )
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement, TableArgument
-from equipoise.mechanism.parts.ramps import Ramps, ramp_integral, ramp_value, ramps_of, wrong_rows
+from equipoise.mechanism.parts.ramps import Ramps, ramp_integral, ramp_value, ramps_of
+from equipoise.mechanism.parts.row_laws import RowLaw, one_law
 from equipoise.mechanism.parts.two_body_elements import BetweenBodies
 from equipoise.quantities import Dimension, format_quantity
 
@@ -48,7 +46,7 @@ class TorsionTable(CsvTable):
 
 
 @declared
-class TorsionSpring(BetweenBodies, ForceElement):
+class TorsionSpring(BetweenBodies, RowLaw, ForceElement):
     """A spring without mass that turns `link` against `on` by the angle between both."""
 
     called = to_say("{what} of torsion spring {number}")
@@ -56,13 +54,8 @@ class TorsionSpring(BetweenBodies, ForceElement):
     list_text = "springs that turn links against each other"
     order = 2
     file_order = ("link", "on", "stiffness", "angle", "preload", "angles", "torques", "table")
-    conditions: ClassVar[Conditions] = {
-        "oneOf": [
-            {**needs("stiffness"), **lacks("angles", "torques", "table")},
-            {**needs("table"), **lacks("stiffness", "angle", "preload", "angles", "torques")},
-            {**needs("angles", "torques"), **lacks("stiffness", "angle", "preload", "table")},
-        ]
-    }
+    constant, lists, beside = "stiffness", ("angles", "torques"), ("angle", "preload")
+    conditions: ClassVar[Conditions] = one_law(constant, lists, beside)
 
     legend = ("spiral", to_say("torsion spring"))
     sign = "equipoise.symbols.torsion_springs:torsion_sign"
@@ -116,18 +109,6 @@ class TorsionSpring(BetweenBodies, ForceElement):
         return self.bodies
 
     @property
-    def idle_keys(self) -> tuple[str, ...]:
-        """Keys that count for nothing beside a table."""
-        return () if self.stiffness is not None else ("angle", "preload")
-
-    @property
-    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Angles, rad, and torques, N m, of a table; empty of a linear spring."""
-        if self.table is not None:
-            return self.table.angle, self.table.torque
-        return self.angles, self.torques
-
-    @property
     def middle(self) -> Any:
         """Angle from which that of the link stays within half a turn, rad."""
         angles, _ = self.rows
@@ -176,33 +157,13 @@ class TorsionSpring(BetweenBodies, ForceElement):
         if self.link == self.on:
             wrong = Note("{link!r} cannot be turned against itself", link=self.link)
             yield ModelError(f"{where}.on", wrong)
-        listed = bool(self.angles or self.torques)
-        if [self.stiffness is not None, listed, self.table is not None].count(True) != 1:
-            wrong = Note("give exactly one of stiffness, angles with torques, and table")
-            yield ModelError(where, wrong)
-        elif self.stiffness is None:
-            yield from self._wrong_rows(where)
-
-    def _wrong_rows(self, where: str) -> Iterator[ModelError]:
-        angles, torques = self.rows
-        at = f"{where}.angles" if self.table is None else f"{where}.table"
-        for key_name in ("angle", "preload"):
-            if getattr(self, key_name):
-                wrong = Note("goes with a stiffness; the rows say it already, leave it out")
-                yield ModelError(f"{where}.{key_name}", wrong)
-        uneven = Note(
-            "got {angles} angles and {torques} torques; give as many of both",
-            angles=len(angles),
-            torques=len(torques),
-        )
-        falling = Note("the angles must rise from row to row")
-        yield from wrong_rows(at, angles, torques, uneven, falling)
+        yield from self.wrong_law(where)
 
     def demands(self) -> Iterator[Any]:
         """What has to be true of its stiffness and angles, or of columns of them."""
         if self.stiffness is not None:
             yield self.stiffness > 0
-        yield from (after > before for before, after in pairwise(self.rows[0]))
+        yield from self.rising()
 
     def sentence(self) -> Note:
         """Stiffness of a torsion spring and its bodies, for a report."""
