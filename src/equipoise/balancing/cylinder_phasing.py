@@ -46,6 +46,8 @@ AREA_SAMPLES = 1440
 SAMPLES, SAMPLE_MISS, NEWTON_ROUNDS, REACH = 360, 0.03, 4, 0.03
 """In a turn, among which tops are looked for; share of the range by which a sample may miss its
 top; steps of Newton's method from there, and how far they may lead, rad."""
+OF_ORDER = 8
+"""Samples of the highest order, at least: between two of them, no more than one top."""
 PENALTY = 1e3
 """On a limit that is passed by its own size."""
 NOTHING = 1e-12
@@ -255,7 +257,7 @@ class PhaseObjective:
     def _samples(self) -> int:
         """Numbers that are held at a time to judge one set of phases."""
         speeds, rows, components, count = self.signals.amplitudes.shape
-        in_time = max(SAMPLES * self.signals.turns, 16 * count)
+        in_time = max(SAMPLES * self.signals.turns, 2 * OF_ORDER * count)
         return int(max(speeds * components * in_time, rows * count))
 
     @cached_property
@@ -384,7 +386,7 @@ def tops(flat: Periodic, miss: float) -> tuple[Array, Array, Array]:
 
     near : share of the range by which a top may be lower than the highest; 1 for all of them.
     """
-    count = max(SAMPLES * flat.turns, 8 * flat.amplitudes.shape[-1])
+    count = max(SAMPLES * flat.turns, OF_ORDER * flat.amplitudes.shape[-1])
     values = flat.samples(count)
     best, least = np.max(values, axis=1), np.min(values, axis=1)
     top = values >= (best - miss * (best - least))[:, None]

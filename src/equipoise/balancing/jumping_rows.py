@@ -23,8 +23,9 @@ SPACING = pi / 720
 are exact to 1e-9 of a signal of ten orders, and tops to 1e-8 after a step to a parabola's."""
 JUMP_OFFSET = 2e-8
 """rad in a cycle of one turn, from a jump to its sides; as in `signals.JumpSampling`."""
-SAMPLE_MISS, CLOSER = 0.05, 2
-"""Share of the range by which a sample may miss its top; steps to the tops of parabolas."""
+SAMPLE_MISS, CLOSER, NARROWER = 0.05, 2, 8
+"""Share of the range by which a sample may miss its top; steps to the tops of parabolas, and by how
+much each has its neighbours nearer."""
 AT_ONCE = 200_000
 """Values of one row that are held at a time."""
 SMOOTHED_ORDERS = 60
@@ -164,7 +165,7 @@ class JumpingRows:
         owner, place = np.nonzero(top)
         theta, reached = place * spacing, values[owner, place]
         for k in range(CLOSER):
-            width = spacing / 8**k
+            width = spacing / NARROWER**k
             neighbors = theta[:, None] + width * np.array([-1.0, 0.0, 1.0])
             before, here, after = self._sum(phases[owner], neighbors, sign).T
             bend = before - 2 * here + after

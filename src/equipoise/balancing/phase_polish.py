@@ -50,8 +50,9 @@ REACH = 0.1
 that count, so that a top stays the same one."""
 WELL_FORETOLD = 0.1
 """Share of the gain that was foretold, above which a step is taken, and the region grows."""
-FINEST, MORE_WAYS, MOST_MOVES = 1e-6, 6, 2000
-"""rad: least step of a search without slopes; ways by chance that it tries; its steps."""
+FINEST, MORE_WAYS, MOST_MOVES, AGAIN = 1e-6, 6, 2000, 1 / 8
+"""rad: least step of a search without slopes; ways by chance that it tries; its steps; share of the
+first step with which it begins again, nearer to the minimum."""
 
 
 def most_steps(cost: Cost) -> int:
@@ -71,7 +72,7 @@ def polished(cost: Cost, phases: Array, step: float, after: Step = lambda: None)
     if any(term.jumping is not None for term in cost.measured):
         phases = _compass(cost, phases, step, after)
         better = _better(cost, phases, _by_tops(cost, phases, step, after))
-        return _compass(cost, better, step / 8, after)
+        return _compass(cost, better, AGAIN * step, after)
     newton = _newton(cost, phases, after) if cost.smooth else _by_tops(cost, phases, step, after)
     return _better(cost, phases, newton)
 
