@@ -162,6 +162,10 @@ def test_reports_are_short_and_fit(name: str, new_page: Callable[..., Page]) -> 
             "all => all.filter(one => one.scrollWidth > one.clientWidth + 1).length"
         )
         assert wide == 0
+        ends = page.locator(".drawings svg:visible").evaluate_all(
+            "all => all.map(one => one.getBoundingClientRect().right)"
+        )
+        assert len(ends) > 3 and max(ends) <= width
         machine = page.locator(".animation").bounding_box()
         assert machine is not None and machine["y"] < 900
 

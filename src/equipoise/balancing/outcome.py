@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import groupby
+from math import isclose
 from typing import TYPE_CHECKING
 
 from equipoise.balancing.beyond_masses import first_answers, sentences_beyond
@@ -46,10 +47,13 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
 
 
-def helps_told(balanced: Balanced) -> Iterator[str]:
-    """What is large, what to change, what that brings, and what it costs."""
+def helps_told(balanced: Balanced, stated: str = "") -> Iterator[str]:
+    """What is large, what to change, what that brings, and what it costs.
+
+    stated : output of the figure that is stated above all this, as the verdict.
+    """
     if balanced.advice is not None:
-        yield from large_sentences(balanced.advice, balanced.original.crank_turns)
+        yield from large_sentences(balanced.advice, balanced.original.crank_turns, stated)
     if not balanced.helps:
         yield from nothing_told(balanced)
         return
@@ -134,6 +138,8 @@ def good_already(balanced: Balanced) -> str:
 
 # -- where nobody said what may be changed ---------------------------------------------------------
 
+SAME = 1e-3
+"""Of a figure, below which a change leaves it as it was: less than its digits show."""
 MOST_LARGE, MOST_WORSE = 3, 2
 """Large figures, and those that a remedy would make worse, that are named."""
 
@@ -144,9 +150,13 @@ def large_figures(advice: Advice) -> tuple[bool, list[FigureAssessment]]:
     return bool(large), large or [*advice.before[:1]]
 
 
-def large_sentences(advice: Advice, crank_turns: bool) -> Iterator[str]:
-    """What is large on the machine; where nothing is, how large the largest figure is."""
+def large_sentences(advice: Advice, crank_turns: bool, stated: str = "") -> Iterator[str]:
+    """What is large on the machine; where nothing is, how large the largest figure is.
+
+    stated : output of a figure that is not stated again.
+    """
     large, few = large_figures(advice)
+    few = [item for item in few if item.output != stated]
     template = to_say("Large here: {figure}.")
     nearest = to_say("Nearest to its reference value: {figure}.")
     for item in few:
@@ -295,8 +305,12 @@ def beside_the_aim(balanced: Balanced) -> Iterator[str]:
     if fallen:
         yield say("This also reduces {figures}.", figures=listed(fallen))
     poor = balanced.advice.beyond.transmission
+    before = {item.family: item.value for item in balanced.advice.before}
     for item in _left(balanced.advice)[:1]:
         if poor is not None and item.yardstick_kind == "transmission":
+            break
+        if isclose(item.value, before.get(item.family, 0.0), rel_tol=SAME):
+            yield say("Large after that, as before: {figure}.", figure=_valued(item))
             break
         yield say(
             "Large after that: {figure}.", figure=sentence(item, balanced.original.crank_turns)

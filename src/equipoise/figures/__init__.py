@@ -64,11 +64,13 @@ class StandaloneSvg(NamedTuple):
     """A picture as SVG for a page that has its heading beside it.
 
     wide : whether it runs across the page.  rows : of its panels, each as SVG of its own.
+    narrow : for a telephone, of one that is wide.
     """
 
     svg: str
     wide: bool
     rows: tuple[str, ...] = ()
+    narrow: str = ""
 
 
 def standalone_svg(picture: Chart, by_rows: bool = False) -> StandaloneSvg:
@@ -77,15 +79,17 @@ def standalone_svg(picture: Chart, by_rows: bool = False) -> StandaloneSvg:
     by_rows : whether a high one that runs across a page is drawn by rows of its panels, too; those
         of drawings are seen beside each other, and are not parted.
     """
-    from equipoise.figures.layout import HALF, WIDE, lay_out, lay_out_rows
+    from equipoise.figures.layout import HALF, WIDE, lay_out, lay_out_rows, on_telephone
     from equipoise.figures.vector import svg_of
 
     wide, panels = is_wide(picture), picture.panels
     sheet = lay_out(picture, WIDE if wide else HALF, headed=False)
     several = wide and len(panels) >= 2 * picture.columns and sheet.height > LOW
+    narrow = svg_of(on_telephone(picture)) if wide else ""
     if not by_rows or not several or any(panel.equal and panel.y.label for panel in panels):
-        return StandaloneSvg(svg_of(sheet), wide)
-    return StandaloneSvg(svg_of(sheet), wide, tuple(map(svg_of, lay_out_rows(picture, WIDE))))
+        return StandaloneSvg(svg_of(sheet), wide, narrow=narrow)
+    rows = tuple(map(svg_of, lay_out_rows(picture, WIDE)))
+    return StandaloneSvg(svg_of(sheet), wide, rows, narrow)
 
 
 def plot(result: Any, name: str = "", ax: Axes | None = None) -> Figure:

@@ -323,8 +323,10 @@ HIGH_OF_HALF = {1: 110.0, 2: 70.0, 3: 50.0, 4: 38.0}
 LEAST, MOST, ROOM, SMALL_ROOM = 110.0, 345.0, 26.0, 0.13
 """Height of panels of one scale at least and at most; free in them around what is drawn, points
 or, in small ones, a share."""
-MOST_OF_HALF, ONE_OF_HALF = 300.0, 150.0
-"""Height of all such panels in half of a page, and of one."""
+MOST_OF_HALF, ONE_OF_HALF, LEAST_OF_HALF = 300.0, 150.0, 90.0
+"""Height of all such panels in half of a page, of one, and of one of more than have room so."""
+MOST_ALONE = 4
+"""Small panels below each other on a telephone; of more two stand side by side."""
 
 
 def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Canvas:
@@ -333,6 +335,15 @@ def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Canvas:
     wide : of the sheet, points.  headed : whether the chart's heading stands on it.
     """
     return _sheet(chart, _cells(chart, wide), wide, headed)
+
+
+def on_telephone(chart: Chart) -> Canvas:
+    """A wide chart without its heading on a sheet of half that width: panels below each other, but
+    for many small ones without names of axes, which stand in pairs.
+    """
+    panels = chart.panels
+    many = len(panels) > MOST_ALONE and all(panel.equal and not panel.y.label for panel in panels)
+    return lay_out(replace(chart, columns=2 if many else 1), HALF, headed=False)
 
 
 def lay_out_rows(chart: Chart, wide: float) -> Iterator[Canvas]:
@@ -400,6 +411,8 @@ def _cells(chart: Chart, wide: float, parted: bool = False) -> list[Cell]:
     high, most = HIGH, MOST
     if wide == HALF:
         high, most = HIGH_OF_HALF, min(MOST_OF_HALF / rows, ONE_OF_HALF)
+        if rows > MOST_ALONE:
+            most = LEAST_OF_HALF
     usual = high[min(rows, max(high))]
     highest = usual if wide == HALF else np.inf
     cells = [cell_of(panel, min(panel.height or usual, highest)) for panel in chart.panels]

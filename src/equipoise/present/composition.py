@@ -41,6 +41,7 @@ from equipoise.results.headline import verdict_blocks
 from equipoise.results.joint_blocks import elements_tables, joint_blocks, kind_tables
 from equipoise.results.machine_blocks import angles_told, driven, model_blocks
 from equipoise.results.result import in_own_words
+from equipoise.results.yardsticks import GaugeReading, assess, verdict
 from equipoise.vibration.blocks import model_told, resonances_table, response_blocks
 
 KIM_CHUNG = (
@@ -171,9 +172,9 @@ def _of_linkage(
     if findings.balanced is not None:
         blocks["balance"] = [*balance_blocks(findings), *pictures.get("balance", [])]
     seens = {name: seen_in(name, findings) for name in blocks}
-    summary = tuple(answers(findings))
+    summary = tuple(answers(findings, _stated(findings)))
     if "balance" in blocks:
-        blocks["balance"] = [*_not_said(blocks["balance"], summary)]
+        blocks["balance"] = [*_not_said(blocks["balance"], answers(findings))]
     return ReportDocument(
         language,
         said(machine.title),
@@ -201,8 +202,17 @@ def _not_said(
 
 def _verdict(findings: Findings) -> Iterator[Text]:
     """By what a machine is judged first: on its support by what the gauges read, too."""
-    readings = None if findings.response is None else findings.response.gauges
-    return verdict_blocks(findings.analysis, readings)
+    return verdict_blocks(findings.analysis, _readings(findings))
+
+
+def _stated(findings: Findings) -> str:
+    """Output of the figure that the verdict states; "" where there is none."""
+    figure = verdict(assess(findings.analysis, _readings(findings)))
+    return "" if figure is None else figure.output
+
+
+def _readings(findings: Findings) -> Mapping[str, GaugeReading] | None:
+    return None if findings.response is None else findings.response.gauges
 
 
 def _joints(analysis: Analysis) -> Iterator[Block]:

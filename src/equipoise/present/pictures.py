@@ -540,8 +540,10 @@ def _draw(findings: Findings | ToolFindings, sections: Collection[str], by_rows:
     for picture in each(findings, sections=sections):
         chart = picture.draw()
         text = say("; ").join((chart.what, *chart.words))
-        svg, wide, rows = standalone_svg(chart, by_rows)
+        svg, wide, rows, narrow = standalone_svg(chart, by_rows)
         headline, caption = picture.headline(), say(picture.caption)
-        block = SvgPicture(picture.name, text, svg, headline, caption, wide, picture.detail, rows)
+        block = SvgPicture(
+            picture.name, text, svg, headline, caption, wide, picture.detail, rows, narrow
+        )
         pictures.setdefault(picture.section, []).append(block)
     return pictures

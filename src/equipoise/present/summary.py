@@ -39,8 +39,11 @@ LEADING = 0.5
 """Share of the mean square from which one order is told as the whole."""
 
 
-def answers(findings: Findings) -> Iterator[SummaryAnswer]:
-    """The summary, a question at a time; what the file does not tell is left out."""
+def answers(findings: Findings, stated: str = "") -> Iterator[SummaryAnswer]:
+    """The summary, a question at a time; what the file does not tell is left out.
+
+    stated : output of the figure that is stated above it, as the verdict.
+    """
     if findings.analysis.solved is None:
         missing = say("Forces are not computed, because masses of links are missing.")
         yield SummaryAnswer(say("What shakes"), (missing,))
@@ -52,7 +55,8 @@ def answers(findings: Findings) -> Iterator[SummaryAnswer]:
         yield SummaryAnswer(say("Why"), tuple(_why(findings)))
         if findings.balanced is not None:
             worse = tuple(worse_told(findings.balanced)) if findings.helped else ()
-            yield SummaryAnswer(say("What helps most"), tuple(helps_told(findings.balanced)), worse)
+            helps = tuple(helps_told(findings.balanced, stated))
+            yield SummaryAnswer(say("What helps most"), helps, worse)
     if vibration := tuple(vibration_told(findings)):
         yield SummaryAnswer(say("What that does to the support"), vibration)
     if planting := tuple(planting_told(findings)):

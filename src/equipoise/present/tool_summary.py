@@ -141,6 +141,7 @@ def tool_answers(findings: ToolFindings) -> Iterator[SummaryAnswer]:
 
 
 def _felt(exposure: ToolExposure) -> Iterator[str]:
+    """Which hand gets most, and for how long it may; what a day amounts to is the verdict above."""
     if WORKING in exposure.named:
         name, value = worst_at_work(exposure)
         yield say(
@@ -152,12 +153,6 @@ def _felt(exposure: ToolExposure) -> Iterator[str]:
     if exposure.worst is None:
         return
     day = exposure.days[exposure.worst]
-    yield say(
-        "The day's work amounts to A(8) = {a8} m/s² at {hand}; that is {verdict}.",
-        a8=brief(day.a8),
-        hand=exposure.worst,
-        verdict=say(VERDICTS[day.verdict]),
-    )
     action, limit = day.times.to_action, day.times.to_limit
     if limit < DAY:
         template = to_say(

@@ -195,6 +195,7 @@ class SvgPicture:
     detail : whether it stands in the appendix of a report.
     rows : a high picture once more, each row of its panels on its own, for pages that have no room
         for all of them.
+    narrow : a wide picture once more for a telephone, its panels below each other.
     """
 
     kind: ClassVar[str] = "drawn"
@@ -206,6 +207,7 @@ class SvgPicture:
     wide: bool = True
     detail: bool = False
     rows: tuple[str, ...] = ()
+    narrow: str = ""
 
 
 @dataclass(frozen=True)

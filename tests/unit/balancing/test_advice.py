@@ -568,7 +568,7 @@ def test_what_stays_large_is_said_first_and_by_the_yardstick_before() -> None:
     """
     found = advice_for("yamashita-1")
     text = " ".join(one.text for one in found.headline(alone=True) if isinstance(one, TextBlock))
-    assert "Large after that: Shaking moment, peak: 2.22 N m" in text
+    assert "Large after that, as before: shaking moment, peak: 2.22 N m" in text
     assert "2.2 times the weight of the moving links at the span" in text
 
 

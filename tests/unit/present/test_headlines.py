@@ -323,6 +323,17 @@ def test_rows_of_a_high_picture_are_drawn_like_the_whole() -> None:
         assert sorted(each_row) == sorted(larger.findall(block.svg)), block.name
 
 
+def test_wide_pictures_are_drawn_for_telephones_too() -> None:
+    """With every panel, half as wide."""
+    for name in ("twin-engine", "riding-transplanter"):
+        blocks = drawn_of(document(name)).values()
+        assert {bool(block.narrow) for block in blocks if not block.wide} == {False}
+        for block in (block for block in blocks if block.wide):
+            assert float(re.findall(r'viewBox="0 0 ([\d.]+)', block.narrow)[0]) < 300, block.name
+            titles = re.findall(r">([^<>]+: [^<>]+ on [^<>]+|from [^<>]+)</text>", block.svg)
+            assert all(f">{title.split()[0]}" in block.narrow for title in titles), block.name
+
+
 def test_rows_are_drawn_for_a_pdf_alone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A page has room for every picture as a whole."""
     asked = []
@@ -407,6 +418,8 @@ def test_what_the_summary_says_is_not_said_again(name: str) -> None:
     texts = [b.text for s in told.sections for b in s.blocks if isinstance(b, Text)]
     assert any(one.startswith("Large here: ") for one in summary)
     assert summary.isdisjoint(texts)
+    assert told.verdict is not None  # nor is what stands above the summary
+    assert not [one for one in (*summary, *texts) if told.verdict.text in one]
 
 
 # Pictures before and after: tests/unit/figures/test_balance_charts.py.
