@@ -179,6 +179,9 @@ def test_long_lines_of_code_make_no_page_wider(page: Page, site: Path, width: in
     for name in ("studies.html", "balancing.html"):
         page.goto(f"{site.as_uri()}/{name}")
         assert page.evaluate(FITS), name
+    page.goto(f"{site.as_uri()}/errors/change-point.html")  # messages are read whole
+    cut = "all => all.filter(one => one.scrollWidth > one.clientWidth + 1).length"
+    assert page.eval_on_selector_all(".highlight-text pre", cut) == 0
 
 
 @pytest.mark.exhaustive
