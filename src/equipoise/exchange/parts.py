@@ -57,6 +57,8 @@ class RoundEdge:
         return f"Ø {in_mm(2e3 * self.radius)}" if self.whole else f"R {in_mm(1e3 * self.radius)}"
 
 
+ON_EDGE = 1e-6
+"""Over the size of a part, by which a point beside it is at its edge."""
 LIGHT_SCREWS = 5e-4
 """Of a part's mass, below which what its screws add is not said."""
 COUNTERWEIGHT = "counterweight"
@@ -72,6 +74,7 @@ class Part:
     thickness : m, None where not known.
     edges : of its outline and of each opening, closed.
     density : kg/m3, None where not known.
+    points : of its link, by which it is joined to others; name and place.
     screwed : whether it has to be fastened.  threads : by which it is; None where none hold it.
     """
 
@@ -83,6 +86,7 @@ class Part:
     density: float | None = None
     screwed: bool = False
     threads: ScrewThreads | None = None
+    points: tuple[tuple[str, complex], ...] = ()
 
     @property
     def name(self) -> str:
@@ -140,6 +144,12 @@ class Part:
         holes = [curve.text for edges in self.edges[1:] for curve in _curves(edges) if curve.whole]
         if holes:
             said.append(say("holes: {list}", list=", ".join(dict.fromkeys(holes))))
+        if self.joints:
+            places = ", ".join(
+                f"{name} ({coordinates([in_mm(1e3 * at.real), in_mm(1e3 * at.imag)])})"
+                for name, at in self.joints
+            )
+            said.append(say("joints at {places} mm in the axes of the link", places=places))
         if self.threads is not None:
             said.extend(self._thread_lines(self.threads))
         elif self.screwed:
@@ -220,6 +230,18 @@ class Part:
         if self.threads is None:
             return ()
         return tuple((place, self.threads.size / 2e3) for place in self.threads.places)
+
+    @property
+    def joints(self) -> tuple[tuple[str, complex], ...]:
+        """Points of the link that lie on the part or at its edge."""
+        low, high = self.box
+        slack = ON_EDGE * abs(high - low)
+        return tuple(
+            (name, at)
+            for name, at in self.points
+            if low.real - slack <= at.real <= high.real + slack
+            and low.imag - slack <= at.imag <= high.imag + slack
+        )
 
     @property
     def title(self) -> str:
@@ -358,7 +380,10 @@ def _of_links(job: Job) -> Iterator[Part]:
                     )
                 )
             elif edges:
-                yield Part(name, body.shape, number, body.thickness, edges, body.density)
+                points = tuple((p, complex(*at)) for p, at in link.points.items())
+                yield Part(
+                    name, body.shape, number, body.thickness, edges, body.density, points=points
+                )
             elif body.shape != "point" or not job.changes:  # those are told with what was changed
                 job.leave_out(
                     Note(

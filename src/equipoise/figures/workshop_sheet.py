@@ -158,6 +158,7 @@ def _sheet(part: Part, lines: Sequence[str]) -> Figure:
         _widths(axes, low, high, OFF * scale)
     _radii(axes, part, scale)
     _threads(axes, part, scale)
+    _joints(axes, part, scale)
     room = (SHEET[0] - 2 * EDGE) / INCH * POINTS
     short = [piece for line in lines for piece in lines_of(line, room, LETTERS)]
     figure.text(EDGE / SHEET[0], 1 - EDGE / SHEET[1], "\n".join(short), va="top",
@@ -239,6 +240,17 @@ def _side_of_radii(part: Part) -> int:
         return 0
     ends = {side: abs(sin(middle + side * arcs[0].angle / 2)) for side in (-1, 1)}
     return max(ends, key=lambda side: ends[side])
+
+
+def _joints(axes: Axes, part: Part, scale: float) -> None:
+    """A cross at each joint, its name beside it on the side of the middle."""
+    middle = MM * sum(part.box).real / 2
+    for name, at in part.joints:
+        x, y = MM * at.real, MM * at.imag
+        axes.plot(x, y, marker="+", markersize=9, color=MAIN)
+        inward = 1 if x <= middle else -1
+        axes.text(x + 2.5 * inward * scale, y, name, ha="left" if inward > 0 else "right",
+                  va="center", color=MAIN)  # fmt: skip
 
 
 def _threads(axes: Axes, part: Part, scale: float) -> None:

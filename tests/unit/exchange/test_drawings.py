@@ -474,6 +474,21 @@ def test_links_made_of_bodies_and_their_holes(tmp_path: Path) -> None:
     assert len(svg(machine, tmp_path / "x.svg").findall("{*}g")) == 1
 
 
+def test_joints_of_a_part_are_on_its_sheet() -> None:
+    """In the axes of the link, each by a cross; those of the link that lie elsewhere are not."""
+    machine = eq.load("yamashita-1")
+    bar = eq.mechanism.Body("bar", between=("B", "C"), overhang=0.01, width=0.02, thickness=0.005,
+                            density=STEEL)  # fmt: skip
+    job = Job(machine.with_link("coupler", bodies=(bar,)), 0.0, None)
+    (part,) = parts(job)
+    assert [name for name, _ in part.joints] == ["B", "C"]  # its tip is 160 mm away
+    assert "joints at B (0, 0), C (71.5, 0) mm in the axes of the link" in part.lines
+    with workshop_sheet.sheets(job) as (figure,):
+        (axes,) = figure.axes
+        marks = [line for line in axes.lines if line.get_marker() == "+"]
+        assert [float(line.get_xdata()[0]) for line in marks] == [0.0, 71.5]
+
+
 @pytest.mark.parametrize(
     ("section", "words"),
     [
