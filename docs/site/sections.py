@@ -7,6 +7,7 @@ A page that is opened as a file must not read others, so that the texts stand in
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,6 +20,8 @@ from sphinx.application import Sphinx
 RANKING = Path(__file__).parents[2] / "page" / "node_modules" / "minisearch"
 """MiniSearch, which `page/bundle.py --tools` installs; without it the theme searches by pages."""
 FOLDER = "search"
+SIGNS = re.compile(r"\\[,;!]|[\\{}]")
+"""Of formulas, of which the names are searched and read."""
 Section = tuple[str, str, list[str], str]
 """Page, anchor, titles from the page's down to its own, text."""
 
@@ -50,7 +53,7 @@ def texts(node: nodes.Element) -> Iterator[str]:
         if isinstance(child, nodes.TextElement):
             if not isinstance(child, nodes.comment | nodes.raw | nodes.math_block):
                 words = (
-                    text
+                    SIGNS.sub("", text) if isinstance(text.parent, nodes.math) else text
                     for text in child.findall(nodes.Text)
                     if not isinstance(text.parent, nodes.raw)
                 )

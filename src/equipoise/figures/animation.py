@@ -77,7 +77,9 @@ def captions(stage: Stage, traced: tuple[str, ...]) -> tuple[Label, ...]:
 def _of_mounts(stage: Stage) -> Iterator[Array]:
     """Pixels of the signs of mounts at rest."""
     carrier = stage.scene.carrier
-    for item in () if carrier is None else carrier.support.mounts.values():
+    if carrier is None:
+        return
+    for item in carrier.support.mounts.values():
         if item.point is not None:
             place = complex(*item.point[:2])
             for shape in mount(item, place, carrier.way(item)):
