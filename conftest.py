@@ -79,7 +79,9 @@ class Page(pytest.File):
     """A Markdown page."""
 
     def collect(self) -> Iterator[Snippets]:
-        yield Snippets.from_parent(self, name="snippets")
+        snippets = Snippets.from_parent(self, name="snippets")
+        snippets.add_marker("documentation")
+        yield snippets
 
 
 class NotebookCells(pytest.Item):
@@ -100,6 +102,7 @@ class NotebookFile(pytest.File):
 
     def collect(self) -> Iterator[NotebookCells]:
         cells = NotebookCells.from_parent(self, name="cells")
+        cells.add_marker("documentation")
         cells.add_marker("exhaustive")  # a change runs them once, for the site
         yield cells
 

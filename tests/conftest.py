@@ -69,10 +69,13 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Mark what stands apart from `make test`: what needs a browser, or the documentation."""
+    """Mark what stands apart from `make test`: what needs a browser, or the site.
+
+    Snippets of pages, which lie outside of this folder, are marked where they are collected.
+    """
     if item.path.parent.name == "browser":
         item.add_marker("browser")
-    elif item.path.suffix in {".md", ".ipynb"} or "site" in getattr(item, "fixturenames", ()):
+    elif "site" in getattr(item, "fixturenames", ()):
         item.add_marker("documentation")
 
 
