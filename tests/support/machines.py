@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -771,6 +772,7 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
 }
 
 
+@lru_cache(maxsize=2048)  # of seeds at random there is no end
 def make(kind: str, seed: int) -> Case:
     """Return the machine of a kind that belongs to a seed, the same at every call."""
     from support import machines_cams
