@@ -20,7 +20,7 @@ from equipoise.mechanism import LinkSection, Load, LoadTable, Machine, Spring, T
 from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.results.machine_blocks import model_blocks
 from equipoise.schema.writing import Writer, toml_text
-from support.own_kinds import scripted
+from support.own_kinds import drawn, scripted
 from support.refusals import refused
 
 PULL = 35.0
@@ -119,6 +119,12 @@ def test_it_is_written_read_said_and_exported(tmp_path: Path) -> None:
     assert "sqrt(" in (tmp_path / "model.mo").read_text()
     left_out = [str(note) for note in eq.export(machine, tmp_path / "model.xml")]
     assert any("load 1, which acts in the line between two points" in note for note in left_out)
+
+
+def test_drawings_have_its_line() -> None:
+    scene, shapes = drawn(loaded(TO_FRAME, BY_ANGLE), "pull")
+    assert len(shapes) == 2 and len(drawn(loaded(TO_FRAME), "pull-head")[1]) == 2
+    assert {("Q", "S"), ("Q", "R")} <= set(scene.stretched)
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,7 @@ from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Link
 from equipoise.symbols.carrier import MOUNT, Carrier, SupportSwing
 from equipoise.symbols.constraints import constraint_marks
+from equipoise.symbols.load_lines import load_line_marks
 from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
 from equipoise.symbols.shapes import Array, BodyMark, hull, off_outline
 
@@ -330,6 +331,7 @@ class Scene:
                         for table, _, part in machine.parts
                         for mark in signs_of(table, part, around)
                     ),
+                    *load_line_marks((*machine.loads, *machine.timed_loads)),
                     *constraint_marks(machine.constraints, machine.bodies),
                 )
             ),

@@ -18,6 +18,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
 from equipoise.symbols.constraints import constraint_marks
+from equipoise.symbols.load_lines import load_line_marks
 from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
 from equipoise.symbols.scene import DriveSign, GuideSign, Scene, Wheel, bodies_of, wheels_of
 from equipoise.symbols.shapes import BodyMark
@@ -304,6 +305,8 @@ def _marks(sketch: Sketch) -> Iterator[BodyMark]:
     for part in (*sketch.joints.couplings, *sketch.elements):
         with suppress(EquipoiseError, ValueError):
             yield from signs_of("", part, around)
+    for key in ("loads", "timed_loads"):
+        yield from load_line_marks(sketch.rest.get(key, ()))
 
 
 def _radii(sketch: Sketch) -> dict[str, float]:
