@@ -5,20 +5,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 from scipy.interpolate import CubicHermiteSpline
+from scipy.spatial.transform import Rotation
 
 import equipoise as eq
 from equipoise.mechanism.assembly.steps import u
 from equipoise.mechanism.parts.force_elements import Load, Motor
 from equipoise.mechanism.parts.laws import AngleLaw
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive
-from equipoise.mechanism.parts.support import Mount, Row, Support
+from equipoise.mechanism.parts.support import AXES, FREEDOMS, Mount, Row, Support
 from equipoise.running.drives_friction import NEAR_REST
+from equipoise.running.drives_linkage import pose_of
 from equipoise.running.drives_run import DrivesRun
+from equipoise.running.linkage_rows import LinkageRows
+from equipoise.running.support_equation import SupportedEquation
+from equipoise.vibration.body import SupportBody
+from equipoise.vibration.linear import SupportExcitation
 from secondroute.test_drives_run import (
     JOINTS,
     ROWS,
@@ -33,6 +39,7 @@ from secondroute.test_drives_run import (
 from support.pinned_bodies import PinnedBodies, in_rows
 from support.poses import Array
 
+PITCH = FREEDOMS.index("pitch")
 CLOSE = 3e-8
 """rad and m: free bodies drift off their pins, as nothing holds them but second derivatives."""
 BALANCE = 1e-9
@@ -58,7 +65,7 @@ def sampled(run: DrivesRun, times: Array) -> dict[str, Array]:
         link: at(course.angle, course.speed) - course.angle[0]
         for link, course in run.drives.items()
     }
-    for row, name in enumerate(("x", "y", FRAME)):
+    for row, name in ((0, "x"), (1, "y"), (PITCH, FRAME)):
         values[name] = at(run.support.place[row], run.support.rate[row])
     return values
 
@@ -101,7 +108,7 @@ def against_exact(machine: eq.Machine, duration: float, close: float) -> DrivesR
 def test_one_crank_and_its_motor_as_the_exact_model() -> None:
     run = against_exact(rig(), 0.4, 3e-9)
     assert run.support is not None
-    assert np.all(np.ptp(run.support.place, axis=1) > 1e-4)
+    assert np.all(np.ptp(run.support.place[[0, 1, PITCH]], axis=1) > 1e-4)
 
 
 def test_rows_on_a_support_as_the_exact_model() -> None:
@@ -174,7 +181,7 @@ def against_free_bodies(
 def test_two_motors_shake_their_support() -> None:
     run = against_free_bodies(two_motors(support=SUPPORT), 0.15)
     assert run.support is not None
-    assert np.all(np.ptp(run.support.place, axis=1) > 1e-3)
+    assert np.all(np.ptp(run.support.place[[0, 1, PITCH]], axis=1) > 1e-3)
     fixed = eq.run(two_motors(), 0.15)
     other = fixed.drives["left crank"].turns / run.drives["left crank"].turns
     assert abs(other - 1) > 1e-3  # the support acts back on the drives
@@ -245,8 +252,8 @@ def momenta(run: DrivesRun, places: Array) -> tuple[Array, Array]:
     assert run.support is not None
     support, motion = run.machine.support, run.motion_at(places)
     assert support is not None
-    x, y, tilt = run.support.place[:, places]
-    vx, vy, turning = run.support.rate[:, places]
+    x, y, tilt = run.support.place[[0, 1, PITCH]][:, places]
+    vx, vy, turning = run.support.rate[[0, 1, PITCH]][:, places]
     moved, moving, turn = x + 1j * y, vx + 1j * vy, np.exp(1j * tilt)
     reference = complex(*support.reference[:2])
 
@@ -286,7 +293,7 @@ def test_a_free_support_keeps_momentum(rubbing: bool) -> None:
     largest = np.max(np.abs(run.drives["left crank"].speed)) * 0.25 * 0.05
     np.testing.assert_allclose(linear, 0, atol=1e-9 * largest)
     np.testing.assert_allclose(angular, 0, atol=1e-9 * largest * 0.1)
-    assert np.ptp(run.support.place[2]) > 1e-5  # which turns against the cranks
+    assert np.ptp(run.support.place[PITCH]) > 1e-5  # which turns against the cranks
 
 
 def test_an_undamped_support_keeps_energy() -> None:
@@ -299,7 +306,7 @@ def test_an_undamped_support_keeps_energy() -> None:
     run = eq.run(machine, 0.3, support=True)
     assert isinstance(run, DrivesRun) and run.support is not None
     motion = run.motion_at(np.arange(len(run.time)))
-    x, y, tilt = run.support.place
+    x, y, tilt = run.support.place[[0, 1, PITCH]]
     turn, reference = np.exp(1j * tilt), complex(*CENTRE[:2])
     heights = {
         name: (turn * (centre.place - reference)).imag + y
@@ -329,3 +336,137 @@ def test_motor_as_curve_on_its_support_starts_and_is_switched_off() -> None:
     assert run.energy_error < BALANCE
     late = run.time > 0.2
     assert not np.any(run.drives["left crank"].effort[late])
+
+
+# -- in space --------------------------------------------------------------------------------------
+
+IN_SPACE = Support(
+    2.5, (0.06, -0.05, 0.03), inertia=(0.02, 0.03, 0.04), products=(0.002, -0.001, 0.003),
+    freedoms=FREEDOMS,
+)  # fmt: skip
+APART = (Row(lateral=-0.05), Row(phase=1.9, offset=(0.3, -0.05), lateral=0.2))
+
+
+class PointMasses(NamedTuple):
+    """Bodies of a run at K instants, in space: links as four points each, which are as flat.
+
+    mass : (B, 1).  place, velocity : (B, K, 3), m and m/s.  spin : moment of momentum of the
+    support and of rotors about their own centres, (K, 3).
+    """
+
+    mass: Array
+    place: Array
+    velocity: Array
+    spin: Array
+
+
+def in_space(run: DrivesRun, places: Array) -> PointMasses:
+    """All bodies, by rotation matrices and their differences."""
+    machine, where = run.machine, run.where
+    support, rows, count = machine.support, LinkageRows(machine), len(run.drives)
+    assert support is not None and run.support is not None
+    reference, step = np.array(support.center_of_mass), 1e-6
+    place, rate = run.support.place[:, places].T, run.support.rate[:, places].T
+    turn = Rotation.from_rotvec(place[:, 3:]).as_matrix()
+    ends = [Rotation.from_rotvec(place[:, 3:] + s * rate[:, 3:]).as_matrix() for s in (step, -step)]
+    turning = (ends[0] - ends[1]) / (2 * step)
+    masses, points, rates = [support.mass], [reference + 0 * place[:, :3]], [0 * place[:, :3]]
+    for number, row in enumerate(rows.all):
+        own = number * len(run.time) + places
+        near = {name: values[..., number, places] for name, values in run.references.items()}
+        angles = (where.angles[:count, own], where.speeds[:count, own])
+        motion = pose_of(run.equation.linkage, where.crank_angle[own], *angles, near).moving
+        for name, link in machine.links.items():
+            centre, (way, speed, _) = motion.mass_centers[name], (motion.state[k] for k in u(name))
+            for corner in range(4):
+                arm = 1j**corner * np.sqrt(link.inertia / link.mass) * way
+                at, moving = centre.place + arm + complex(*row.offset), 1j * speed * arm
+                moving = moving + centre.place_1
+                across = row.lateral + link.plane + 0 * at.real
+                masses.append(link.mass / 4)
+                points.append(np.array([at.real, at.imag, across]).T)
+                rates.append(np.array([moving.real, moving.imag, 0 * across]).T)
+    arms = np.array(points) - reference
+    tensor, (xy, yz, zx) = np.diag(support.inertia), support.products
+    tensor = tensor - np.array([[0, xy, zx], [xy, 0, yz], [zx, yz, 0]])
+    skew = np.einsum("kji,kjl->kil", turn, turning)
+    spin = np.array([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]]).T @ tensor
+    for drive, course in zip(machine.driven, run.drives.values(), strict=True):
+        if drive.motor is not None:
+            spin[:, 2] += drive.motor.ratio * drive.motor.inertia * course.speed[places]
+    return PointMasses(
+        np.array(masses)[:, None],
+        reference + place[:, :3] + np.einsum("kij,bkj->bki", turn, arms),
+        rate[:, :3] + np.einsum("kij,bkj->bki", turning, arms)
+        + np.einsum("kij,bkj->bki", turn, np.array(rates)),
+        np.einsum("kij,kj->ki", turn, spin),
+    )  # fmt: skip
+
+
+def test_a_free_support_keeps_momentum_in_space() -> None:
+    """All six of them, with rows in different planes, rotors, and a support of any axes."""
+    film = {"film": Mount(axis="pitch", torsional_damping=1e-15)}
+    support = replace(IN_SPACE, mounts=film)
+    run = eq.run(two_motors(support=support, gravity=(0.0, 0.0), rows=APART), 0.06, support=True)
+    assert isinstance(run, DrivesRun) and run.support is not None
+    assert run.energy_error < BALANCE
+    bodies = in_space(run, np.linspace(0, len(run.time) - 1, 20).astype(int))
+    linear = np.sum(bodies.mass[..., None] * bodies.velocity, axis=0)
+    moments = bodies.mass[..., None] * np.cross(bodies.place, bodies.velocity)
+    largest = np.max(np.linalg.norm(bodies.velocity, axis=2))
+    # differences of rotations leave 1e-10
+    np.testing.assert_allclose(linear, 0, atol=1e-9 * largest)
+    np.testing.assert_allclose(np.sum(moments, axis=0) + bodies.spin, 0, atol=1e-9 * largest)
+    assert np.all(np.ptp(run.support.place, axis=1) > 1e-3)
+
+
+def test_an_undamped_support_keeps_energy_in_space() -> None:
+    """Weight and springs of mounts, from where points are in space."""
+    directions = ((1.0, 0.2, 0.1), (0.0, 1.0, 0.3), (0.1, 0.0, 1.0), (0.0, 1.0, 0.0))
+    corners = ((-0.1, -0.1, 0.2), (0.2, -0.1, -0.2), (0.1, 0.15, 0.1), (0.0, -0.1, 0.3))
+    feet = {
+        f"foot {k}": Mount(corner, direction=along, stiffness=2e3 + 300 * k)
+        for k, (corner, along) in enumerate(zip(corners, directions, strict=True))
+    }
+    feet |= {axis: Mount(axis=axis, torsional_stiffness=20.0) for axis in ("roll", "yaw", "pitch")}
+    drive = eq.Drive("left crank", 15.0, free=True)
+    machine = five_bar(drive, FurtherDrive("right crank", start=pi / 3, free=True))
+    machine = replace(machine, support=replace(IN_SPACE, mounts=feet), rows=APART)
+    run = eq.run(machine, 0.1, support=True)
+    assert isinstance(run, DrivesRun) and run.support is not None
+    bodies = in_space(run, np.arange(len(run.time)))
+    stored = 9.81 * np.sum(bodies.mass * bodies.place[..., 1], axis=0)
+    place, reference = run.support.place, np.array(IN_SPACE.center_of_mass)
+    turn = Rotation.from_rotvec(place[3:].T).as_matrix()
+    for mount in run.equation.contacts:
+        contact, given = mount.contact, feet[mount.contact.name]
+        moved = place[3 + AXES.index(given.axis)] if given.axis else None
+        if moved is None:
+            arm = np.array(given.point) - reference
+            along = np.array(given.direction) / np.linalg.norm(given.direction)
+            moved = (place[:3].T + turn @ arm - arm) @ along
+        stored = stored + contact.stiffness * moved**2 / 2 - contact.preload * moved
+    total = run.kinetic_energy + stored
+    np.testing.assert_allclose(total, total[0], atol=BALANCE * np.max(run.kinetic_energy))
+    assert run.energy_error < BALANCE
+    assert np.all(np.ptp(place, axis=1) > 1e-4)
+
+
+def test_what_links_exert_on_a_support_in_space_is_as_of_orders() -> None:
+    """On a support that is where it is drawn, by crank angles; four rows in four planes."""
+    machine = replace(eq.load("riding-transplanter"), gravity=(0.0, 0.0), planting=None, run=None)
+    machine = replace(machine, balance=None, joints=(), drive=replace(machine.drive, motor=None))
+    equation = SupportedEquation(machine)
+    crank = np.linspace(0, 2 * pi, 12, endpoint=False)
+    angles, speeds = np.zeros((2, 7, 12))
+    angles[0], speeds[0] = crank, machine.drive.speed
+    near = {
+        name: np.concatenate([SupportedEquation(machine, angle).references_at_start()[name]
+                              for angle in crank.tolist()], axis=-1)
+        for name in equation.references_at_start()
+    }  # fmt: skip
+    state = equation.at(np.zeros(12), 0.0, equation.placed(np.zeros(12), angles, speeds), near)
+    excitation = SupportExcitation(SupportBody(machine), "moment")
+    wanted = excitation.samples(crank, machine.drive.speed)
+    found = -equation.rows.total(state.pose.bias)[1:]
+    np.testing.assert_allclose(found, wanted, atol=1e-9 * np.max(np.abs(wanted)))

@@ -33,6 +33,7 @@ from equipoise.running.sources import AppliedSource, SourceInputs, plus, sources
 from equipoise.running.strokes import Strokes
 from equipoise.signals import Array
 from equipoise.vibration.support_motion import SupportMotion
+from equipoise.vibration.support_place import SupportPlace
 
 NO_FREE_DRIVE = Note(
     "every drive follows a given motion, so that there is nothing to integrate; give one of them a "
@@ -119,7 +120,7 @@ class DrivesEquation:
     @cached_property
     def mounts(self) -> MountContacts:
         """Mounts of the support: none on a fixed frame."""
-        return MountContacts((), 1.0, lambda coordinates, rates: (coordinates, rates))
+        return MountContacts((), 1.0, SupportPlace)
 
     @cached_property
     def strokes(self) -> Strokes | None:
@@ -349,7 +350,9 @@ class DrivesEquation:
 
     def with_rotors(self, inertia: Array) -> Array:
         """Inertia (C, C, R K), kg m2, of links with that of motors."""
-        return inertia + np.diag(self.rotors)[:, :, None] / self.rows.count
+        whole, drives = np.array(inertia), len(self.drives)
+        whole[:drives, :drives] += np.diag(self.rotors)[:, :, None] / self.rows.count
+        return whole
 
     def accelerations(
         self, state: DriveState, torques: Array, settled: Array

@@ -12,11 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from equipoise.signals import Array
-from equipoise.vibration.body import MountContact
+from equipoise.vibration.support_place import SpatialMount, SupportPlace
 
-Read = Callable[[Array, Array], tuple[Array, Array]]
-"""Displacements and velocities (3, K) of the support, by coordinates (C, K) of a machine and their
-rates."""
+Read = Callable[[Array, Array], SupportPlace]
+"""Where the support is, by coordinates (C, K) of a machine and their rates."""
 AT_CONTACT = 1e-9
 """Share of a mount's usual force within which it is just letting go, or touching."""
 
@@ -27,23 +26,23 @@ class MountContacts:
     one_sided : names of mounts that push only, and their places.
     """
 
-    def __init__(self, contacts: Sequence[MountContact], size: float, read: Read) -> None:
+    def __init__(self, mounts: Sequence[SpatialMount], size: float, read: Read) -> None:
         """size : of usual displacements, m.  read : where the support is."""
         self.read = read
+        contacts = [mount.contact for mount in mounts]
         self.one_sided = {item.name: k for k, item in enumerate(contacts) if item.one_sided}
-        self._smooth = [replace(contact, one_sided=False) for contact in contacts]
+        self._smooth = [
+            replace(mount, contact=replace(mount.contact, one_sided=False)) for mount in mounts
+        ]
         self._sizes = [abs(item.preload) + item.stiffness * size or 1.0 for item in contacts]
         self._touches = [True] * len(contacts)
 
-    def wrench(self, place: Array, rate: Array) -> Array:
-        """Forces along x and y, and moments about the reference point (3, K), on a support with
-        displacements and velocities (3, K).
-        """
-        total = np.zeros_like(place)
-        for contact, touches in zip(self._smooth, self._touches, strict=True):
+    def wrench(self, at: SupportPlace) -> Array:
+        """Generalized forces (6, K) on a support."""
+        total = np.zeros_like(at.place)
+        for mount, touches in zip(self._smooth, self._touches, strict=True):
             if touches:
-                force = contact.force(place, rate)
-                total += np.array(np.broadcast_arrays(*contact.at.wrench(force, place)))
+                total += mount.at.wrench(mount.force(at), at)
         return total
 
     def left(self, name: str, coordinates: Array, rates: Array) -> Array:
@@ -51,7 +50,7 @@ class MountContacts:
         usual force, with coordinates (C, K) and their rates.
         """
         mount = self.one_sided[name]
-        share = self._smooth[mount].force(*self.read(coordinates, rates)) / self._sizes[mount]
+        share = self._smooth[mount].force(self.read(coordinates, rates)) / self._sizes[mount]
         return np.asarray(share if self._touches[mount] else -share)
 
     def observe(self, coordinates: Array, rates: Array) -> None:

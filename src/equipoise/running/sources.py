@@ -8,8 +8,8 @@ it on every link.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -30,7 +30,7 @@ from equipoise.mechanism.dynamics.rated_elements import rated_torque, rated_ways
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.dynamics.reduced import generalized_force
 from equipoise.mechanism.dynamics.shares import ELEMENTS
-from equipoise.mechanism.formulas.kernels import dot, weight_demand
+from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.field import Planting
@@ -106,7 +106,12 @@ class SourceInputs(NamedTuple):
 
 
 class AppliedSource(Source):
-    """A source that acts on links whatever presses in joints."""
+    """A source that acts on links whatever presses in joints.
+
+    weighs : whether it is the weight, which every body has, a support too.
+    """
+
+    weighs: ClassVar[bool] = False
 
     @abstractmethod
     def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
@@ -114,13 +119,11 @@ class AppliedSource(Source):
         by the crank angle are those by time.
         """
 
-    def from_outside(self, motion: Motion, inputs: SourceInputs, demands: Demands) -> Demands:
+    def from_outside(self, motion: Motion, inputs: SourceInputs) -> Iterator[Acting]:
         """What of it no body of the machine bears the opposite of, so that it moves a support, too:
-        nothing where not said otherwise.
-
-        demands : all of it, as of `demands`.
+        nothing where not said otherwise; weight acts on the support itself as well.
         """
-        return {}
+        yield from ()
 
 
 @dataclass(frozen=True)
@@ -134,7 +137,7 @@ class ByAngle(AppliedSource):
     label: str
     of: Callable[[Motion], Demands]
     conserves: bool = False
-    outside: Callable[[Motion], Demands] = lambda motion: {}
+    outside: Callable[[Motion], Iterable[Acting]] = lambda motion: ()
 
     def columns(self, motions: Motions) -> list[Array]:
         return [np.asarray(sum(generalized_force(motion, self.of(motion)) for motion in motions))]
@@ -142,8 +145,8 @@ class ByAngle(AppliedSource):
     def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
         return self.of(motion)
 
-    def from_outside(self, motion: Motion, inputs: SourceInputs, demands: Demands) -> Demands:
-        return self.outside(motion)
+    def from_outside(self, motion: Motion, inputs: SourceInputs) -> Iterator[Acting]:
+        yield from self.outside(motion)
 
     def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
         torque: Array = columns[0]
@@ -152,22 +155,16 @@ class ByAngle(AppliedSource):
 
 @dataclass(frozen=True)
 class OfWeight(ByAngle):
-    """Weight of the links, and of a frame that moves.
-
-    frame : mass, kg, and first moment about its reference point, kg m, complex.
-    """
+    """Weight of the links."""
 
     key: str = "weight"
     label: str = to_say("weight")
     of: Callable[[Motion], Demands] = weight_demands
     conserves: bool = True
-    frame: tuple[float, complex] = (0.0, 0j)
+    weighs: ClassVar[bool] = True
 
     def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
         return weight_demands(motion, inputs.gravity)
-
-    def from_outside(self, motion: Motion, inputs: SourceInputs, demands: Demands) -> Demands:
-        return {**demands, FRAME: weight_demand(1.0, *self.frame, inputs.gravity)}
 
 
 @dataclass(frozen=True)
@@ -193,8 +190,8 @@ class OfSoil(AppliedSource):
     def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
         return demands_of(motion, soil_loads(motion, inputs.crank_speed))
 
-    def from_outside(self, motion: Motion, inputs: SourceInputs, demands: Demands) -> Demands:
-        return demands
+    def from_outside(self, motion: Motion, inputs: SourceInputs) -> Iterator[Acting]:
+        yield from soil_loads(motion, inputs.crank_speed)
 
     def forces(self, columns: Array, speed: Array) -> Array:
         """Force (A, ...) on each tip of each row, N, complex."""
@@ -206,10 +203,6 @@ class OfSoil(AppliedSource):
 
 def _of_loads(motion: Motion) -> Demands:
     return demands_of(motion, given_loads(motion))
-
-
-def _loads_outside(motion: Motion) -> Demands:
-    return demands_of(motion, loads_from_outside(motion))
 
 
 def _of_springs(motion: Motion) -> Demands:
@@ -307,15 +300,10 @@ def plus(*demands: Mapping[str, Demand]) -> dict[str, Any]:
     return total
 
 
-def sources_of(
-    machine: Machine, frame: tuple[float, complex] = (0.0, 0j)
-) -> Iterator[AppliedSource]:
-    """Everything but drives, brakes and friction in joints.
-
-    frame : as of `OfWeight`.
-    """
+def sources_of(machine: Machine) -> Iterator[AppliedSource]:
+    """Everything but drives, brakes and friction in joints."""
     if any(machine.gravity):
-        yield OfWeight(frame=frame)
+        yield OfWeight()
     stiff = [element for *_, element in machine.force_elements if not element.rated]
     if stiff or any(coupling.preload for coupling in machine.couplings):
         yield ByAngle("springs", to_say("springs"), _of_springs, conserves=True)
@@ -324,7 +312,7 @@ def sources_of(
         if own := tuple(item for item in rated if item[2].cause == cause):
             yield OfRatedElements(own, f"{cause}s", CAUSES[cause])
     if machine.loads:
-        yield ByAngle(LOADS, to_say("loads"), _of_loads, outside=_loads_outside)
+        yield ByAngle(LOADS, to_say("loads"), _of_loads, outside=loads_from_outside)
     if machine.timed_loads:
         yield OfTimedLoads(machine.timed_loads)
     planting = machine.planting

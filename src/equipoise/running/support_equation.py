@@ -12,27 +12,18 @@ from functools import cached_property
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.errors import UsageError, at_place
-from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import size_of_bodies
-from equipoise.mechanism.parts.support import PLANAR
+from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.running.drive_angles import DriveAngles
 from equipoise.running.drives_equation import DrivesEquation
 from equipoise.running.drives_linkage import References, pose_of
 from equipoise.running.mount_contacts import MountContacts
-from equipoise.running.sources import AppliedSource, sources_of
 from equipoise.running.support_pose import SupportedPose
 from equipoise.signals import Array
-from equipoise.vibration.body import (
-    PITCH,
-    MountContact,
-    PlanarInertia,
-    Rest,
-    SupportBody,
-    contacts_of,
-)
+from equipoise.vibration.body import Rest, SupportBody, contacts_of
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.support_motion import SupportMotion
+from equipoise.vibration.support_place import SpatialMount, SupportPlace, spatial_mounts
 
 MOUNTS = "mounts"
 """In the works of a run: springs and dampers between support and ground."""
@@ -54,20 +45,8 @@ class SupportedEquation(DrivesEquation):
     """
 
     def __post_init__(self) -> None:
-        self._refuse()
         super().__post_init__()
         _ = self.rest
-
-    def _refuse(self) -> None:
-        """Raise a `UsageError` where the support moves out of the plane."""
-        out_of_plane = [Note(n) for n in self.body.support.coordinates if n not in PLANAR]
-        if out_of_plane:
-            note = Note(
-                "a run with its support is for motion in the plane of the drawing; leave out "
-                "{names}",
-                names=all_of(out_of_plane),
-            )
-            raise UsageError(at_place("support.freedoms", note))
 
     @cached_property
     def body(self) -> SupportBody:
@@ -79,15 +58,10 @@ class SupportedEquation(DrivesEquation):
         """What holds the machine in the drawn position, as of the exact model."""
         return Linear.of(self.machine, "moment").rest
 
-    @cached_property
-    def support(self) -> PlanarInertia:
-        """The support alone."""
-        return self.body.in_plane
-
     @property
     def coordinates(self) -> int:
         """How many: first of the drives, then of the support."""
-        return len(self.drives) + len(self.support.free)
+        return len(self.drives) + len(self.body.free)
 
     @cached_property
     def unknowns(self) -> tuple[int, ...]:
@@ -96,80 +70,78 @@ class SupportedEquation(DrivesEquation):
         free = (k for k, drive in enumerate(self.drives) if drive.moves_freely or single)
         return (*free, *range(count, self.coordinates))
 
-    @cached_property
-    def sources(self) -> tuple[AppliedSource, ...]:
-        """What acts beside the drives, mounts and friction in joints."""
-        mass, first, *_ = self.support
-        return tuple(sources_of(self.machine, (mass / self.rows.count, first / self.rows.count)))
-
     @property
     def acting(self) -> tuple[str, ...]:
         """Keys of what acts beside the drives and friction in joints."""
         return (*super().acting, MOUNTS)
 
     @cached_property
-    def contacts(self) -> tuple[MountContact, ...]:
+    def contacts(self) -> tuple[SpatialMount, ...]:
         """The mounts."""
-        return contacts_of(self.body, self.rest)
+        return spatial_mounts(self.body, contacts_of(self.body, self.rest))
 
     @cached_property
     def mounts(self) -> MountContacts:
         """The mounts, with what is known of them at the time."""
-        return MountContacts(self.contacts, float(self.usual_sizes[0]), self.place_and_rate)
+        return MountContacts(self.contacts, float(self.usual_sizes[0]), self.support_place)
 
     def support_motion(self, coordinates: Array, rates: Array) -> SupportMotion:
         """How the support moves, by coordinates (N + D, K) and their rates."""
-        return SupportMotion(self.body, *self.place_and_rate(coordinates, rates), self.contacts)
+        return SupportMotion(self.body, self.support_place(coordinates, rates), self.contacts)
 
     @cached_property
     def usual_sizes(self) -> Array:
-        """Of a vibration (3,) along surge, heave and pitch, m, m and rad."""
+        """Of a vibration (6,) in the order of `FREEDOMS`, m and rad."""
         moved = USUAL_TILT * float(size_of_bodies(self.machine))
-        return np.array([moved, moved, USUAL_TILT])
+        return np.array([moved] * 3 + [USUAL_TILT] * 3)
 
     def sizes(self) -> Array:
         """Usual sizes of the unknowns (U,): 1 of a drive's angle, and those of a vibration."""
-        of_support = self.usual_sizes[[*self.support.free]]
+        of_support = self.usual_sizes[self.body.free]
         drives = len(self.unknowns) - len(of_support)
         return np.concatenate([np.ones(drives), of_support])
 
-    def place_and_rate(self, angles: Array, speeds: Array) -> tuple[Array, Array]:
-        """Displacements and velocities (3, K) of the support along surge, heave and pitch, by
-        coordinates (N + D, K) and their rates.
-        """
-        place, rate = np.zeros((2, 3, angles.shape[1]))
-        free, drives = [*self.support.free], len(self.drives)
-        place[free], rate[free] = angles[drives:], speeds[drives:]
-        return place, rate
+    def support_place(self, coordinates: Array, rates: Array) -> SupportPlace:
+        """Where the support is, by coordinates (N + D, K) and their rates."""
+        place, rate = np.zeros((2, len(FREEDOMS), coordinates.shape[1]))
+        drives = len(self.drives)
+        place[self.body.free], rate[self.body.free] = coordinates[drives:], rates[drives:]
+        return SupportPlace(place, rate)
 
     def pose(self, where: DriveAngles, near: References) -> SupportedPose:
         """Linkages and support with coordinates (N + D, R K) and their rates."""
-        drives, rows = len(self.drives), self.rows
-        angles, speeds = where.angles, where.speeds
-        own = pose_of(self.linkage, where.crank_angle, angles[:drives], speeds[:drives], near)
+        drives, count = len(self.drives), where.angles.shape[1] // self.rows.count
+        angles, speeds = where.angles[:drives], where.speeds[:drives]
+        own = pose_of(self.linkage, where.crank_angle, angles, speeds, near)
+        at = self.support_place(where.angles, where.speeds)
         return SupportedPose(
-            self.linkage, own.along, 1 / rows.count, self.support,
-            *self.place_and_rate(angles, speeds),
-            rows.of_each(rows.offsets, angles.shape[1] // rows.count),
+            self.linkage, own.along, 1 / self.rows.count, self.body, at,
+            self.rows.of_each(self._origins, count), speeds, self._rotors_on_support,
         )  # fmt: skip
+
+    @cached_property
+    def _origins(self) -> Array:
+        """(3, R), m, of the axes of the rows' linkages from the reference point."""
+        offsets = self.rows.offsets
+        at = np.array([offsets.real, offsets.imag, self.rows.laterals])
+        return np.asarray(at - self.body.reference[:, None])
+
+    @cached_property
+    def _rotors_on_support(self) -> tuple[float, ...]:
+        """Moment of inertia of each drive's motor times its ratio, and of the flywheel, kg m2."""
+        motors = (drive.motor for drive in self.drives)
+        each = [0.0 if motor is None else motor.ratio * motor.inertia for motor in motors]
+        return each[0] + self.machine.drive.flywheel, *each[1:]
+
+    @cached_property
+    def rotors(self) -> tuple[float, ...]:
+        """Moments of inertia of motors and flywheel as their links feel them, kg m2."""
+        first, *others = super().rotors
+        return first + self.machine.drive.flywheel, *others
 
     def mount_forces(self, where: DriveAngles) -> Array:
         """Generalized force (1, N + D, K) of all mounts."""
         forces = np.zeros((1, *where.angles.shape))
-        wrench = self.mounts.wrench(*self.place_and_rate(where.angles, where.speeds))
-        forces[0, len(self.drives) :] = wrench[[*self.support.free]]
+        wrench = self.mounts.wrench(self.support_place(where.angles, where.speeds))
+        forces[0, len(self.drives) :] = wrench[self.body.free]
         return forces
-
-    def with_rotors(self, inertia: Array) -> Array:
-        """Inertia (N + D, N + D, K) with that of motors, which turn on the support."""
-        whole, drives = np.array(inertia), len(self.drives)
-        whole[:drives, :drives] = super().with_rotors(whole[:drives, :drives])
-        if PITCH not in self.support.free:
-            return whole
-        pitch = drives + self.support.free.index(PITCH)
-        for k, drive in enumerate(self.drives):
-            if drive.motor is not None:
-                both = drive.motor.ratio * drive.motor.inertia / self.rows.count
-                whole[pitch, k] += both
-                whole[k, pitch] += both
-        return whole

@@ -350,7 +350,10 @@ class MountContact:
 
     def force(self, place: Array, rate: Array) -> Array:
         """With which it pushes the support, N or N m."""
-        moved, moving = self.at.displacement(place), self.at.velocity(place, rate)
+        return self.pushing(self.at.displacement(place), self.at.velocity(place, rate))
+
+    def pushing(self, moved: Array, moving: Array) -> Array:
+        """Force by a displacement, m or rad, and its rate."""
         force = self.preload - self.stiffness * moved - self.damping * moving
         if self.one_sided:
             force = np.where(force.real > 0, force, 0.0)
@@ -358,7 +361,7 @@ class MountContact:
 
 
 def contacts_of(body: SupportBody, rest: Rest) -> tuple[MountContact, ...]:
-    """The mounts of a planar support."""
+    """The mounts, where they act in the plane."""
     mount_contacts = []
     for name, mount in body.support.mounts.items():
         rates = mount.spring, mount.damper

@@ -27,6 +27,7 @@ from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.response import Mode, members_of
 from equipoise.vibration.steady import equations, motor_setting
 from equipoise.vibration.support_motion import SupportMotion
+from equipoise.vibration.support_place import in_plane, spatial_mounts
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,8 +177,9 @@ class Transient(Result):
         """How the support moves; None on solid ground."""
         if self.machine.support is None:
             return None
-        ride = self.system.place_and_rate(self.states)
-        return SupportMotion(SupportBody(self.machine), *ride, self.system.contacts)
+        body = SupportBody(self.machine)
+        at = in_plane(*self.system.place_and_rate(self.states))
+        return SupportMotion(body, at, spatial_mounts(body, self.system.contacts))
 
     @property
     def gauges(self) -> Mapping[str, Array]:

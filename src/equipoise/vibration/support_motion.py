@@ -1,4 +1,4 @@
-"""The motion of a planar support in time: what its gauges read, and how its mounts push."""
+"""The motion of a support in time: what its gauges read, and how its mounts push."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from equipoise.dataclass import dataclass
 from equipoise.quantities import Dimension
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.signals import Array
-from equipoise.vibration.body import MountContact, Reading, SupportBody
+from equipoise.vibration.body import SupportBody
 from equipoise.vibration.linear import gauges_of
 from equipoise.vibration.response import of_support
+from equipoise.vibration.support_place import SpatialMount, SpatialReading, SupportPlace
 
 
 def _signal(name: str, dimension: Dimension, turned: Dimension) -> ResultOutput:
@@ -24,27 +25,35 @@ def _signal(name: str, dimension: Dimension, turned: Dimension) -> ResultOutput:
 class SupportMotion:
     """How a support moves, at M instants.
 
-    place, rate : displacements and velocities (3, M) along surge, heave and pitch, m and rad.
-    contacts : its mounts.
+    at : where it is, and how it moves there.  contacts : its mounts.
     """
 
     body: SupportBody
-    place: Array
-    rate: Array
-    contacts: tuple[MountContact, ...]
+    at: SupportPlace
+    contacts: tuple[SpatialMount, ...]
+
+    @property
+    def place(self) -> Array:
+        """Displacements (6, M), m, and rotation vector, rad, in the order of `FREEDOMS`."""
+        return self.at.place
+
+    @property
+    def rate(self) -> Array:
+        """Their rates by time (6, M)."""
+        return self.at.rate
 
     @cached_property
     def gauges(self) -> Mapping[str, Array]:
         """Displacement (M,) at each gauge, m or rad."""
         return {
-            name: Reading.of(self.body, gauge).displacement(self.place)
+            name: SpatialReading.of(self.body, gauge).displacement(self.at)
             for name, gauge in gauges_of(self.body).items()
         }
 
     @cached_property
     def mounts(self) -> Mapping[str, Array]:
         """Force (M,) of each mount, N or N m."""
-        return {contact.name: contact.force(self.place, self.rate) for contact in self.contacts}
+        return {mount.contact.name: mount.force(self.at) for mount in self.contacts}
 
     declared: ClassVar[Declarations] = {
         "gauges": of_support(
