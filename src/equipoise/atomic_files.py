@@ -261,7 +261,7 @@ def _note(descriptor: int, text: str) -> None:
     """Write who holds a lock; not into a file that has other names too, where it is no lock."""
     if os.fstat(descriptor).st_nlink != 1:
         return
-    with suppress(OSError):  # of a full disk, which will be told of where it matters
+    with suppress(OSError):  # of a full disk, which is reported where it matters
         os.ftruncate(descriptor, 0)
         os.lseek(descriptor, 0, os.SEEK_SET)
         os.write(descriptor, text.encode())

@@ -399,7 +399,7 @@ def needed(module: str, purpose: Note | str) -> Any:
 
     Raises
     ------
-    UsageError : it is not installed; the sentence tells the command that installs it.
+    UsageError : it is not installed; the sentence states the command that installs it.
     """
     library = module.partition(".")[0]
     try:

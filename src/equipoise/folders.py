@@ -196,7 +196,7 @@ class Folder:
 
     @contextmanager
     def _link_named(self, name: str) -> Iterator[None]:
-        """Tell a link from other reasons: systems say it in different ways."""
+        """Distinguish a link from other reasons: systems report it in different ways."""
         try:
             yield
         except OSError:

@@ -162,7 +162,7 @@ def _wrong(value: Any, parameter: Parameter, function: Callable[..., Any]) -> st
 
 
 def _choices(kind: str, function: Callable[..., Any]) -> list[str]:
-    """Texts that there are of an alias such as ``Literal["a", "b"]``; which, the function tells."""
+    """Values of an alias such as ``Literal["a", "b"]`` in the module of a function."""
     result = getattr(getattr(function, "__globals__", {}).get(kind), "__args__", ())
     return [repr(item) for item in result] if all(isinstance(item, str) for item in result) else []
 

@@ -5,8 +5,8 @@ direction numbers of Sobol's sequence, and then goes on with zeros), and so does
 around an import; compiled modules that are interrupted while they import others say that these are
 missing, or print what no reader has asked for.  Hence the command line raises no interrupt before
 an import has ended, records each that it raises, and asks by `check` before results are printed,
-errors are told or files take their places.  `held_back` delays an interrupt to the end of what must
-not stop in the middle.
+errors are printed or files take their places.  `held_back` delays an interrupt to the end of what
+must not stop in the middle.
 """
 
 from __future__ import annotations

@@ -70,8 +70,8 @@ coefficients in the largest, up to which the signal is smooth in it."""
 def highest_at(values: Array, smooth: bool = True) -> Array:
     """Index (...) of the highest of values (..., N); of equal ones the first.
 
-    All that tells where a signal is largest or smallest asks here, so that rounding, which differs
-    from processor to processor, does not decide between equal extremes.
+    Every search for the place of an extreme ends here, so that rounding, which differs from
+    processor to processor, does not decide between equal extremes.
 
     smooth : the values are samples of a curve, of which only local tops count; else any values.
     """
@@ -334,7 +334,7 @@ class JumpSampling:
     shares : (N,) of each value in a mean, with sum 1.
     at : (N,) rad, where values are said to be: both sides of a jump at the jump.
     turns : of the crank in the cycle.
-    orders : amplitudes that are taken, beside the mean: as many as the grid tells apart.
+    orders : amplitudes that are taken, beside the mean: as many as the grid resolves.
     edges : (P + 1,) rad, ends of the panels between which Gauss points lie.
     """
 
@@ -355,7 +355,7 @@ class JumpSampling:
         steps: int = GAUSS_POINTS,
     ) -> JumpSampling:
         """For a grid (N,) of equally spaced crank angles from 0 over a cycle, jumps (J,) in it, and
-        angles (B,) at which only slopes jump, rad; so many of these as the grid can tell apart.
+        angles (B,) at which only slopes jump, rad; so many of these as the grid can resolve.
 
         steps : of the grid between so many Gauss points.  With as many the highest third of the
             orders is good to 2e-4 of the largest, with half as many each is to 1e-10.
@@ -527,7 +527,7 @@ def _ends_of_pieces(angles: Array, period: float, least: float) -> Array:
 def harmonics(samples: Array, orders: int | None = None) -> Array:
     """Complex amplitudes Y_0 ... Y_orders of one period of equally spaced samples (..., N).
 
-    orders : highest order; N // 2 if None.  At N / 2 the samples tell only a cosine.
+    orders : highest order; N // 2 if None.  At N / 2 the samples determine only a cosine.
     """
     samples = np.asarray(samples, dtype=float)
     count = samples.shape[-1]
@@ -558,7 +558,7 @@ def synthesis(amplitudes: Array, theta: Array) -> Array:
 
 
 def _folded_samples(amplitudes: Array, count: int) -> Array:
-    """Values (..., count), equally spaced over a period, of more orders than they tell apart.
+    """Values (..., count), equally spaced over a period, of more orders than they resolve.
 
     At such angles order n is the same as n less any multiple of the count.
     """
@@ -586,7 +586,7 @@ class Periodic(Brief):
         """From samples (..., N), equally spaced from 0 over one period.
 
         Orders above the last that exceeds `scale` times the largest are rounding, and left out; so
-        is order N / 2, whose phase N samples cannot tell.
+        is order N / 2, whose phase N samples do not determine.
         """
         values = harmonics(samples, (np.shape(samples)[-1] - 1) // 2)
         sizes = np.max(np.abs(values), axis=tuple(range(values.ndim - 1)), initial=0.0)

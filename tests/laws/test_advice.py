@@ -20,7 +20,7 @@ import equipoise as eq
 import support.findings
 from equipoise.balancing.advice import advise
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.sentences import worse_told
+from equipoise.balancing.sentences import deterioration_sentences
 from equipoise.balancing.workshop import in_short
 from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.outputs.declared import declared
@@ -267,7 +267,7 @@ def check(found: Balanced) -> None:
 
 def grown_is_told(found: Balanced) -> None:
     """Every output that grew by more than 1 % stands in the sentences on what gets worse."""
-    told, rows = " ".join(worse_told(found)), len(found.original.rows)
+    told, rows = " ".join(deterioration_sentences(found)), len(found.original.rows)
     for one in found.worse:
         assert output_named(one.objective.output, rows if rows > 1 else 1) in told
 

@@ -17,7 +17,7 @@ from equipoise.codegen.redundant_forces import MOST_SWITCHING
 from equipoise.errors import UsageError
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.dynamics.reactions import idle_told
+from equipoise.mechanism.dynamics.reactions import idle_teeth_notes
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.laws import LengthLaw
@@ -117,7 +117,7 @@ def test_joints_that_hold_too_much(kind: str, numpy_engine: None) -> None:
         np.testing.assert_allclose(got, [summary[f.signal].rms for f in wanted], rtol=1e-10)
     joint = next(iter(eq.analyze(base, 8).forces.joints))
     can = can_compute(base, paths, Figure(f"joints.{joint}", "rms"))
-    idle = idle_told(assemble(base), eq.analyze(base, 180).forces.solved.state)
+    idle = idle_teeth_notes(assemble(base), eq.analyze(base, 180).forces.solved.state)
     many = sum(coupling.switches for coupling in base.couplings) > MOST_SWITCHING
     assert can == (not many and not any(idle))  # these are left to single analyses
     with pytest.raises(UsageError, match="an overconstrained linkage"):

@@ -13,8 +13,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.cli import progress as progress_lines
-from equipoise.cli.progress import left_told, swept
-from equipoise.quantities.numbers import rate_told, time_told
+from equipoise.cli.progress import remaining_time_text, swept
+from equipoise.quantities.numbers import duration_text, rate_text
 from equipoise.schema.study_units import unit_named
 from equipoise.studies.outcomes import Progress
 from surface.running import command_lines, equipoise, refuses, succeeded
@@ -199,10 +199,10 @@ def test_a_bar_has_the_rate_the_time_left_the_best_and_the_failures(
 
 
 def test_nothing_is_said_of_what_nothing_is_known_of() -> None:
-    assert left_told(progress(0, 1.0)) == ""
-    assert left_told(progress(100, 1.0)) == ""
-    assert left_told(progress(5000, 50.0), ago=10.0) == "40.0 s left"
-    assert rate_told(None) == ""
+    assert remaining_time_text(progress(0, 1.0)) == ""
+    assert remaining_time_text(progress(100, 1.0)) == ""
+    assert remaining_time_text(progress(5000, 50.0), ago=10.0) == "40.0 s left"
+    assert rate_text(None) == ""
 
 
 @pytest.mark.parametrize(
@@ -216,7 +216,7 @@ def test_nothing_is_said_of_what_nothing_is_known_of() -> None:
     ],
 )
 def test_times(seconds: float, said: str) -> None:
-    assert time_told(seconds) == said
+    assert duration_text(seconds) == said
 
 
 # The number that bounds a search: tests/unit/studies/test_search.py.

@@ -25,11 +25,11 @@ from equipoise.balancing.outcome import (
 )
 from equipoise.balancing.sentences import (
     capital,
+    deterioration_sentences,
     figure_named,
     figure_unit,
-    proof_told,
-    worse_told,
-    worst_told,
+    proof_sentences,
+    worst_deteriorations,
 )
 from equipoise.balancing.workshop import in_short, sentences
 from equipoise.i18n import said, say, to_say
@@ -65,7 +65,7 @@ MOST_NOTES = 3
 MOST_ORDERS = 8
 """That are named one by one."""
 USUAL: dict[Dimension, str] = {"length": "mm", "angle": "mrad", "mass": "g", "inertia": "kg mm^2"}
-"""Units in which what is balanced is told."""
+"""Dimension -> unit of figures of balancing."""
 
 
 def quantity(value: float, unit: str, scale: float = 0.0) -> Value:
@@ -74,7 +74,7 @@ def quantity(value: float, unit: str, scale: float = 0.0) -> Value:
 
 
 def shown_unit(unit: str) -> str | None:
-    """Unit in which figures with an SI unit are told; None for the one that suits their size."""
+    """Display unit of figures with an SI unit; None for the one that suits their size."""
     dimension = DIMENSIONS.get(unit)
     return None if dimension is None else USUAL.get(dimension)
 
@@ -124,7 +124,7 @@ def balanced_headline(
     if balanced.advice is not None:
         is_long = balanced.advice.beyond.mounts is not None
         yield from (Text(line, is_detail=is_long) for line in beside_the_aim(balanced))
-    yield from (Text(line, "worse") for line in worst_told(balanced))
+    yield from (Text(line, "worse") for line in worst_deteriorations(balanced))
     yield from map(Text, (*preloads(balanced), *mounts_beside_change(balanced)))
     details = [*beside_mounts(balanced)]  # of which the last are left out first
     if balanced.advice is not None:
@@ -137,7 +137,7 @@ def balanced_headline(
 
 
 def _bending(balanced: Balanced) -> Iterator[Block]:
-    """Of a result whose other notes tell of what is not offered."""
+    """Notes on bending, for a result whose other notes are about what is not offered."""
     if notes := balanced.bending:
         yield Notes(notes)
 
@@ -182,10 +182,10 @@ def outcome_blocks(balanced: Balanced) -> Iterator[Block]:
         yield objectives_table(balanced)
     lines = tuple(line for change in balanced.changes for line in sentences(change))
     yield Facts(say("Changes; places and directions in the axes of each link"), lines)
-    yield from (Text(line, "worse") for line in worse_told(balanced))
+    yield from (Text(line, "worse") for line in deterioration_sentences(balanced))
     if balanced.phasing is not None:
         yield from phasing_blocks(balanced.phasing)
-    yield from map(Text, proof_told(balanced))
+    yield from map(Text, proof_sentences(balanced))
     yield before_after(balanced)
     if balanced.prices:
         yield _prices(balanced)
@@ -280,7 +280,7 @@ def _saved(balanced: Balanced, price: Price, unit: str) -> str:
 
 
 def _shown(unit: str) -> tuple[float, str]:
-    """Factor and unit in which a figure with an SI unit is told."""
+    """Factor to the display unit, and its name, for a figure with an SI unit."""
     dimension = DIMENSIONS.get(unit)
     if dimension is None:
         return 1.0, unit
@@ -289,8 +289,8 @@ def _shown(unit: str) -> tuple[float, str]:
 
 
 FASTER = 10.0
-"""Over the speed of the machine: a speed at which a machine shakes as before, and which is so much
-faster, tells no more than that next to nothing is left."""
+"""Over the speed of the machine: where the speed at which the machine shakes as before is so much
+faster, it only means that next to nothing is left, and is omitted."""
 
 
 def _speeds(balanced: Balanced) -> Iterator[tuple[Cell, ...]]:

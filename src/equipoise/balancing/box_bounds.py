@@ -17,8 +17,8 @@ that of the middle, which what is allowed bounds, and a rest that is the less th
 `box_bounds` bounds the cost over a box of phases and numbers from below.  What it takes for the
 cost is exact in the middle and wrong at the ends by the square of the box's width, so that boxes
 need not be small.  That whose bound is least is cut in two again and again, until none could hold
-anything better by more than a stated share, or until so many have been looked at; then the least
-bound of those left is told.
+anything better by more than a stated share, or until so many have been looked at; the result then
+has the least bound of those left.
 """
 
 from __future__ import annotations
@@ -191,7 +191,7 @@ def _rows(
 
 
 HALVINGS = 48
-"""Of a side, below which phases are told apart no more."""
+"""Halvings of a side at most: phases in such a box count as equal."""
 POINTS = 7
 """At which a row's function is taken over its interval."""
 PEAK_SAMPLES = 720
@@ -386,7 +386,7 @@ class Bounder:
         self, boxes: Boxes, totals: list[Array], turning: Array
     ) -> tuple[Boxes, Array, Array]:
         """Bounds where numbers are free and terms jump: readings at many crank angles at once,
-        of which a linear program tells how small the largest can be.
+        whose smallest possible maximum a linear program gives.
         """
         halves, losses = self.half / 2.0**boxes.halvings, np.zeros(boxes.middles.shape)
         values, here, parts, terms = [], [], [], len(self.cost.terms)
@@ -529,8 +529,8 @@ class Bounder:
     # -- numbers -----------------------------------------------------------------------------------
 
     def _near_best(self, boxes: Boxes, totals: list[Array]) -> tuple[Boxes, Array]:
-        """Boxes with the numbers that make the cost least in their middles, as mean squares tell;
-        and multipliers (B, I) of the cuts, by which they are held back.
+        """Boxes with the numbers that minimize the mean-square cost in their middles, and multipliers
+        (B, I) of the cuts that limit them.
 
         One step of reweighted least squares: Newton's method within each box's ends.
         """

@@ -186,7 +186,7 @@ class _Search:
                 progress(self.nodes, MOST_NODES)
         if self.best is None:
             raise NoSolutionError(Note("no numbers were found that meet every limit"))
-        if not waiting:  # every other interval is worse than the best by less than is told apart
+        if not waiting:  # every other interval is worse than the best by less than the resolution
             bound = self.best.value - CLOSE * self.scale
         bound = min(self.best.value, self.lost, max(bound, root.solved.bound))
         prices = self._prices(self.best)

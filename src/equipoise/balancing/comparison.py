@@ -22,7 +22,7 @@ ALIKE = 9
 """Digits by which growths are ordered, so that rounding does not decide between figures that grew
 alike, as peak and peak to peak of a signal that reaches as far up as down."""
 WORSE = 0.01
-"""Share by which a figure has to grow to be told as worse."""
+"""Relative growth from which a figure counts as worse."""
 SMALL = 0.1
 """Of the largest figure of its unit before: the growth of what was less is measured by that one."""
 FAINT = 1e-4

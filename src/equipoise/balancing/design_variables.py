@@ -3,7 +3,7 @@
 Every part adds scaled numbers to the program, keeps them within its limits, says what a unit of
 each does to its link's inertial parameters, and reads the result back.  Where a number has to be
 the square of another over a third (the inertia of a mass that may move), the program can only keep
-it above; such squares are told, and `branch_and_bound` makes equalities of them.
+it above; such squares are marked, and `branch_and_bound` makes equalities of them.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class DesignVariables(ABC):
         return []
 
     def stopped(self, numbers: Array) -> Note | None:
-        """What to tell where a number has come to an end that nobody asked for; else nothing."""
+        """Note on a number that has reached a limit of its own; None where none has."""
         return None
 
     @abstractmethod

@@ -31,7 +31,7 @@ OWN = dict.fromkeys(OF_ROWS, "rocking_moment")
 
 
 def signals_of_row(motion: Motion) -> Array:
-    """Signals of one linkage (8, N), in the order told above."""
+    """Signals of one linkage (8, N), in the order listed above."""
     result, nothing = forces(motion), np.zeros(len(motion.crank_angle))
     shaking, frame = result.shaking_force, result.frame_force
     rocking = (nothing, nothing)

@@ -183,7 +183,7 @@ class Conditions(Result):
     residuals : (B,) what the machine's own parameters give, in `units`.
     units : of each row's residual, by that parameter: kg m, kg m2, or kg of masses alone.
     readings : each row in words, divided by lengths.  sentences : the same with "= 0".
-    crank : whether a crank turns with the crank angle; else it tells the cycle's phase alone.
+    crank : whether a crank turns with the crank angle; else that is the cycle's phase alone.
     without_effect : parameters that stand in no row.
     """
 
@@ -336,7 +336,7 @@ def _must_vanish(effects: Array, turns: int, kind: Kind) -> Array:
 def _grouped(matrix: Array, scale: Array) -> tuple[list[int], Array]:
     """Leading parameter of each condition, and the conditions (B, P).
 
-    Masses come last in the order in which columns are grouped: so a condition is told by a first
+    Masses come last in the order in which columns are grouped: so a condition leads with a first
     moment wherever one can meet it.
     """
     masses = np.arange(matrix.shape[1]) % len(QUANTITIES) == QUANTITIES.index("mass")

@@ -26,14 +26,14 @@ from equipoise.balancing.poor_transmission import transmission_sentence
 from equipoise.balancing.remedies import is_worth, least_gain
 from equipoise.balancing.resonant_mounts import mount_sentences, outweighs
 from equipoise.balancing.sentences import (
-    aims_told,
     capital,
+    deterioration_sentences,
     freedoms,
     listed,
-    proof_told,
-    worse_told,
+    objectives_text,
+    proof_sentences,
 )
-from equipoise.balancing.workshop import in_its_plane, phases_told, sentences
+from equipoise.balancing.workshop import in_its_plane, phases_text, sentences
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.quantities import change, display, format_quantity, percent
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
 
 
-def helps_told(balanced: Balanced, stated: str = "") -> Iterator[str]:
+def benefit_sentences(balanced: Balanced, stated: str = "") -> Iterator[str]:
     """What is large, what to change, what that brings, and what it costs.
 
     stated : output of the figure that is stated above all this, as the verdict.
@@ -55,7 +55,7 @@ def helps_told(balanced: Balanced, stated: str = "") -> Iterator[str]:
     if balanced.advice is not None:
         yield from large_sentences(balanced.advice, balanced.original.crank_turns, stated)
     if not balanced.helps:
-        yield from nothing_told(balanced)
+        yield from no_benefit_sentences(balanced)
         return
     yield from first_sentences(balanced)
     for own_change in balanced.changes:
@@ -75,8 +75,8 @@ def helps_told(balanced: Balanced, stated: str = "") -> Iterator[str]:
         )
     if balanced.advice is not None:
         yield from beside_the_aim(balanced)
-    yield from worse_told(balanced)
-    yield from proof_told(balanced)
+    yield from deterioration_sentences(balanced)
+    yield from proof_sentences(balanced)
     if balanced.planting_kept:
         yield say("The planting figures stay as they are.")
     yield from sentences_beyond_masses(balanced)
@@ -101,7 +101,7 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
         )
 
 
-def nothing_told(balanced: Balanced) -> Iterator[str]:
+def no_benefit_sentences(balanced: Balanced) -> Iterator[str]:
     """Sentences that balancing brings nothing; how small the aims are, and what is proved."""
     if balanced.advice is not None:
         yield from why_nothing(balanced)
@@ -116,7 +116,7 @@ def nothing_told(balanced: Balanced) -> Iterator[str]:
             unit=unit.name,
             already=good_already(balanced),
         )
-    yield from proof_told(balanced)
+    yield from proof_sentences(balanced)
 
 
 def why_nothing(balanced: Balanced) -> Iterator[str]:
@@ -200,7 +200,7 @@ def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
         yield say(
             "Leave the masses as they are: within the assumed space, no change of a mass about a "
             "frame pivot reduces {aims} noticeably.",
-            aims=aims_told(balanced),
+            aims=objectives_text(balanced),
         )
     elif largest is not None:
         yield say(
@@ -212,7 +212,7 @@ def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
 def _best_tried(balanced: Balanced) -> dict[str, str]:
     """Values of a sentence on the best of what was tried, and why it is not offered."""
     return {
-        "aims": aims_told(balanced),
+        "aims": objectives_text(balanced),
         "remedy": remedy_named(balanced),
         "gain": percent(max(balanced.gain, 0.0), 1),
         "why": why_not(balanced),
@@ -324,9 +324,9 @@ def large_besides(balanced: Balanced) -> Iterator[str]:
     has a sentence of its own.
     """
     assert balanced.advice is not None
-    told_of = balanced.advice.beyond.transmission is not None
+    has_transmission = balanced.advice.beyond.transmission is not None
     others = [item for item in _left(balanced.advice)[1:]
-              if not (told_of and item.yardstick_kind == "transmission")]  # fmt: skip
+              if not (has_transmission and item.yardstick_kind == "transmission")]  # fmt: skip
     if others:
         figures = listed(map(_valued, others[: MOST_LARGE - 1]))
         yield say("Large besides: {figures}.", figures=figures)
@@ -392,7 +392,7 @@ def remedy_named(balanced: Balanced) -> str:
     off = [change.link for change in balanced.changes if change.kind == "removed mass"]
     if off:
         return say("less mass on {link}", link=listed(off))
-    phases = [phases_told(change.values["phases"]) for change in balanced.changes
+    phases = [phases_text(change.values["phases"]) for change in balanced.changes
               if change.kind == "phases"]  # fmt: skip
     if phases:
         return say("phases {phases} of the rows", phases=phases[0])
@@ -463,11 +463,11 @@ def advice_blocks(balanced: Balanced) -> Iterator[Block]:
     assert advice is not None
     yield from map(Text, large_sentences(advice, balanced.original.crank_turns))
     if not balanced.helps:
-        yield from map(Text, nothing_told(balanced))
+        yield from map(Text, no_benefit_sentences(balanced))
     else:
         yield from map(Text, first_sentences(balanced))
         yield from map(Text, sentences_beyond_masses(balanced))
-    for aims, same in groupby(balanced.tried, key=aims_told):
+    for aims, same in groupby(balanced.tried, key=objectives_text):
         rows: tuple[tuple[Cell, ...], ...] = tuple(
             (remedy_named(item), RelativeChange(1.0, 1 - item.gain), why_not(item)) for item in same
         )

@@ -17,7 +17,7 @@ from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.rounding import NEARLY
-from equipoise.balancing.sentences import gap_told, scope_of
+from equipoise.balancing.sentences import gap_text, scope_of
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say
@@ -178,7 +178,7 @@ def front_blocks(front: Front) -> Iterator[Block]:
     yield Text(
         say(
             "Every point is as good as any can be, to {gap} of the value before{scope}.",
-            gap=gap_told(front.gap),
+            gap=gap_text(front.gap),
             scope=scope_of(front.points[0]),
         )
     )

@@ -6,8 +6,8 @@ axes x and y, by the lever |sum_k z_k exp(i n phi_k)| with z_k the lateral place
 
 The table has for four claws (a) 0, pi, 3 pi/2, pi/2 and (b) 0, pi, pi, 0; for six (a) 0, pi, 0, pi,
 pi, 0, (b) 0, pi, pi, 0, 0, pi, (c) 0, pi, 0, pi, 3 pi/2, pi/2 and (d) 0, pi, 3 pi/2, pi/2, pi, 0.
-What it tells of them is computed here: which orders of how many claws are left, and whether the
-rest twists.
+Its properties are computed here: which orders of how many claws are left, and whether the rest
+twists.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ more."""
 SAMPLES = 96
 """In a turn, on which peaks are judged until they are polished."""
 FEWEST = 4
-"""Phases in a turn below which a grid tells nothing."""
+"""Phases in a turn below which a grid is useless."""
 MOST_CANDIDATES = 3_000
 """Best arrangements among which different ones are looked for."""
 SAME = 1e-12

@@ -48,7 +48,7 @@ UNCHANGED = 1e-16
 REACH = 0.1
 """How far phases move at first, and a top may meanwhile, rad: far less than a wave of the orders
 that count, so that a top stays the same one."""
-WELL_FORETOLD = 0.1
+GOOD_PREDICTION = 0.1
 """Share of the gain that was foretold, above which a step is taken, and the region grows."""
 FINEST, MORE_WAYS, MOST_MOVES, AGAIN = 1e-6, 6, 2000, 1 / 8
 """rad: least step of a search without slopes; ways by chance that it tries; its steps; share of the
@@ -198,7 +198,7 @@ def _linear_programs(cost: Cost, phases: Array, step: float, after: Step) -> Arr
             break
         there = best + np.concatenate([[0.0], move])
         value = float(cost.values(there))
-        if here - value > WELL_FORETOLD * gain:
+        if here - value > GOOD_PREDICTION * gain:
             best, here, region = there, value, min(2 * region, step)
         else:
             region /= 3

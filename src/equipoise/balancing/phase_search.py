@@ -57,7 +57,7 @@ GUESSES, FEW_LEVELS = 300, 12
 WIDE = pi / 6
 """rad, apart from which cells are in different valleys of the first orders."""
 SAME_PHASE = 1e-6
-"""rad: phases so close count as one, as the flat bottom of a cost tells them to 1e-8 only."""
+"""rad: phases so close count as one, as the flat bottom of a cost resolves them to 1e-8 only."""
 MOST_BEST = 8
 """Arrangements that are as good, among which the twist decides."""
 

@@ -47,7 +47,7 @@ ALL_BUT_GONE = 0.9
 FALLEN = 0.1
 """Share that is gone of another large figure from which it is said that it falls as well."""
 NOTICED = 0.01
-"""Share of an aim from which a change of it is told."""
+"""Share of an objective from which a change of it is reported."""
 HEAVY = 0.5
 """Added mass over that of all links from which it is called large."""
 

@@ -42,7 +42,7 @@ ROUNDING = 1e-11
 KEPT = 1e-8
 """Over the value before: by how much a limit may be passed, as solvers do."""
 HIGHEST = 100
-"""Order that is told; what 720 angles in a turn tell well."""
+"""Highest order that is reported: 720 angles in a turn resolve it well."""
 ADDED = Note("added mass")
 
 
@@ -207,8 +207,8 @@ class Problem:
         ]
 
     def scale(self, objective: Objective) -> float:
-        """What an objective or limit is told over: its value before, or where that is nothing but
-        rounding, what a unit of the numbers does.
+        """Reference value of an objective or limit: its value before, or where that is nothing but
+        rounding, the effect of a unit of the numbers.
         """
         before, effect = self.before[objective.name], self._effect(objective)
         return before if before > ROUNDING * effect else effect or 1.0

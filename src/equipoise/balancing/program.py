@@ -9,7 +9,7 @@ Domahidi, Chu, Boyd, ECOS, ECC 2013), in dense NumPy: for programs of some hundr
     minimise c'x  so that  factors x + constant  lies in a cone, block by block
 
 with cones zero, nonnegative and second-order (first row >= length of the others).  Their duals z
-tell the price of every constant: the value falls by z for a unit more of it.
+are the price of every constant: the value falls by z for a unit more of it.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ MOST_STEPS, STEP = 100, 0.99
 WORSE, STANDSTILL = 1e4, 1e-10
 """Times the least error, beyond which rounding has taken over; length of a step that is none."""
 APART = 1e-2
-"""tau over kappa, below which the homogeneous embedding tells of no solution."""
+"""tau over kappa, below which the homogeneous embedding certifies that there is no solution."""
 ENTRY = 120
 """Bytes that Clarabel takes for each entry of the matrix: 75 to 90 were measured."""
 ROUNDS, REFINEMENTS = 8, 2
@@ -336,7 +336,7 @@ class _Embedding:
         return bool(left < self.tolerance * against and self.tau < APART * self.kappa)
 
     def _advance(self) -> bool:
-        """One predictor and corrector step; tells whether it could be made."""
+        """Make one predictor and corrector step; return whether it could be made."""
         cones, tau, kappa = self.cones, self.tau, self.kappa
         w = _Scaling(cones, self.s, self.z)
         lam = w.scaled
@@ -563,7 +563,7 @@ class Program:
     """A program in the making: numbers, blocks of constraints on them, and the cost.
 
     waiting : blocks whose rows are taken in only where a solution breaks them.
-    cutters : each tells blocks that cut off a solution which is not possible.
+    cutters : each returns blocks that cut off a solution which is not possible.
     tolerances : asked of the solver in turn, until it comes so near.
     """
 

@@ -226,8 +226,8 @@ class Comparison:
     def ranked(self, shapes: Sequence[Shapes], most_mass: float) -> list[tuple[float, int]]:
         """Score and place of shapes, the best first: the gain, less the price of mass.
 
-        Those that are worth it and do no harm, as far as this linear look tells; where none is,
-        that which gains most alone.
+        Shapes that are worth it and do no harm, to first order; where none is, the shape with the
+        largest gain alone.
         """
         mass = np.sum([np.maximum(shape.mass, 0.0) for shape in shapes], axis=0)
         light = np.flatnonzero(mass <= most_mass)

@@ -2,8 +2,8 @@
 
 For given phases the best masses are those of a cone program, and for given masses the best phases
 are searched: one after the other from several beginnings, until neither gains any more.  Branch and
-bound over boxes of phases and of those numbers of the masses that matter (`phase_bound`) then tells
-how much better anything could be, and begins anew where it sees something better.
+bound over boxes of phases and of those numbers of the masses that matter (`phase_bound`) then gives
+a bound on any improvement, and begins anew where it meets a better solution.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ NOTHING = 1e-10
 SIGN_OFFSET, JUMP = 1e-8, 1e-4
 """rad, beside a change of sign; share of the largest effect below which a smooth one is there."""
 LEAST_ANGLES = 8
-"""Crank angles below which a mean over a turn tells nothing."""
+"""Crank angles below which a mean over a turn is meaningless."""
 AT_ONCE, FOR_EACH = 2**27, 700
 """Bytes that the regressor may take, and those that it takes at a crank angle for each pair of
 links, as measured on machines of 3 to 8 links."""

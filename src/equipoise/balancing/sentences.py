@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from equipoise.balancing.comparison import Worse
 
 EXACT, SMALL = 1e-12, 1.01e-4
-"""Gap below which nothing more is told of it; above which it is told in percent."""
+"""Gap that counts as none; gap above which it is printed in percent."""
 FEW = 0.1
-"""Growth below which a digit more is told."""
+"""Growth below which one more digit is printed."""
 
 
 def listed(parts: Iterable[str]) -> str:
@@ -46,7 +46,7 @@ def capital(text: str) -> str:
 # -- what got worse --------------------------------------------------------------------------------
 
 
-def worse_told(balanced: Balanced) -> Iterator[str]:
+def deterioration_sentences(balanced: Balanced) -> Iterator[str]:
     """Every figure that got larger by more than 1 %, a sentence for each group of outputs."""
     for group, ones in groupby(balanced.worse, key=lambda growth: growth.group):
         figures = say("; ").join(_grown(balanced, item) for item in ones)
@@ -61,7 +61,7 @@ MOST_WORST = 3
 """Figures that are named in short."""
 
 
-def worst_told(balanced: Balanced) -> Iterator[str]:
+def worst_deteriorations(balanced: Balanced) -> Iterator[str]:
     """In one sentence the figures that grew most."""
     worse = sorted(balanced.worse, key=lambda growth: -growth.growth)
     if worse:
@@ -89,7 +89,7 @@ def larger(what: str, growth: float) -> str:
 
 
 def figure_named(name: str, rows: int) -> str:
-    """A figure that is told before and after, in words."""
+    """Name of a figure that is compared before and after, in the language that is spoken."""
     if name == "mass":
         return say("mass of the links")
     output, _, measure = name.rpartition(".")
@@ -109,8 +109,8 @@ def figure_unit(balanced: Balanced, name: str) -> str:
 # -- what is proved --------------------------------------------------------------------------------
 
 
-def proof_told(balanced: Balanced) -> Iterator[str]:
-    """What is proved: of which freedom, of which aim, at which speed; nothing where no program was
+def proof_sentences(balanced: Balanced) -> Iterator[str]:
+    """Sentence on the proof: free quantities, objectives, gap and speed; none where no program was
     solved.
     """
     if not (free := [*freedoms(balanced.plan)]):
@@ -120,14 +120,14 @@ def proof_told(balanced: Balanced) -> Iterator[str]:
         "{gap} of the value before{scope}.",
         method=said(balanced.method),
         freedom=listed(free),
-        aims=aims_told(balanced),
-        gap=gap_told(balanced.gap),
+        aims=objectives_text(balanced),
+        gap=gap_text(balanced.gap),
         scope=scope_of(balanced),
     )
 
 
-def gap_told(gap: float) -> str:
-    """A gap as it is printed, never smaller than it is where that could be seen."""
+def gap_text(gap: float) -> str:
+    """A gap as text, in percent rounded up to two digits, or as a power of ten."""
     if gap <= SMALL:
         return f"{max(gap, EXACT):.0e}"
     digit = 10.0 ** floor(log10(gap) - 1)
@@ -141,8 +141,8 @@ def scope_of(balanced: Balanced) -> str:
     return f" {parts}" if parts else ""
 
 
-def aims_told(balanced: Balanced) -> str:
-    """What was made small, and at which speed."""
+def objectives_text(balanced: Balanced) -> str:
+    """Objectives that were minimized, how they are combined, and at which speeds."""
     rows, aims = len(balanced.original.rows), [*balanced.aims]
     text = _gauges_named(aims) or listed(objective_named(aim, rows) for aim in aims)
     if len(aims) > 1:

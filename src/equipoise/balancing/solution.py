@@ -2,7 +2,7 @@
 
 The closed form is that of first moments where nothing but a mean square is asked: moved centres of
 mass without limits, and weights of given mass in rooms without limits.  Where nothing meets all
-limits, the fewest that clash are told, and how far one of them can be met.
+limits, the error names the fewest that clash, and how far one of them can be met.
 """
 
 from __future__ import annotations
@@ -160,7 +160,7 @@ def _settled(problem: Problem, progress: Progress | None, above: float) -> Solut
 
 def _within_limits(problem: Problem, kept: list[Array], progress: Progress | None) -> Solution:
     """Good numbers with the friction of their own forces, where limits leave so little room that
-    they cannot be kept with that of other numbers; the gap tells how much better others may be.
+    they cannot be kept with that of other numbers; the gap bounds how much better others may be.
 
     kept : numbers that come nearest to the limits with their own friction; where they pass them
         because that has not settled, the result has not settled either.
@@ -368,7 +368,7 @@ MOST_LIMITS = 40
 
 
 def infeasibility(problem: Problem) -> UsageError:
-    """The error that tells which limits clash."""
+    """The error with the smallest set of limits that clash."""
     program = problem.built.program
     names = program.names
     if program.without(set(names)).feasible():

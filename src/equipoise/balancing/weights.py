@@ -292,7 +292,7 @@ class AddedWeight(DesignVariables):
             values[at["own"]] = m**2
         if "i" in at:
             least = (values[1] ** 2 + values[2] ** 2) / m if m > 0 else 0.0
-            spread = float(values[at["i"]]) - least > SPREAD * m  # or it is told as one point
+            spread = float(values[at["i"]]) - least > SPREAD * m  # else it counts as a point mass
             values[at["i"]] = values[at["i"]] if spread and matters[at["i"]] else least
         return values
 

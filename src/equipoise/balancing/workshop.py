@@ -12,7 +12,7 @@ from equipoise.dataclass import dataclass
 from equipoise.i18n import say
 from equipoise.mechanism.parts.balance import MATERIALS, Weight, material_of
 from equipoise.quantities import display, fixed, format_quantity, number
-from equipoise.results.machine_blocks import place_told
+from equipoise.results.machine_blocks import point_text
 
 Piece = dict[str, Any]
 
@@ -158,8 +158,8 @@ def sentences(change: Change) -> Iterator[str]:
         yield say(
             "{link}: move the centre of mass from {old} to {new}, with a mass of {mass}",
             link=link,
-            old=place_told(values["from"]),
-            new=place_told(values["to"]),
+            old=point_text(values["from"]),
+            new=point_text(values["to"]),
             mass=format_quantity(values["mass"], "mass"),
         )
     elif change.kind == "added mass":
@@ -169,7 +169,7 @@ def sentences(change: Change) -> Iterator[str]:
             yield say(
                 "{link}, made as: {piece}",
                 link=link,
-                piece=_describe(piece, place_told(values["center"])),
+                piece=_describe(piece, point_text(values["center"])),
             )
     elif change.kind == "removed mass":
         yield _taken_off(link, values)
@@ -178,7 +178,7 @@ def sentences(change: Change) -> Iterator[str]:
     elif change.kind == "gears":
         yield "; ".join(_gears(link, values))
     else:
-        yield say("Rows: set the phases to {phases}", phases=phases_told(values["phases"]))
+        yield say("Rows: set the phases to {phases}", phases=phases_text(values["phases"]))
 
 
 def in_short(change: Change) -> Iterator[str]:
@@ -261,11 +261,11 @@ def _hole_of(mass: float) -> tuple[float, float]:
 
 
 def _describe(piece: Piece, center: str) -> str:
-    """A piece in words; rings and sectors are told about the centre of their room."""
+    """A piece in words; rings and sectors are described about the centre of their room."""
     shape = piece["shape"]
     sizes = ("radius", "outer_radius", "thickness")
     words = {name: format_quantity(piece[name], "length") for name in sizes if name in piece}
-    words |= {"mass": format_quantity(piece["mass"], "mass"), "at": place_told(piece["place"])}
+    words |= {"mass": format_quantity(piece["mass"], "mass"), "at": point_text(piece["place"])}
     if shape != "point":
         density = piece["density"]
         words["stuff"] = say(material_of(density) or format_quantity(density, "density"))
@@ -312,7 +312,7 @@ def _gears(link: str, values: dict[str, Any]) -> Iterator[str]:
         "{link}: a shaft at {at} of the frame, geared to {driver} with the ratio {ratio}, "
         "pitch radii {radii}",
         link=link,
-        at=place_told(values["axis"]),
+        at=point_text(values["axis"]),
         driver=values["driver"],
         ratio=number(values["ratio"]),
         radii=unit.with_unit(" / ".join(map(unit.text, values["pitch_radii"]))),
@@ -335,8 +335,8 @@ def _gears(link: str, values: dict[str, Any]) -> Iterator[str]:
         )
 
 
-def phases_told(phases: Sequence[float]) -> str:
-    """Phases of rows (rad) with their unit behind the last."""
+def phases_text(phases: Sequence[float]) -> str:
+    """Phases of rows, given in rad, as text; the unit follows the last."""
     *others, last = phases
     return ", ".join(
         [*(direction_named(item, named=False) for item in others), direction_named(last)]

@@ -216,20 +216,20 @@ def _hints(error: EquipoiseError) -> tuple[str, ...]:
 
 
 SIGN, RAREST = 5.0, 50.0
-"""s without a word, after which a line tells that work goes on; then twice as long each time, and
-at last so long."""
+"""s without output, after which a line states that work goes on; then twice as long each time, up
+to the second."""
 
 
 @contextmanager
 def _signs_of_life(given: Sequence[str]) -> Iterator[None]:
-    """Tell in a line now and then that a command still computes, where nothing else tells it."""
+    """Print a line now and then while a command computes without other output."""
     silent = os.environ.get("EQUIPOISE_PROGRESS") == "off" or sys.stderr is None
     if silent or given[:1] in (["serve"], ["mcp"]):  # which wait
         yield
         return
     ended, begun = Event(), monotonic()
 
-    def tell() -> None:
+    def print_waiting() -> None:
         wait, value = SIGN, begun
         while not ended.wait(max(value + wait - monotonic(), 0.0)):
             progress = sys.modules.get("equipoise.cli.progress")
@@ -241,7 +241,7 @@ def _signs_of_life(given: Sequence[str]) -> Iterator[None]:
             print("; ".join(filter(None, [words, share])), file=sys.stderr)
             wait, value = min(2 * wait, RAREST), monotonic()
 
-    thread = Thread(target=tell, daemon=True)
+    thread = Thread(target=print_waiting, daemon=True)
     thread.start()
     try:
         yield

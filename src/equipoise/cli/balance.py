@@ -100,10 +100,10 @@ def balance(
 
 def _refuse(balanced: Balanced, option: str) -> None:
     """Write no machine that is not better."""
-    from equipoise.balancing.outcome import nothing_told
+    from equipoise.balancing.outcome import no_benefit_sentences
 
     if balanced.advice is not None:
-        reason = next(nothing_told(balanced)).removesuffix(".")
+        reason = next(no_benefit_sentences(balanced)).removesuffix(".")
         raise UsageError(
             at_place(
                 option,

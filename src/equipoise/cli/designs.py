@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     Array = np.ndarray[Any, Any]
 
-MOST_TOLD, MOST_SEED = 100_000, 2**32 - 1
+MOST_LISTED, MOST_SEED = 100_000, 2**32 - 1
 
 
 @command(Outputs)
@@ -31,7 +31,7 @@ def best(
     *,
     by: Names = None,
     largest: Names = None,
-    most: Annotated[int, count(1, MOST_TOLD, "--count")] = 10,
+    most: Annotated[int, count(1, MOST_LISTED, "--count")] = 10,
     chosen: Chosen = Chosen(),
     outputs: Outputs,
 ) -> CommandResult:
@@ -117,7 +117,7 @@ def search(
             population=size,
             generations=turns,
             seed=seed,
-            progress=lambda *_: watched.tell(size * turns),
+            progress=lambda *_: watched.show_progress(size * turns),
             compute=watched,
         )
     chosen.check(0, len(result.values) - 1)
@@ -166,7 +166,7 @@ def _columns(
 
 
 def _si_units(study: Study) -> dict[str, str]:
-    """SI unit of each number and output that has one, as a store tells it."""
+    """SI unit of each number and output that has one, as in a store."""
     from equipoise.quantities import SI
 
     kinds: dict[str, Any] = {item.path: item.dimension for item in study.vary}

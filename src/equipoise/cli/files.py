@@ -159,10 +159,10 @@ def serve(
     from equipoise.web import server
     from equipoise.web.desk import begun
 
-    with error_in_file(file or ""):  # what is wrong with a file is told before a page is opened
+    with error_in_file(file or ""):  # errors of a file are reported before a page is opened
         begin = begun(file)
 
-    def tell(address: str) -> None:
+    def announce(address: str) -> None:
         print(address, flush=True)
         print("press Ctrl+C to end", file=sys.stderr)
         if not no_browser:
@@ -171,4 +171,4 @@ def serve(
             webbrowser.open(address)
 
     gc.freeze()
-    server.serve(begin, port, tell)
+    server.serve(begin, port, announce)

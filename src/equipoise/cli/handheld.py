@@ -53,7 +53,7 @@ RANGE = '"2000 rpm : 9000 rpm"'
 VARY = re.compile(r"(?P<station>\S.*?)\s+(?P<key>\S+)\s*=\s*(?P<low>[^:]*\S)\s*:\s*(?P<high>.*\S)")
 MOST_MODES, MOST_SPEEDS = 100, 5_000
 VALUES, BAND = 81, 201
-"""Values of a number that is varied; speeds over which sensitivities are told."""
+"""Values of a number that is varied; speeds at which sensitivities are computed."""
 
 
 def _range(option: str, text: str) -> tuple[float, float]:
@@ -228,7 +228,7 @@ def _result(
     """What was computed, below what the tool is.
 
     key : of the JSON object below which it stands, if not beside the title.
-    brief : whether what stands first of each part is told first.
+    brief : whether the headline of each part is printed first.
     """
     from equipoise.handheld.blocks import summary_blocks
     from equipoise.results.headline import look_at_next

@@ -25,7 +25,7 @@ class Laid:
         self._usual(console, options, panel.copy(entries=entries))
 
     def render_usage(self, console: Console, options: ConsoleOptions, usage: Any) -> None:
-        """Print the line that tells what follows what."""
+        """Print the usage line, with the order of arguments."""
         self._usual.render_usage(console, options, usage)
 
     def render_description(

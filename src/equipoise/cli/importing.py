@@ -77,8 +77,8 @@ def import_file(
         Of a drawing: layer, colour or group, what is drawn under which is one link.  May be
         repeated.
     unit
-        Of a drawing: its unit, such as mm, or the length of one, such as "0.5 mm", instead of what
-        it tells.
+        Of a drawing: its unit, such as mm, or the length of one, such as "0.5 mm", instead of the
+        unit that it states.
     pin
         Of a model: two bodies or sites that a pin joins, where the file closes no loops, as
         "rod_end = rocker_end".  May be repeated.

@@ -171,7 +171,7 @@ OWNERS = {
 
 @dataclass(frozen=True)
 class TaskInput:
-    """What is known of one task: its total value, m/s2, and how long a day, s, if that is told."""
+    """One task: its vibration total value, m/s2, and its time a day, s, if that is given."""
 
     name: str
     a_hv: float
@@ -256,14 +256,14 @@ def exposure(
 
 
 def _answer(tasks: list[TaskInput]) -> CommandResult:
-    from equipoise.exposure.blocks import told_blocks
+    from equipoise.exposure.blocks import weighting_blocks
     from equipoise.figures import measured as pictures
 
     day = _day(tasks)
     measured = [(each.name, each.weighted) for each in tasks if each.weighted is not None]
     tools = [(each.name, each.a_hv) for each in tasks]
     return CommandResult(
-        lambda: told_blocks(measured, tools, day),
+        lambda: weighting_blocks(measured, tools, day),
         lambda: _values(measured, tools, day),
         title="",
         pictures=lambda: pictures.exposure_charts(measured, tools, day),
@@ -323,7 +323,7 @@ def _weighted(path: str, record: Accelerations, options: Mapping[str, bool]) -> 
 
 
 def _check_options(tasks: list[TaskInput], options: Mapping[str, bool]) -> None:
-    """An option that would do nothing is told, not passed over."""
+    """Raise if an option is given that would have no effect."""
     files = [each.weighted for each in tasks if each.weighted is not None]
     of_use = {
         "weighted": bool(files),
@@ -373,7 +373,7 @@ def _timed(tasks: list[TaskInput], durations: list[str]) -> list[TaskInput]:
 
 
 def _day(inputs: list[TaskInput]) -> Exposure | None:
-    """The exposure of a day; None if no time is told."""
+    """The exposure of a day; None if no time is given."""
     from equipoise.exposure.daily import Task, daily_exposure
 
     known = [each for each in inputs if each.duration is not None]

@@ -30,7 +30,7 @@ class LoadedFile:
         empty the command gets the name.
     owner : of the one that gives in whose units and words the command speaks; if empty, what is
         loaded.
-    example : a bundled file of which such commands have something to tell.
+    example : a bundled file with which such commands have results to show.
     in_parts : whether other files are read with it, such as tables of loads.
     """
 

@@ -334,7 +334,7 @@ def blaming_by_place(options: Mapping[tuple[str, ...], str]) -> Iterator[None]:
 
 
 def check_belonging(owner: Note | str, given: object, **options: object) -> None:
-    """An option that would do nothing is told, not passed over."""
+    """Raise if an option is given that would have no effect."""
     for name, value in options.items():
         if value is not None and not given:
             raise UsageError(

@@ -49,7 +49,7 @@ BRIEF = 15
 @Parameter(name="*")
 @dataclass(frozen=True)
 class Shown:
-    """In which units a command shows what it tells."""
+    """Units in which a command shows its results."""
 
     units: ShownIn = None
 
@@ -288,7 +288,7 @@ def _check_place(option: str, path: str) -> None:
         raise UsageError(
             at_place(shown, Note("there is no such folder; make it, or choose another"))
         )
-    with suppress(OSError):  # told of when the file is written
+    with suppress(OSError):  # reported when the file is written
         hold_place(path)
 
 

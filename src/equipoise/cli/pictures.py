@@ -178,7 +178,7 @@ def landscape(
         Values of each number.
     """
     from equipoise.figures.studies import landscape as drawn_map
-    from equipoise.figures.studies import told_best
+    from equipoise.figures.studies import optimum_text
     from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 
@@ -201,7 +201,7 @@ def landscape(
         )
     with pictures.showing(model.base()):
         lines = write_pictures({"landscape": drawn_map(result)}, folder, pictures.format)
-        written = os.path.join(folder, f"landscape.{pictures.format}"), told_best(result)
+        written = os.path.join(folder, f"landscape.{pictures.format}"), optimum_text(result)
     return CommandResult(lines=lambda: written, save=lambda: lines)
 
 
@@ -248,10 +248,10 @@ def _split(option: str, text: str, example: str) -> tuple[str, str]:
 
 def _read(model: Model, option: str, path: str, text: str) -> float:
     """A value of a number of the model, SI units."""
-    from equipoise.studies.objective_map import told_as
+    from equipoise.studies.objective_map import number_description
 
     try:
-        kind, _ = told_as(model, path)
+        kind, _ = number_description(model, path)
     except ModelError as error:
         raise UsageError(at_place(option, error.what)) from error
     if kind is not None:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Self
 from equipoise.dataclass import dataclass
 from equipoise.i18n import say, to_say
 from equipoise.interrupts import check
-from equipoise.quantities.numbers import rate_told, time_told
+from equipoise.quantities.numbers import duration_text, rate_text
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -37,7 +37,7 @@ SURE, LATEST = 0.02, 60.0
 
 
 _shown_now: _Log | _Bar | None = None
-"""What tells how far work is at the moment."""
+"""The log or bar of progress that is shown at the moment."""
 
 
 def last_line() -> float:
@@ -63,7 +63,7 @@ class ProgressStep:
 
     done, total : parts of it.
     share : how far it is in words; at : of the moment, such as a rate.
-    details : further lines, by what they tell.
+    details : further lines, by their subject.
     """
 
     done: int
@@ -131,7 +131,7 @@ class _Log:
             print(line, file=sys.stderr)
 
     def wait(self) -> None:
-        """A line is told now; the next comes after a while."""
+        """Note that a line is printed now, so that the next comes after a while."""
         self.last = monotonic()
         after = self.last - self.start
         self.next = after + min(max(SECONDS, GROWTH * after), LONGEST)
@@ -188,7 +188,7 @@ def generations() -> Iterator[Callable[[int, int, float], None]]:
         left = (most - done) * (monotonic() - start) / done
         share = say("generation {done} of at most {most}", done=done, most=most)
         template = to_say("cost {cost}, at most {time} left")
-        at = say(template, cost=f"{cost:.4g}", time=time_told(left))
+        at = say(template, cost=f"{cost:.4g}", time=duration_text(left))
         return ProgressStep(done, max(done, most), share, at)
 
     with _shown(0.0) as show:
@@ -200,23 +200,23 @@ def generations() -> Iterator[Callable[[int, int, float], None]]:
 
 @contextmanager
 def swept(units: Mapping[str, Unit]) -> Iterator[Callable[[Progress], None]]:
-    """Yield what many designs tell how far they are; `units` are those of the objectives."""
+    """Yield a function that shows progress of many designs; `units` are those of the objectives."""
     progresses: list[Progress] = []
     with _shown() as show:
 
-        def tell(progress: Progress) -> None:
+        def show_progress(progress: Progress) -> None:
             progresses[:] = [progress]
             at = monotonic()
             if progress.done < progress.total:
                 show(lambda: _on_the_way(progress, units, monotonic() - at), False)
 
-        yield tell
+        yield show_progress
         if progresses:
             show(lambda: _in_the_end(progresses[0], units), True)
 
 
 class Watched:
-    """Computes designs of a study, and tells how far it is each time; a context manager.
+    """Computes designs of a study, and reports progress each time; a context manager.
 
     computers : who computes.
     """
@@ -248,8 +248,8 @@ class Watched:
         self.tally.add(Block(values, outcome), computed=True)
         return outcome
 
-    def tell(self, total: int) -> None:
-        """Tell how far it is, of so many designs in all, or the most there can be."""
+    def show_progress(self, total: int) -> None:
+        """Report progress; `total` is the number of designs in all, or the most there can be."""
         self.tally.total = total
         self.report(self.tally.progress())
 
@@ -265,15 +265,15 @@ def _on_the_way(progress: Progress, units: Mapping[str, Unit], ago: float) -> Pr
             done=progress.done,
             count=progress.total,
         ),
-        ", ".join(filter(None, [rate_told(progress.rate), left_told(progress, ago)])),
+        ", ".join(filter(None, [rate_text(progress.rate), remaining_time_text(progress, ago)])),
         _best_and_failures(say("best so far"), progress, units),
     )
 
 
 def _in_the_end(last: Progress, units: Mapping[str, Unit]) -> ProgressStep:
     template = to_say("{count} designs computed in {time}")
-    computed = say(template, count=last.computed, time=time_told(last.seconds))
-    rate = rate_told(last.computed / max(last.seconds, 1e-9))
+    computed = say(template, count=last.computed, time=duration_text(last.seconds))
+    rate = rate_text(last.computed / max(last.seconds, 1e-9))
     return ProgressStep(
         last.done, last.total, computed, rate, _best_and_failures(say("best"), last, units)
     )
@@ -291,9 +291,9 @@ def _best_and_failures(name: str, progress: Progress, units: Mapping[str, Unit])
     return {name: ", ".join(best), say("failed"): ", ".join(failures)}
 
 
-def left_told(progress: Progress, ago: float = 0.0) -> str:
-    """Time that is left, of what was told some seconds ago; not before it can be known."""
+def remaining_time_text(progress: Progress, ago: float = 0.0) -> str:
+    """Remaining time as text, of progress `ago` seconds old; empty before it can be estimated."""
     early = progress.done < SURE * progress.total and progress.seconds < LATEST
     if progress.left is None or early:
         return ""
-    return say("{time} left", time=time_told(max(0.0, progress.left - ago)))
+    return say("{time} left", time=duration_text(max(0.0, progress.left - ago)))

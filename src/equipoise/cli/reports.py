@@ -1,4 +1,4 @@
-"""The commands `animate` and `report`: a linkage that moves, and one page that tells all."""
+"""The commands `animate` and `report`: a moving linkage, and all results on one page."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ from equipoise.cli.progress import Watched, swept
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note, say
-from equipoise.quantities.numbers import rate_told, time_told
+from equipoise.quantities.numbers import duration_text, rate_text
 
 if TYPE_CHECKING:
     from equipoise.figures import Picture
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 MOST_DESIGNS = 10_000_000
 LISTED_DESIGNS = 3
-"""Designs that are told in the end."""
+"""Designs at most that are listed in the end."""
 
 
 @command(PlottedOutput, long=True)
@@ -72,7 +72,7 @@ def resume(store: OpenedStore, /, *, computers: Computers = Computers()) -> Comm
 def _computed(work: Callable[..., Store], path: str, units: dict[str, Unit]) -> CommandResult:
     """Compute with progress on standard error.
 
-    work : computes a store, which is at the `path`, and tells of its `progress`.
+    work : computes a store, which is at the `path`, and reports its `progress`.
     """
     from equipoise.studies.blocks import summary_blocks
 
@@ -80,15 +80,17 @@ def _computed(work: Callable[..., Store], path: str, units: dict[str, Unit]) -> 
     with _going_on(path):
         with swept(units) as text:
 
-            def tell(progress: Progress) -> None:
+            def show_progress(progress: Progress) -> None:
                 last[:] = [progress]
                 text(progress)
 
-            store = work(progress=tell)
+            store = work(progress=show_progress)
         (end,) = last
         summary = _summary(store, end)
-    rate = rate_told(end.computed / max(end.seconds, 1e-9))
-    run = f", {time_told(end.seconds)}, {rate}" if end.computed else say(", nothing was missing")
+    rate = rate_text(end.computed / max(end.seconds, 1e-9))
+    run = (
+        f", {duration_text(end.seconds)}, {rate}" if end.computed else say(", nothing was missing")
+    )
     return CommandResult(
         lambda: summary_blocks(summary, units, run),
         lambda: _values(summary, end),
@@ -113,7 +115,7 @@ def _charts(store: Store, units: dict[str, Unit]) -> Mapping[str, Picture]:
 
 @contextmanager
 def _going_on(store: str) -> Iterator[None]:
-    """Tell whoever interrupts a sweep how it goes on."""
+    """Print how to continue a sweep, if it is interrupted."""
     try:
         yield
     except KeyboardInterrupt:
@@ -185,7 +187,9 @@ def tolerance(
         swept(units) as text,
         Watched(study, text, computers) as watched,
     ):
-        result = of_study(study, progress=lambda _, total: watched.tell(total), compute=watched)
+        result = of_study(
+            study, progress=lambda _, total: watched.show_progress(total), compute=watched
+        )
     return CommandResult(
         lambda: result.blocks(units=units),
         result.to_dict,

@@ -47,7 +47,7 @@ Schema = dict[str, Any]
 
 @dataclass(frozen=True)
 class CommandOutput:
-    """What a command told.
+    """Output of a command.
 
     text : as on a terminal.  values : of its JSON object, in SI units and radians; long lists are
     left out unless asked for.  written : files, in the order in which they were written.
@@ -259,7 +259,7 @@ def _size(value: Any) -> int:
 
 
 def units_of(values: Any) -> dict[str, str]:
-    """SI unit of each kind of quantity, and of each output that is told by its name."""
+    """SI unit of each kind of quantity, and of each output in the values, by name."""
     named = {name: declared(name) for name in _names(values)}
     dimensions = {name: item[0].dimension for name, item in named.items() if item is not None}
     kinds = {kind: kind for kind in SI} | dimensions

@@ -39,7 +39,7 @@ class ToolReply:
 
 
 def reply_to(call: ToolCall) -> ToolReply:
-    """Run a command; what is wrong is told in the product's sentence."""
+    """Run a command; errors are reported in the product's sentences."""
     from cyclopts import CycloptsError
 
     from equipoise.cli.tools import tools

@@ -1,6 +1,6 @@
 """Loops that run: compiled by Numba and kept on disk, or done by NumPy where Numba is missing.
 
-A source is written to a file whose name tells its content and that of this module, because the
+A source is written to a file whose name has a hash of its content and of this module's, because the
 cache of compiled code looks at that file alone.
 """
 
@@ -255,8 +255,8 @@ def _instruction(name: str, count: int, fastmath: tuple[str, ...] = ()) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         function = builder.module.declare_intrinsic(name, [number], kind)
-        # What is put aside on the stack lies across lines of the cache otherwise.  llvmlite tells
-        # the alignment only beside another attribute.
+        # What is put aside on the stack lies across lines of the cache otherwise.  llvmlite
+        # writes the alignment only beside another attribute.
         builder.function.attributes.alignstack = 64
         builder.function.attributes.add("nounwind")
         return builder.call(function, arguments, fastmath=fastmath)

@@ -1,4 +1,4 @@
-"""Figures of many designs of one machine: geometry, masses, speed, whatever its file tells.
+"""Figures of many designs of one machine: geometry, masses, speed, any number of its file.
 
 Designs are a table, one row a design, that a loop runs over at crank angles of the batch's choice.
 """
@@ -214,7 +214,7 @@ class Batch:
     def __call__(self, values: Array) -> tuple[Array, Array]:
         """Figures (P, m) and reasons (P,) of designs (P, d), SI units; NaN where one failed."""
         values = np.ascontiguousarray(values, dtype=float)
-        with np.errstate(all="ignore"):  # a design that fails is told by its reason
+        with np.errstate(all="ignore"):  # a design that fails has a reason
             designs = designs_of(self.source, self.base, self.paths, values)
             figures, reason = self._settled(designs)
         reason[designs.refused] = NO_MACHINE
@@ -351,7 +351,7 @@ class Batch:
     def _reasons(self, table: Array, columns_read: Array, count: int) -> Array:
         """Why designs (P,) cannot be moved through the cycle; `COMPUTED` where they can.
 
-        Of several dyads that fail it is the first that tells, as those behind it have no place.
+        Of several dyads that fail the first gives the reason, as those after it have no position.
         """
         reason = np.zeros(len(columns_read), dtype=np.uint8)
         reason[np.any(columns_read[:, self.source.nearest] < FAR, axis=1)] = NOT_COMPUTED

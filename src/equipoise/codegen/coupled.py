@@ -1,11 +1,11 @@
 """Couplings in terms: angles that follow from those of two links, and curves on which pins run.
 
-Where the crank angle alone tells the angles of driver and carrier, it tells the driven link's too,
-up to the angle at which each design starts.
+Where the angles of driver and carrier are functions of the crank angle alone, so is the driven
+link's, up to the angle at which each design starts.
 
-A law tells an angle or a way by that of the driver, with each design's own numbers; where the crank
-angle alone does not tell the driver's, the law is evaluated at each design's own, and its piece is
-looked up in tables, without a branch.
+A law gives an angle or a displacement by the angle of the driver, with each design's own numbers;
+where the driver's is not a function of the crank angle alone, the law is evaluated at each design's
+own angle, and its piece is looked up in tables, without a branch.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from equipoise.mechanism.parts.machine import FRAME
 Turning = Callable[[Array], tuple[Any, Any, Any]]
 """Angle of a link at crank angles (N,), rad, and its two derivatives by them."""
 FEW = 16
-"""Pieces of a curve that are told apart by comparing, which handles several angles at once."""
+"""Pieces of a curve, at most, that are found by comparing, which handles several angles at once."""
 ALIKE = 1e-14
 """Of the largest of some values: what differs by less than this does so by rounding."""
 DIGITS = 13
@@ -58,7 +58,7 @@ MOST_PRODUCTS = 6
 
 
 def known_by_crank(trace: Trace) -> dict[str, Turning]:
-    """Links whose angle the crank angle alone tells: those driven, and what couplings add."""
+    """Links whose angle is a function of the crank angle alone: driven ones, and by couplings."""
     turnings: dict[str, Turning] = {FRAME: lambda theta: (0.0 * theta, 0.0, 0.0)}
     turnings |= {drive.link: drive.turned for drive in trace.machine.driven}
     for step in trace.linkage.motion:
@@ -306,7 +306,7 @@ class Pieces:
     def __init__(self, trace: Trace, curve: PeriodicCurve, since: Any, few: int = FEW) -> None:
         """since : way from the curve's beginning, rounding ahead.
 
-        few : pieces up to which they are told apart by comparing.
+        few : pieces up to which they are found by comparing.
         """
         self.graph, self.curve, self.since = trace.graph, curve, since
         self.few, self.even = len(curve.powers) <= few, False
@@ -499,7 +499,7 @@ def _power(factor: Any, sign: float) -> Any:
 
 
 FEW_PIECES = 2
-"""Pieces that are told apart by comparing: of a dozen numbers each, more take long to compile."""
+"""Pieces, at most, that are found by comparing: of a dozen numbers each, more compile slowly."""
 
 
 class TracedCurve:

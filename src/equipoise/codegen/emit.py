@@ -92,7 +92,7 @@ class Signals:
         return PARTS[entry.part](value)
 
     def _has(self, declared: Declared) -> bool:
-        """Whether the machine has what an output tells of, as far as that depends on no member."""
+        """Whether the machine has what an output needs, as far as that depends on no member."""
         return declared.needs != "planes" or self.machine.has_planes
 
     def _known(self) -> Sequence[str]:
@@ -106,8 +106,8 @@ class Signals:
 
     @cached_property
     def poses(self) -> dict[str, Any]:
-        """Signals that are no outputs but tell where each link is, and how far each dyad is from
-        its dead positions: ``rotation(crank).x`` of exp(i angle), ``center(crank).x`` of its centre
+        """Signals that are no outputs but give the pose of each link, and the distance of each dyad
+        from its dead positions: ``rotation(crank).x`` of exp(i angle), ``center(crank).x`` of its centre
         of mass (m), and ``margin 0`` of the first dyad.
         """
         trace = self.trace
@@ -346,7 +346,7 @@ def emit(
     paths : of the numbers in which designs differ; None of one design.
     has_shares : whether crank angles have shares of their own in means.
     alone : whether each crank angle stands alone, also in groups of loops: these start from the
-        base there, and cosines tell whether they arrive.
+        base there, and cosines show whether they arrive.
 
     Raises
     ------

@@ -3,7 +3,7 @@
 They are those of `signals.smooth_tops` and of `JumpSampling.tops`, which NumPy finds for many
 signals at once: here each signal of each design by itself, which is many times as fast for the few
 hundred values that a loop keeps.  `kernel_text` writes the functions out with their constants, so
-that the name of the compiled file tells both.
+that the name of the compiled file depends on both.
 """
 
 from __future__ import annotations
@@ -397,7 +397,7 @@ def range_of(values: Array) -> tuple[float, float]:
 
 
 def place_of_sample(values: Array, sign: float, high: float, low: float) -> int:
-    """Place of the highest of `sign` times values, as `signals.highest_at` tells it."""
+    """Place of the highest of `sign` times values, as of `signals.highest_at`."""
     rounding = ROUNDING * max(abs(high), abs(low))
     enough = high - max(EQUAL * (high - low), rounding)
     count = len(values)

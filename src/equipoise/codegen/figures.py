@@ -95,7 +95,7 @@ GATHERED = {
     "min_at": ("dip", "dip_at"),
     "peak_at": ("top", "dip", "top_at", "dip_at"),
 }
-"""Figure -> what it is made of beside the sum of squares, which tells how large a signal is."""
+"""Figure -> what it is made of beside the sum of squares, which measures the size of a signal."""
 PLACES = ("max_at", "min_at", "peak_at")
 
 

@@ -1,7 +1,7 @@
 """A group of loops in terms: Newton's method from the crank angle before, of many designs at once.
 
 The group's own formulas are run on terms, so that they stand nowhere else.  A design begins with
-the pose of the base, at the crank angle at which the model file tells it, and goes once round the
+the pose of the base, at the crank angle at which the model file gives it, and goes once round the
 cycle from there.  Nothing branches: the number of Newton's steps is fixed, and what they leave is
 watched; linear equations are solved by minors, of which most factors are nothing.
 """
@@ -40,10 +40,10 @@ ARRIVED = 1e-8
 """Last of them, in sizes of the machine and radians, up to which 3/2 count as arrived."""
 MARCH = ("step", "marked", "steady")
 """What is given of a crank angle in a march: how far it is from the one before; 1 where the file
-tells the pose, else 0; 1 from there on, 0 before."""
+gives the pose, else 0; 1 from there on, 0 before."""
 WATCHED = ("loose", "astray", "open")
-"""Values that are carried on, whose last tells of a design whether Newton's method left its branch;
-did not arrive from the base, or too far from where the file tells; came back elsewhere."""
+"""Values that are carried on, whose last shows of a design whether Newton's method left its branch;
+did not arrive from the base, or too far from the file's pose; came back elsewhere."""
 
 
 def between_rows(trace: Trace, table: Array, period: float) -> Any:
@@ -146,7 +146,7 @@ class TracedGroup:
             self.trace.carry_on(item, value)
 
     def known_pose(self) -> tuple[list[float | complex], float]:
-        """The base's unknowns, and the determinant of its slopes, where the file tells its pose."""
+        """The base's unknowns, and the determinant of its slopes, where the file gives its pose."""
         assert self.machine.position is not None
         state = self.linkage.solve(np.array([self.machine.position.crank_angle]))
         q = state[self.base.reference]
@@ -239,7 +239,7 @@ class TracedGroup:
         self.carry_on([loose], [greatest(loose, self.steady * unsound)])
 
     def misplaced(self, poses: Poses) -> Iterator[Any]:
-        """Of each point: above 0 where it is too far from where the file tells it to be."""
+        """Of each point: above 0 where it is too far from its position in the file."""
         machine = self.machine
         assert machine.position is not None
         for link, anchor in zip(self.group.links, self.group.anchors, strict=True):

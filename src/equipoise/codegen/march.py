@@ -16,14 +16,14 @@ from equipoise.mechanism.assembly.loops import JUMP, SETTLED
 
 STEPS = (radians(4), radians(0.5), radians(1 / 12))
 """Farthest that crank angles are apart; the next for designs that have not stayed on their branch.
-The last tells whether a design turns at all."""
+The last decides whether a design turns at all."""
 ARRIVALS = 6
 """Rounds of Newton's method from the base's pose, before the crank turns."""
 
 
 @dataclass(frozen=True)
 class March:
-    """Once round the cycle, from the crank angle at which the file tells the pose.
+    """Once round the cycle, from the crank angle at which the file gives the pose.
 
     source : whose loop it is.  begin : that crank angle, within the cycle of `period` (rad).
     """

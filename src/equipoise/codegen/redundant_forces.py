@@ -1,4 +1,4 @@
-"""Forces that joints share beyond what statics tells, in terms.
+"""Statically indeterminate joint forces, in terms.
 
 With the equations A x = b of all free bodies the least forces are x = A' y, where A A' y = b.  A A'
 is symmetric and positive, so that it is eliminated in the order in which it stands, without pivots.
@@ -26,7 +26,7 @@ from equipoise.mechanism.assembly.loops import CouplingLoop, Pose, Poses
 from equipoise.mechanism.assembly.redundant_reactions import RedundantReactions
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.forces import forces
-from equipoise.mechanism.dynamics.reactions import idle_told
+from equipoise.mechanism.dynamics.reactions import idle_teeth_notes
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import move
 
@@ -73,7 +73,7 @@ def check_shared(trace: Trace) -> None:
         raise UsageError(MANY)
     if switching:
         solved = forces(move(trace.machine, theta)).solved
-        if any(idle_told(trace.linkage, solved.state)):
+        if any(idle_teeth_notes(trace.linkage, solved.state)):
             raise UsageError(SWITCHING)
 
 

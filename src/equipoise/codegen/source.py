@@ -39,7 +39,7 @@ class TermSource:
     values : by the names of what is gathered.
     slots : what stands in the columns of its table, of which there are `width`.
     rows : numbers that depend on the crank angle alone, of which its grid is made.
-    watched : dyads that numbers tell of; the first time it is the dyad's own number.
+    watched : dyads of the watched numbers; the first number of a dyad is its own margin.
     running : links whose angle is taken from that of the base.
     gathered : columns of what it fills: those that are wanted, then the others below.
     weakest, strongest : columns of the smallest and the largest value of each watched number.

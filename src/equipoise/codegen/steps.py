@@ -535,7 +535,7 @@ def trace_demands(trace: Trace) -> None:
         force, moment = demand_names(link)
         state[force] = sum(force for _, force, _ in parts)
         state[moment] = sum(moment for _, _, moment in parts)
-    if machine.has_crank:  # else work does not tell the torque of each drive
+    if machine.has_crank:  # else work does not determine the torque of each drive
         state["drive torque"] = sum(_drive_torques(trace))
 
 

@@ -3,8 +3,8 @@
 Formulas run on terms as they run on numbers, and leave a graph behind, which `codegen.emission`
 writes out in several languages.  A term exists once (common subexpressions), operations on plain
 numbers are carried out at once, and sums with 0 and products with 0 and 1 fall away.  Each term
-knows whether it depends on the crank angle, on the design, on both or on neither: this tells in
-which loop it is computed.  Vectors are pairs of terms.
+knows whether it depends on the crank angle, on the design, on both or on neither: this decides
+in which loop it is computed.  Vectors are pairs of terms.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Graph:
     """Terms by what they are made of.
 
     base : numbers of arguments, by which comparisons of terms are decided, so that code that looks
-        at numbers to tell cases apart takes the case of the base.
+        at numbers to distinguish cases takes the case of the base.
     """
 
     def __init__(self) -> None:

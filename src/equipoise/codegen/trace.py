@@ -25,7 +25,7 @@ Body = tuple[Any, Any, Any, Any, Any, Any]
 FAR = -0.5
 """Cosine of the angle between a link and the base's, beyond which it may go the other way round."""
 FARTHEST = 3.0
-"""rad: less than half a turn, from where an angle is told by the rotation."""
+"""rad: less than half a turn, within which the rotation determines an angle."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Trace:
         coupling follows a link that a dyad moves.
     orders : link -> turns in a turn of the crank, of links that turn in proportion to it.
     apart : number of a dyad with a block -> how far, over the size of the machine and squared, the
-        block is from its guide's pivot.  Near there the number drops too fast to tell between the
+        block is from its guide's pivot.  Near there the number drops too fast to be resolved between
         crank angles.
     running : link whose angle is taken from that of the base -> cosine of the angle between.
     alone : whether groups of loops start from the base at each crank angle, and nothing is carried.
@@ -192,8 +192,8 @@ class Trace:
         return place, first, second
 
     def numbers(self) -> list[tuple[Any, int]]:
-        """The dyads' own numbers, and what else is to be watched; each with the dyad that it tells
-        of, by its place in the order in which they are solved.
+        """The dyads' own numbers, and what else is to be watched; each with the number of its
+        dyad in the order in which dyads are solved.
         """
         own = [g.margin for g in self.linkage.groups if g.margin is not None and not g.through]
         numbers = [(self.state[number], k) for k, number in enumerate(own)]
@@ -234,7 +234,7 @@ def _drives_on(machine: Machine) -> bool:
 
 
 def _counts(step: Step) -> bool:
-    """Whether a step asks for the angle of a link that a dyad moves, or tells one of a rack's."""
+    """Whether a step asks for the angle of a link that a dyad moves, or gives one of a rack's."""
     racked = isinstance(step, KernelCall) and step.kernel in (kernels.rolled, kernels.wound)
     return racked or isinstance(step, RunningAngle)
 

@@ -349,7 +349,7 @@ HANDY = 0.05
 """Time of designs that are computed here though there are processes, s: to send them there and back
 takes some milliseconds, and whoever descends asks for few at a time."""
 PART = 1.0
-"""Time that a part takes at most, so that progress is told, s."""
+"""Time that a part takes at most, s, so that progress is reported."""
 
 
 class DesignSlice(NamedTuple):
@@ -430,7 +430,7 @@ class PooledEvaluator(Generic[Figures]):
         """
         if not self.shared and progress is None:
             return self.alone(values)
-        tell = progress or (lambda _: None)
+        report = progress or (lambda _: None)
         if self.is_shared_out and self.spent * len(values) < HANDY * self.count:
             return self.alone(values)
         outcomes, begin = [], 0
@@ -443,21 +443,21 @@ class PooledEvaluator(Generic[Figures]):
             self.spent, self.count = self.spent + took, self.count + len(part)
             if took < QUICK:
                 self.step *= 2
-            tell(begin)
+            report(begin)
             # The first part took as long as all that is imported for it.
             long = len(outcomes) > 1 and took * (len(values) - begin) > PATIENCE * len(part)
             self.begun = self.begun or (self.spent > QUICK and long)
         if begin < len(values):
-            outcomes += self._shared_out(values[begin:], lambda k: tell(begin + k))
+            outcomes += self._shared_out(values[begin:], lambda k: report(begin + k))
         return self.join(outcomes)
 
-    def _shared_out(self, values: Array, tell: OnDesigns) -> list[Figures]:
+    def _shared_out(self, values: Array, report: OnDesigns) -> list[Figures]:
         self.begun = True
         result, done = {}, 0
         for part, outcome in self.runner.each(self._parts(values)):
             result[part.begin] = outcome
             done += len(part.values)
-            tell(done)
+            report(done)
         return [result[start] for start in sorted(result)]
 
     def _parts(self, values: Array) -> Iterator[DesignSlice]:

@@ -31,7 +31,7 @@ class Requirement(RequiredFigure):
         `at_least` and `at_most`, limits, which are kept; `make`, whether it is to become the
         ``smallest`` or ``largest`` that the limits allow.
     tolerance : what counts as one step away; `USUAL_SHARE` of the value where not given.
-    turning : whether it is an angle that is the same after a turn; told by its name if None.
+    turning : whether it is an angle that is the same after a turn; decided by its name if None.
 
     Where nothing is asked of it, it is a fact to be reported.
     """

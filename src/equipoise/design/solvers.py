@@ -36,7 +36,7 @@ class DesignSolution:
     values : (K, d) of these in SI units, where they are known to more digits than by their places.
     proof : why no design is better; None where nothing proves it.
     solver : its name.
-    details : what a solver tells the problem that brought it.
+    details : further results of a solver for the problem that called it.
     """
 
     places: Array

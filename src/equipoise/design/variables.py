@@ -198,7 +198,7 @@ class Uniform:
 
 
 Spread = Range | Choices | Normal | Uniform
-"""`tolerance` tells whether it is what making a thing leaves open."""
+"""Spread of a number; its `tolerance` is true for scatter of manufacture."""
 SPREADS: dict[str, type[Spread]] = {
     "range": Range,
     "list": Choices,

@@ -38,7 +38,7 @@ def export(
 
     Parameters
     ----------
-    what : of a balanced machine the new counterweights are told too, where the format has a place.
+    what : of a balanced machine the new counterweights are written too, if the format has a place.
     path : of the file, which is replaced where it is there.
     format : a name in ``equipoise.exchange.formats.FORMATS`` such as ``mjcf``; as the file's ending
         says if None.
@@ -198,7 +198,7 @@ def check_turning(machine: Machine, title: str) -> None:
 
     Raises
     ------
-    UsageError : it does not; the sentence tells why.
+    UsageError : it does not; the sentence states why.
     """
     refusal = to_say("a file of {title} turns the driven link evenly all the way round: {why}")
     if not machine.has_crank:

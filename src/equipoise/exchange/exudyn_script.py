@@ -88,7 +88,7 @@ class Build:
         self.system.AddLoad(item.LoadMassProportional(markerNumber=weighed, loadVector=weight))
 
     def place(self, end: tuple[str, list[float]]) -> int:
-        """Mark a point of a body, told from its centre of mass."""
+        """Mark a point of a body, given relative to its centre of mass."""
         body, at = end
         rigid = item.MarkerBodyRigid(bodyNumber=self.objects[body], localPosition=[*at, 0])
         return self.marker(rigid)

@@ -257,7 +257,7 @@ class Job:
             self.left_out.append(what)
 
     def leave_out_forces(self) -> None:
-        """Tell that there are no forces where links lack masses."""
+        """Note that there are no forces where links lack masses."""
         if missing := massless(self.machine):
             self.leave_out(Note("all forces: {missing}", missing=missing))
 
@@ -277,17 +277,17 @@ class Job:
             )
 
     def leave_out_soil(self) -> None:
-        """Tell that the soil pushes nothing."""
+        """Note that soil forces are left out."""
         if self.machine.in_soil:
             self.leave_out(Note("the soil's force"))
 
     def leave_out_planes(self) -> None:
-        """Tell that everything lies in one plane."""
+        """Note that everything lies in one plane."""
         if self.machine.has_planes:
             self.leave_out(Note("the planes of links beside each other, and their bearings"))
 
     def leave_out_motor(self) -> None:
-        """Tell that the drive has its speed, whatever turns it."""
+        """Note that the drive has a given speed, and no motor."""
         drive = self.machine.drive
         if drive.motor:
             self.leave_out(Note("the motor: the drive turns at constant speed"))

@@ -197,7 +197,7 @@ def _support(world: ET.Element, machine: Machine, support: Support) -> ET.Elemen
     moments = support.inertia or (moment_of(support),)
     x, y, z = moments if len(moments) == 3 else moments * 3
     xy, yz, zx = (-item for item in support.products or (0.0, 0.0, 0.0))
-    z -= machine.drive.flywheel  # it turns with the crank, where it is told
+    z -= machine.drive.flywheel  # it turns with the crank, where it is written
     _inertial(base, support.mass, support.center_of_mass, (x, y, z, xy, zx, yz))
     for name, gauge in support.gauges.items():
         if gauge.point is not None:

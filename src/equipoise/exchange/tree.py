@@ -228,7 +228,7 @@ def preloads(machine: Machine) -> Mapping[str, float]:
 
 
 def constant_loads(job: Job, *, between: bool = False) -> Iterator[tuple[int, Load]]:
-    """Loads that are always the same, by number; others, and soil, are told to be left out.
+    """Constant loads by number; notes name the others, and soil, which are left out.
 
     between : whether the format can hold those whose opposite another link bears.
     """

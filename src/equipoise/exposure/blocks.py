@@ -114,12 +114,12 @@ def times_blocks(tools: Sequence[tuple[str, float]]) -> Iterator[Block]:
     yield Text(say("There is no daily exposure without a time."))
 
 
-def told_blocks(
+def weighting_blocks(
     measured: Sequence[tuple[str, Weighted]],
     tools: Sequence[tuple[str, float]],
     day: Exposure | None,
 ) -> Iterator[Block | ReportSection]:
-    """What was weighted, by name; then the day, or where no time is told how long one may work."""
+    """Weighted accelerations by name; then the day's exposure, or without times permitted times."""
     for name, weighted in measured:
         yield ReportSection("weighted", shortened(name), tuple(weighted_blocks(weighted)))
     yield from times_blocks(tools) if day is None else exposure_blocks(day)

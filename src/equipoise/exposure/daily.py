@@ -3,7 +3,7 @@
 ISO 5349-1 and ISO 5349-2: the total value of three axes, daily exposure, years to white finger.
 
 Sources: ISO 5349-1:2001, 4.4 (equation 1), 5.3 (equations 2 and 3), Annex C (equation C.1, Table
-C.1); ISO 5349-2:2001, clause 8.  What of that was checked, and how, is told in docs/exposure.md.
+C.1); ISO 5349-2:2001, clause 8.  docs/exposure.md states what of that was checked, and how.
 
 Guideline on vibrating tools of the Japanese Ministry of Health, Labour and Welfare, 2009.
 
@@ -79,8 +79,8 @@ def points(a8: float) -> float:
 def equivalent(idling: float, racing: float) -> float:
     """Equivalent total value a_hv,eq, m/s2, of those when idling and when racing, m/s2.
 
-    Both count for equal times.  Source: ISO 22867, brush cutters and grass trimmers; that the times
-    are equal is also told in makers' manuals, as in that of the Stihl FS 40, 20.6.
+    Both count for equal times.  Source: ISO 22867, brush cutters and grass trimmers; manuals
+    state equal times as well, as that of the Stihl FS 40, 20.6.
 
     Raises
     ------

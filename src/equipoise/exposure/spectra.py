@@ -46,8 +46,8 @@ LEAST_RATE = 2 * float(EDGES[-1])
 WHOLE_RATE = 2 * 10**3.3
 """Hz: below, it ends where ISO 8041-1, Table 4, still has a lower tolerance, at 1995 Hz."""
 LEAST_DURATION = 1.0
-"""s: both fades; a band of 6.3 Hz is 1.5 Hz wide, so that less could not tell it from its
-neighbours."""
+"""s: both fades; a band of 6.3 Hz is 1.5 Hz wide, so that less could not separate it from
+its neighbours."""
 SHORT = 8.0
 """s, below which ISO 5349-2, 5.4.1, calls a measurement hardly reliable at low frequencies."""
 FADE = 0.5
@@ -199,7 +199,7 @@ def uneven(time: Array) -> int | None:
 
 
 MUCH = 0.1
-"""Share of the weighted mean square below the lowest band, from where on it is told."""
+"""Share of the weighted mean square below the lowest band, from which on a note reports it."""
 LOOKS_LIKE_BANDS = 5
 """Frequencies, all of them middles of bands, from where on a spectrum is asked whether it has."""
 

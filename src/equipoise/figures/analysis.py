@@ -17,9 +17,9 @@ from equipoise.figures.chart_parts import (
     extremes,
     extremes_of,
     groups,
+    numbered_angles,
     numbers,
-    told_angles,
-    told_speed,
+    speed_text,
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
@@ -55,7 +55,7 @@ def title(
     of_one : whether it is of one row where there are several.
     speed : rad/s, where it is not that of the analysis, as in a state of the duty.
     """
-    values = {"what": what, "speed": told_speed(analysis.motion.speed if speed is None else speed)}
+    values = {"what": what, "speed": speed_text(analysis.motion.speed if speed is None else speed)}
     if of_one and len(analysis.machine.rows) > 1:
         text = say("{what} of one row, at {speed}", **values)
     else:
@@ -103,8 +103,8 @@ def angle_axis(analysis: Analysis) -> Axis:
 
 
 def settled(values: Array, least: float) -> Array:
-    """Values (N,), or zeros where none is larger than what is told as rounding; of each component
-    of complex ones.
+    """Values (N,), or zeros where none exceeds rounding, `least`; for complex values, component by
+    component.
     """
     if np.iscomplexobj(values):
         return settled(values.real, least) + 1j * settled(values.imag, least)
@@ -261,6 +261,6 @@ def _square(analysis: Analysis, joint: JointCurve, axis: Axis) -> Panel:
     marks: tuple[Mark, ...] = ()
     if analysis.motion.whole_cycle:
         size = extent(values, np.zeros(1))
-        marks = numbers(told_angles(analysis.crank_angle), values, "all", size)
+        marks = numbers(numbered_angles(analysis.crank_angle), values, "all", size)
     curve = Curve.of(over(analysis, values)[1], "", "thin")
     return Panel(axis, axis, (curve,), marks, title=joint.label, equal=True, rings=True)

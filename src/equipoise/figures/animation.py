@@ -103,7 +103,7 @@ def _fits(label: Label, others: list[Label], stage: Stage, size: float) -> bool:
 
 
 def _strip(stage: Stage) -> Iterator[list[Label]]:
-    """A length by which one can measure, and what is told, one above the other from the right."""
+    """Labels of the strip, set to the right: a scale bar, and lines of text one above the other."""
     right, length = ruler_ends(stage)[1], _ruler_length(stage)
     words = decimals(f"{1000 * length:g} mm" if length < 10 else f"{length:g} m")
     several = len(stage.lines) > 1

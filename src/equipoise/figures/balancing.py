@@ -23,9 +23,9 @@ from equipoise.figures.chart_parts import (
     continued,
     extent,
     groups,
+    numbered_angles,
     numbers,
-    told_angles,
-    told_speed,
+    speed_text,
 )
 from equipoise.figures.forces import Read, last_order, order_panel
 from equipoise.figures.pairs import (
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine
 
 AIM_SAMPLES, MOST_AIMS = 360, 4
-"""Crank angles in a turn from which it is told what is rounding; aims below each other."""
+"""Crank angles in a turn by which rounding is recognized; objectives at most in a chart."""
 LABELS = {
     "force": to_say("force"),
     "torque": to_say("torque"),
@@ -108,7 +108,7 @@ class Aim:
         return result
 
     def panels(self, last: int, with_speed: bool) -> tuple[Panel, Panel]:
-        """Over crank angle, and by order up to the last; with_speed : whether that is told."""
+        """Panels over the crank angle and by order up to the last, with or without the speed."""
         dimension, (first, _) = self.output.dimension, self.asked[0]
         unit = GAUGES["displacement", True][1] if dimension == "angle" else None
         named = first if with_speed else replace(first, speeds=())
@@ -180,7 +180,7 @@ def aims(balanced: Balanced) -> Iterator[Chart]:
     speeds = {speed for aim in every for speed in aim.asked[0][0].speeds}
     when = say("before and after")
     if speeds == {balanced.original.drive.speed}:
-        when = say("before and after, at {speed}", speed=told_speed(balanced.original.drive.speed))
+        when = say("before and after, at {speed}", speed=speed_text(balanced.original.drive.speed))
     heading = f"{say('Objectives and limited outputs')}, {when}"
     for suffix, some in groups(every, MOST_AIMS):
         last = max(last_order(aim.read) for aim in some)
@@ -204,7 +204,7 @@ SIGNALS = {
 PUSHED = "torque", ("drive_force", to_say("Drive force"), to_say("drive force"))
 """What stands in the place of the torque where a force drives."""
 SAMPLES, SAMPLES_OF_ROWS = 360, 720
-"""Crank angles in a turn from which it is told what is rounding, and of rows together."""
+"""Crank angles in a turn by which rounding is recognized, for one row and for several together."""
 LABEL_DISTANCE = 0.015
 """Over the size of a hodograph: numbers after that are nearer to those before are left out."""
 IN_LINE = 6
@@ -275,7 +275,7 @@ def signals(balanced: Balanced) -> dict[str, Chart]:
 def _caption(balanced: Balanced) -> str:
     """What is shown of a signal, in words."""
     of_one = say("of one row") + ", " if len(balanced.original.rows) > 1 else ""
-    speed = told_speed(balanced.original.drive.speed)
+    speed = speed_text(balanced.original.drive.speed)
     return of_one + say("before and after, at {speed}", speed=speed)
 
 
@@ -283,7 +283,7 @@ def polar(balanced: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart
     """The end of the shaking force's arrow over a cycle, on axes of one scale."""
     ends = {when: force["x"][when] + 1j * force["y"][when] for when in ("before", "after")}
     columns, size = roles_of(ends), extent(*ends.values(), np.zeros(1))
-    at = told_angles(angles)
+    at = numbered_angles(angles)
     marks: list[Mark] = []
     curves = [Curve.of(np.append(item, item[0]), "", role) for role, item in columns.items()]
     for role, values in reversed(columns.items()):
@@ -339,7 +339,7 @@ def _dial(hands: Mapping[str, Machine], machine: Machine, k: int) -> Panel:
 
 def combined(original: Machine | None, machine: Machine) -> Chart:
     """Components of the shaking force of all rows together over crank angle."""
-    text = {"count": len(machine.rows), "speed": told_speed(machine.drive.speed)}
+    text = {"count": len(machine.rows), "speed": speed_text(machine.drive.speed)}
     what = say("Shaking force of {count} rows together, at {speed}", **text)
     if original is not None:
         what = say("Shaking force of {count} rows together, before and after, at {speed}", **text)
@@ -400,13 +400,13 @@ def front(result: Front) -> Chart:
         marks.append(Mark.of(complex(*values[k]), text, "best", wish, sign=False))
     curve = Curve(values[:, 0], values[:, 1], "", "best")
     panel = Panel(x, y, (curve,), tuple(marks), remark=remark, height=250.0)
-    speed = told_speed(result.original.drive.speed)
+    speed = speed_text(result.original.drive.speed)
     title = say("Trade-off: the least of one for every value of the other")
     return Chart("front", result.original.title, f"{title}, at {speed}", (panel,))
 
 
 def _objective_axis(label: str, unit: str, values: Array) -> Axis:
-    """An axis with room, in the unit in which figures of an SI unit are told."""
+    """An axis with room at its ends, in the display unit of an SI unit."""
     low, high = float(np.min(values)), float(np.max(values))
     room = MARGIN * (high - low if high > low else abs(high) or 1.0)
     return Axis(label, shown_in(unit, values), low=low - room, high=high + room)

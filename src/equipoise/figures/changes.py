@@ -13,7 +13,7 @@ import numpy as np
 
 from equipoise.balancing.workshop import is_ring
 from equipoise.dataclass import dataclass
-from equipoise.figures.linkage import joint_names, panel_content, plane_axes, told_angle
+from equipoise.figures.linkage import crank_angle_text, joint_names, panel_content, plane_axes
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import Motion, move
@@ -118,7 +118,7 @@ def changes(balanced: Balanced) -> Chart:
     scene = replace(scene, carrier=None)  # nothing of a support is changed, and it may reach far
     changed = any(item.kind != "room" for item in new)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
-    text = told_angle(posed.angle(machine.drive.link))
+    text = crank_angle_text(posed.angle(machine.drive.link))
     drive = short(machine.drive.link)
     what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=text)
     panel = _panel(scene, posed.number, new)
@@ -301,7 +301,7 @@ def _rooms(posed: Posed, plan: Balance) -> Iterator[Addition]:
 
 
 def grams(mass: float) -> str:
-    """A mass (kg) as a workshop would tell it."""
+    """A mass, given in kg, in grams, or from 10 kg on in kilograms."""
     return quantity(mass, "mass", "kg" if mass >= 10 else "g")
 
 

@@ -84,7 +84,7 @@ def by_name(charts: Iterable[Chart]) -> dict[str, Chart]:
 
 
 def angle_step(turns: int) -> int:
-    """Degrees between crank angles that are told along a path."""
+    """Degrees between the crank angles that are labelled along a path."""
     return next((step for step in STEPS if 360 * turns / step < 13), 360 * turns)
 
 
@@ -96,16 +96,16 @@ def closed(theta: Array, values: Array, period: float) -> tuple[Array, Array]:
 # -- words -----------------------------------------------------------------------------------------
 
 
-def told_speed(speed: float) -> str:
-    """A crank speed in words."""
+def speed_text(speed: float) -> str:
+    """A crank speed, given in rad/s, as text in rpm and rad/s."""
     values = {"rpm": shown(abs(speed) * RPM.factor), "rate": shown(abs(speed))}
     if speed < 0:
         return say("{rpm} rpm ({rate} rad/s, clockwise)", **values)
     return say("{rpm} rpm ({rate} rad/s)", **values)
 
 
-def degrees_told(angle: float) -> str:
-    """An angle in rad as degrees."""
+def degrees_text(angle: float) -> str:
+    """An angle, given in rad, as text in degrees with one decimal."""
     return decimals(f"{np.degrees(angle):.1f}°").replace("-", "\N{MINUS SIGN}")
 
 
@@ -164,7 +164,7 @@ def extremes(
         return (Mark(middle, float(values[0]), text, role, sign=False),)
     for angle, value in places if varies(values) else ():
         shown = axis.format_value(value if abs(value) > least else 0.0)
-        text = say("{value} at {angle}", value=shown, angle=degrees_told(angle))
+        text = say("{value} at {angle}", value=shown, angle=degrees_text(angle))
         wish = 90.0 if value > float(np.mean(values)) else -90.0
         marks.append(Mark(angle, value, text, role, wish))
     return tuple(marks)
@@ -233,8 +233,8 @@ def _clear_of_other_curves(mark: Mark, theta: Array, others: Sequence[tuple[Arra
 # -- ends of arrows --------------------------------------------------------------------------------
 
 
-def told_angles(angles: Array) -> dict[int, int]:
-    """A few crank angles (deg), and which of `angles` (N,), a whole cycle in rad, each is."""
+def numbered_angles(angles: Array) -> dict[int, int]:
+    """Crank angles to be labelled, deg -> index into `angles` (N,), a whole cycle in rad."""
     turns = round(float(angles[-1] + angles[1] - angles[0]) / (2 * np.pi))
     step = QUARTERS if turns < FEW_TURNS else angle_step(turns)
     each = len(angles) / (360 * turns)

@@ -74,7 +74,7 @@ def thinned(places: Array) -> Array:
 
 
 def _spaced(places: Array, number: int, box: Box) -> Array:
-    """Numbers of a few places, beside those of other curves, so that grey tells them apart."""
+    """Indices of a few samples, offset from those of other curves, so that grey prints differ."""
     left, top, right, bottom = box
     x = np.where(np.isfinite(places[:, 0]), places[:, 0], -1e9)
     wanted = x[0] + (x[-1] - x[0]) * (np.arange(MARKERS) + (number + 0.5) / 6) / MARKERS

@@ -56,7 +56,7 @@ class CloudDesigns:
     """Designs (K) that were chosen, among all.
 
     by : what they were chosen by, and which way.  numbers : names of what varies.
-    outputs : with their limits.  units : how all of them are told.
+    outputs : with their limits.  units : display units of all of these.
     table : (K, d + m) numbers and figures of the chosen ones, SI units; labels : what they are
         called.
     blocks, size : give all designs, of which there are so many at most.
@@ -117,7 +117,7 @@ class CloudDesigns:
         return [end for end in given if spread.low <= end <= spread.high]
 
     def axis(self, name: str, way: bool = True) -> Axis:
-        """Of a number or figure; way : whether it is told which way is good."""
+        """Axis of a number or figure; way : whether its label has an arrow to better values."""
         unit = unit_in(self.units, name)
         label = unit.called
         if way and self.aimed and name in self.by:
@@ -147,7 +147,7 @@ def in_words(designs: CloudDesigns, names: Iterable[str]) -> list[str]:
 
 
 def keys_for(designs: CloudDesigns, pairs: Iterable[Pair] = ()) -> tuple[tuple[str, str], ...]:
-    """What a legend tells of points over these pairs; of lines from axis to axis where none."""
+    """Entries of the legend: of points over these pairs, or without pairs of lines across axes."""
     cloud, pairs = designs.cloud, [*pairs]
     sign = "" if pairs else " line"
     chosen = say("chosen designs") if cloud.kept else say("designs nearest to the limits")

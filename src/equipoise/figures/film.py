@@ -36,7 +36,7 @@ MOST_COLORS = 255
 ENCODING = {"crf": "18", "threads": "1", "bf": "0", "mbtree": "0"}
 """Options of the encoder: how good, and that its bytes are the same on every run: x264 reads memory
 that it has not set where it weighs macroblocks by later frames (`mbtree`), and where frames are
-told from later ones."""
+predicted from later ones."""
 BT_709 = 1
 """Number of the standard by which players turn a film's brightness and hue into colours."""
 

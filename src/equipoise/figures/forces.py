@@ -24,10 +24,10 @@ from equipoise.figures.analysis import (
 from equipoise.figures.chart_parts import (
     ROOM,
     compared,
-    degrees_told,
+    degrees_text,
     extent,
+    numbered_angles,
     numbers,
-    told_angles,
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
@@ -205,9 +205,9 @@ def polar(analysis: Analysis) -> Chart:
         for axis in ("x", "y")
     )
     whole = each(resolved, "shaking_force")
-    marks, curves, arrows, message = _told_sizes(resolved, whole[ALL], x)
+    marks, curves, arrows, message = _size_marks(resolved, whole[ALL], x)
     if analysis.motion.whole_cycle:
-        counts = told_angles(analysis.crank_angle)
+        counts = numbered_angles(analysis.crank_angle)
         for role, values in reversed([*result.items()]):
             marks += numbers(counts, values, role, extent(every, np.zeros(1)))
     lines = [Curve.of(over(resolved, values)[1], "", role) for role, values in whole.items()]
@@ -225,10 +225,10 @@ def polar(analysis: Analysis) -> Chart:
     return Chart("polar", analysis.machine.title, what, (panel,), keys=row_keys(analysis))
 
 
-def _told_sizes(
+def _size_marks(
     analysis: Analysis, values: Array, axis: Axis
 ) -> tuple[list[Mark], list[Curve], tuple[Arrow, ...], str]:
-    """An arrow to the peak and a circle of the mean size, with their values, or why not."""
+    """Marks, curves and arrows of a hodograph's peak and mean size; a message where it is zero."""
     sizes = np.abs(values)
     found = analysis.motion.figures(sizes)
     theta, values = over(analysis, values)
@@ -240,16 +240,16 @@ def _told_sizes(
     marks: list[Mark] = []
     arrows: tuple[Arrow, ...] = ()
 
-    def tell(place: complex, text: str, role: str) -> None:
+    def add_mark(place: complex, text: str, role: str) -> None:
         marks.append(Mark.of(place, text, role, float(np.degrees(np.angle(place))), sign=False))
 
     if found.peak_to_peak > ALIKE * found.peak:
         arrows = (Arrow(0j, peak, "stress"),)
-        at = degrees_told(found.peak_at)
+        at = degrees_text(found.peak_at)
         text = say("peak {value} at {angle}", value=axis.quantity(abs(peak)), angle=at)
-        tell(peak, text, "stress")
+        add_mark(peak, text, "stress")
     away = found.mean * complex(np.exp(1j * (np.angle(peak) + 2.4)))
-    tell(away, say("mean size {value}", value=axis.quantity(found.mean)), "mean size")
+    add_mark(away, say("mean size {value}", value=axis.quantity(found.mean)), "mean size")
     return marks, [Curve.of(circle, "", "mean size")], arrows, ""
 
 
@@ -300,7 +300,7 @@ MATTERS, VISIBLE, ROOM_BELOW = 0.01, 0.004, 1.1
 """Over the largest amplitude: above this an order is drawn; below this a bar cannot be seen.
 Over a mean below 0: where its axis begins, with some room.
 """
-LEAST, MOST, MOST_TOLD = 4, 12, 8
+LEAST, MOST, MOST_WITH_NUMBERS = 4, 12, 8
 """Orders that are drawn at least and at most; places on the axis up to which bars have numbers."""
 
 
@@ -330,7 +330,7 @@ def order_panel(
     dimension: Dimension | None,
     read: Read,
     last: int,
-    most_told: int = MOST_TOLD,
+    most_with_numbers: int = MOST_WITH_NUMBERS,
     unit: str | None = None,
 ) -> Panel:
     """Bars beside each other for each order up to the last; numbers at them where there is room.
@@ -349,8 +349,8 @@ def order_panel(
     for number, (role, (orders, sizes)) in enumerate(read.items()):
         visible = (orders <= last) & np.isclose(np.mod(orders / finest + 0.5, 1), 0.5)
         at = orders[visible] + (number - (len(read) - 1) / 2) * wide
-        told_too = last / finest <= most_told
-        bars.append(Bars(at, sizes[visible], wide, role, labelled=told_too))
+        with_numbers = last / finest <= most_with_numbers
+        bars.append(Bars(at, sizes[visible], wide, role, labelled=with_numbers))
     ticks = tuple((float(k), f"{k}" if k else say("mean")) for k in range(last + 1))
     label, room = say("order: events in one turn of the crank"), 0.7 * finest
     x = Axis(label, low=-room, high=last + room, ticks=ticks)

@@ -51,7 +51,7 @@ def kind_of(role: str) -> str:
 
 
 def keys_of(panel: Panel, chart_level: bool) -> list[LegendKey]:
-    """What has a name in a panel: what the chart's legend tells, or that of the panel itself."""
+    """Entries of the chart's legend from a panel, or those of the panel's own legend."""
     legend_keys = [LegendKey(c.role, c.label, "line", c.dashed) for c in panel.curves if c.label]
     if panel.keyed:
         legend_keys = [] if chart_level else legend_keys
@@ -231,7 +231,7 @@ def share(cells: list[Cell], columns: int) -> None:
 
 
 def _enlarged(cell: Cell, most: float) -> float:
-    """How many times larger than others a panel is drawn, which it tells; others span `most`."""
+    """Scale of a panel over that of the others, which span `most`; 1 unless stated on the panel."""
     if not cell.span or most < LIKE * cell.span:
         return 1.0
     times = most / cell.span

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.figures.analysis import settled, title
-from equipoise.figures.chart_parts import ROOM, degrees_told
+from equipoise.figures.chart_parts import ROOM, degrees_text
 from equipoise.figures.points import FORBIDDEN
 from equipoise.figures.style import KINDS, short
 from equipoise.i18n import say, to_say
@@ -109,7 +109,7 @@ def along_link(analysis: Analysis, name: str) -> Chart:
         for heading, quantity_label, dimension, values in loads
     ]
     panels.append(_stress_panel(x, at, stress, peak, place))
-    angle = degrees_told(float(motion.crank_angle[peak.angle]))
+    angle = degrees_text(float(motion.crank_angle[peak.angle]))
     what = say("Loads along {link} at crank angle {angle}", link=short(name), angle=angle)
     return _chart(
         analysis, "stress", name, title(analysis, what, of_one=True, speed=motion.speed), panels

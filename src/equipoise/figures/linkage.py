@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.figures.points import moving
-from equipoise.figures.stage import beyond, rows_named, rows_told
+from equipoise.figures.stage import beyond, row_legend, rows_named
 from equipoise.figures.style import short
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import FRAME
@@ -72,7 +72,7 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     panels = tuple(
         _panel(
             *(part, k, tuple(_paths(motion, part))),
-            title=told_pose(scene, k) if columns > 1 else ", ".join(map(short, names)),
+            title=pose_text(scene, k) if columns > 1 else ", ".join(map(short, names)),
             whole=scene,
         )
         for k in which
@@ -80,34 +80,34 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     )
     if columns == MANY:
         panels = tuple(replace(panel, sign_size=SMALLER) for panel in panels)
-    text = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, which[0])}
+    text = {"link": short(analysis.machine.drive.link), "angle": pose_text(scene, which[0])}
     what = say("Linkage, to scale; above each: angle of {link} in the frame", **text)
     if len(which) == 1:
         what = say("Linkage, to scale; angle of {link} in the frame: {angle}", **text)
     keys = tuple(keys_of(scene))
-    words = (*rows_told(scene), *beyond(scene), *_ends_told(scene))
+    words = (*row_legend(scene), *beyond(scene), *_reversal_texts(scene))
     return Chart("linkage", analysis.machine.title, what, panels, columns, keys=keys, words=words)
 
 
-def _ends_told(scene: Scene) -> Iterator[str]:
-    """Where drives turn back that go to and fro."""
+def _reversal_texts(scene: Scene) -> Iterator[str]:
+    """Sentences on the angles at which swinging drives reverse."""
     for drive in scene.drives:
         if drive.swings is None and drive.between is None:
             continue
         angle = scene.angles[drive.link]
-        low, high = (told_angle(float(end)) for end in (angle.min(), angle.max()))
+        low, high = (crank_angle_text(float(end)) for end in (angle.min(), angle.max()))
         link = short(drive.link)
         yield say("pale: {link} at both ends, {low} and {high}", link=link, low=low, high=high)
 
 
-def told_angle(angle: float) -> str:
-    """A crank angle (rad) in words."""
+def crank_angle_text(angle: float) -> str:
+    """A crank angle, given in rad, as text in degrees."""
     return f"{shown(round(float(np.degrees(angle)), 2))}°"
 
 
-def told_pose(scene: Scene, k: int) -> str:
-    """The angle of the driven link at the k-th crank angle, in words."""
-    return told_angle(float(scene.angles[scene.drive.link][k]))
+def pose_text(scene: Scene, k: int) -> str:
+    """The angle of the driven link at the k-th crank angle, as text in degrees."""
+    return crank_angle_text(float(scene.angles[scene.drive.link][k]))
 
 
 def plane_axes(scene: Scene) -> tuple[Axis, Axis]:
@@ -150,7 +150,7 @@ def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], title: str, whole: Sc
     for which it has no room, and without names of joints with links that it does not show.
     """
     parts = panel_content(scene, k)
-    named = title != told_pose(scene, k)
+    named = title != pose_text(scene, k)
     elsewhere = {
         point
         for body in whole.bodies
@@ -264,7 +264,7 @@ def _fixed_centrode(motion: Motion, link: str) -> Array:
 
 
 def _bare_scene(motion: Motion) -> Scene:
-    """A machine without soil and support, of which centrodes tell nothing."""
+    """The scene of a machine without soil and support, to which centrodes do not relate."""
     return replace(Scene.of(motion), carrier=None, field=None)
 
 
@@ -370,7 +370,7 @@ def centrodes(analysis: Analysis, links: Sequence[str]) -> Chart:
             **panel_content(scene, k),
         )
         panels.append(panel)
-    text = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, k)}
+    text = {"link": short(analysis.machine.drive.link), "angle": pose_text(scene, k)}
     what = say("Centrodes of links in the frame; angle of {link}: {angle}", **text)
     words = (say("Centrodes that run far away are drawn near the machine only."),) if cut else ()
     columns = 1 if len(panels) == 1 else 2

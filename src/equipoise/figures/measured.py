@@ -132,7 +132,7 @@ def exposure(tools: Sequence[tuple[str, float]], day: Exposure | None) -> Chart:
 
 
 def _judged(time: float, a8: float, text: str, role: str, wish: float) -> Mark:
-    """A(8), m/s2, at a time of work, s; with a sign that the legend tells where it is too much."""
+    """Mark of A(8), m/s2, at a time of work, s; the legend names its sign beyond a limit."""
     verdict = verdict_of(a8)
     label = say(VERDICTS[verdict]) if verdict in JUDGED else ""
     return Mark(time / 3600, a8, text, JUDGED.get(verdict, role), wish, label=label)

@@ -58,7 +58,7 @@ SHOWN_SIZE = 0.13
 ROUND, DIRECTIONS = 0.035, 24
 """Radius of the outline's corners over the size of the support; points of a circle."""
 ANGLES = 72
-"""In a turn, from which the size of a linkage is told."""
+"""Crank angles in a turn that determine the size of a linkage."""
 PHASES = np.exp(1j * np.linspace(0, 2 * np.pi, 73))
 
 
@@ -256,7 +256,7 @@ def _corners(shape: ModeShape, view: View, views: list[View]) -> tuple[complex, 
 def _downward(low: complex, high: complex) -> tuple[tuple[float, str], ...]:
     """Round numbers of an axis that counts downward, as that of what lies to the right from above.
 
-    Values in m, told in mm.
+    low, high : m; the numbers are in mm.
     """
     exact = (high - low).imag / 5
     power = 10.0 ** np.floor(np.log10(exact))
@@ -276,7 +276,7 @@ def _curves(shape: ModeShape, view: View) -> Iterator[Curve]:
 
 
 def view_of(item: Mount | Gauge) -> View:
-    """The view in which a mount or gauge is best told from others."""
+    """The view in which a mount or gauge is most distinct from others."""
     if item.axis is not None:
         return next(view for view, sight in VIEWS.items() if sight.axis == item.axis)
     return [*VIEWS][int(np.argmax(np.abs(unit_vector(item.direction))))]

@@ -92,7 +92,7 @@ def draw_surface(view: View, surface: Surface) -> None:
         for line in lines:
             view.labels.avoid(line)
     for level, line in text:
-        _tell(view, surface.axis.format_value(level / surface.axis.unit.factor), line)
+        _label_line(view, surface.axis.format_value(level / surface.axis.unit.factor), line)
 
 
 def finer(x: Array, y: Array, values: Array) -> tuple[Array, Array, Array]:
@@ -147,8 +147,8 @@ def _length(line: Array) -> float:
     return float(np.sum(np.hypot(*np.diff(line, axis=0).T)))
 
 
-def _tell(view: View, text: str, line: Array) -> None:
-    """The value of a line on it, where it is farthest from the ends of the axes."""
+def _label_line(view: View, text: str, line: Array) -> None:
+    """Label a contour line (N, 2) with its value, at the sample farthest from the axes' edges."""
     wide = width_of(text, SMALL)
     left, top, right, bottom = view.box
     if _length(line) < 2 * wide:

@@ -325,7 +325,7 @@ def _other_units(paths: Paths, places: Array) -> Iterator[Curve]:
 
 
 def _senses(paths: Paths, over_ground: bool) -> Iterator[Arrow]:
-    """Heads of arrows that tell how the tip runs along its path, clear of the crank angles."""
+    """Arrow heads in the direction of the tip's motion, clear of the labels of crank angles."""
     leave = paths.way_of("exit", paths.way_of("lowest", paths.start))
     above = paths.way_of("entry", leave) - leave
     step = np.radians(angle_step(paths.curve.turns))

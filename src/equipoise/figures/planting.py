@@ -13,7 +13,7 @@ from equipoise.figures.chart_parts import (
     by_name,
     closed,
     crank_axis,
-    degrees_told,
+    degrees_text,
     extremes,
     marks_at_extremes,
 )
@@ -108,7 +108,7 @@ def stay_panel(
 def _flags(figures: PlantingFigures) -> tuple[PlaceLabel, ...]:
     """What the events are, and when."""
     at = {text: figures[f"{name}.crank_angle"] for name, text in EVENTS.items()}
-    return tuple(PlaceLabel(angle, (say(text), degrees_told(angle))) for text, angle in at.items())
+    return tuple(PlaceLabel(angle, (say(text), degrees_text(angle))) for text, angle in at.items())
 
 
 def _chart(

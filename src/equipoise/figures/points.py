@@ -14,9 +14,9 @@ from equipoise.figures.chart_parts import (
     angle_step,
     compared,
     extent,
+    numbered_angles,
     numbers,
-    told_angles,
-    told_speed,
+    speed_text,
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
@@ -37,7 +37,7 @@ ALIKE = 1e-3
 MOST_POINTS, MOST_VECTORS = 4, 3
 """Points that are followed in a picture or an animation: their paths; and their hodographs."""
 FEW = (0, 90)
-"""Crank angles, deg, that are told on the hodographs of several points."""
+"""Crank angles, deg, that are labelled on the hodographs of several points."""
 
 
 def moving(motion: Motion) -> list[str]:
@@ -147,7 +147,7 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
             ways = np.arange(0, 360 * motion.turns, angle_step(motion.turns))
             at = np.round(ways * len(path) / (360 * motion.turns)).astype(int)
             dots += [Mark.of(z, "", role) for z in path[at]]
-            numbered += numbers(told_angles(motion.crank_angle), path, role, size)
+            numbered += numbers(numbered_angles(motion.crank_angle), path, role, size)
     for number, group in enumerate((*groups, *other_groups), 1):
         role = f"several {number}" if number <= len(groups) else "lines"
         path = motion.points[group[0]].place
@@ -166,15 +166,15 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
         zero=False,
     )
     keys = (("faint", say("other points")),) if others else ()
-    return Chart("curves", analysis.machine.title, _told_dots(motion), (panel,), keys=keys)
+    return Chart("curves", analysis.machine.title, _paths_title(motion), (panel,), keys=keys)
 
 
-def _told_dots(motion: Motion) -> str:
-    """What is drawn, and after which time a dot comes."""
+def _paths_title(motion: Motion) -> str:
+    """Title of a chart of paths, with the crank angle and the time between dots."""
     if not motion.whole_cycle:
-        return say("Paths of points, at {speed}", speed=told_speed(motion.speed))
+        return say("Paths of points, at {speed}", speed=speed_text(motion.speed))
     step = angle_step(motion.turns)
-    values = {"step": step, "speed": told_speed(motion.speed)}
+    values = {"step": step, "speed": speed_text(motion.speed)}
     if not motion.speed:
         return say("Paths of points; dots every {step}° of the crank", **values)
     values["time"] = shown(1000 * np.radians(step) / abs(motion.speed))
@@ -224,7 +224,7 @@ def _ends(
     x, y = (Axis.of(say("along {axis}", axis=axis), dimension, whole) for axis in ("x", "y"))
     counts: dict[int, int] = {}
     if analysis.motion.whole_cycle:
-        counts = told_angles(analysis.crank_angle)
+        counts = numbered_angles(analysis.crank_angle)
         counts = {a: k for a, k in counts.items() if len(values) < 2 or a in FEW}
     lines, marks = [], [Mark(0.0, 0.0, "", "pivot")]
     for number, (name, value) in enumerate(zip(names, values, strict=True), 1):
@@ -306,7 +306,7 @@ def main_kinematics(analysis: Analysis) -> list[Chart]:
 
 
 def _each(analysis: Analysis, group: str) -> Iterator[Chart]:
-    """A chart of each member of a group; components are told, and the sizes of vectors are not."""
+    """A chart of each member of a group, with components of vectors but without magnitudes."""
     members: dict[str, list[AnalysisOutput]] = {}
     still = analysis.machine.frame if group == "points" else ()
     for output in analysis.outputs:

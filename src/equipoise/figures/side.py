@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.figures.linkage import told_angle
+from equipoise.figures.linkage import crank_angle_text
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.checks import FRAME
@@ -40,7 +40,7 @@ def side(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     if at is not None:
         motion = move(analysis.machine, at[:1], motion.speed, motion.acceleration)
     view = _View(motion)
-    angle = told_angle(float(motion.links[motion.machine.drive.link].angle[view.k]))
+    angle = crank_angle_text(float(motion.links[motion.machine.drive.link].angle[view.k]))
     text = {"link": short(motion.machine.drive.link), "angle": angle}
     what = say("Linkage from the side, to scale; angle of {link} in the frame: {angle}", **text)
     keys = [("solid", say("bodies"))] if view.solids else []
@@ -179,7 +179,7 @@ class _View:
             yield from mass(center)
 
     def _supports(self) -> Iterator[Shape]:
-        """Blocks in guides, bearings, and pins in the frame where no bearings are told."""
+        """Blocks in guides, bearings, and pins in the frame where the machine has no bearings."""
         for slider in self.machine.sliders:
             place = self.nodes[slider.link][slider.point]
             for shape in block():

@@ -177,7 +177,7 @@ class Stage:
         """What is to be said of the support, its movement and the force, and its colour."""
         swing = self.scene.swing
         said = (
-            *rows_told(self.scene),
+            *row_legend(self.scene),
             *beyond(self.scene),
             *(() if swing is None else swing.captions),
         )
@@ -216,7 +216,7 @@ class Stage:
 
     @property
     def _below(self) -> float:
-        """Pixels of stands and of the strip with what is told below them."""
+        """Height, px, of stands, of the strip below, and of its lines of text."""
         return (FOOT + STRIP) * self.unit + self.row * max(len(self.lines) - 1, 0)
 
     @property
@@ -272,8 +272,8 @@ class Moves:
     stretch: Array
 
 
-def rows_told(scene: Scene) -> list[str]:
-    """Which rows of several are drawn how."""
+def row_legend(scene: Scene) -> list[str]:
+    """How each of several rows is drawn, and by how much it is ahead, in one line; or no line."""
     rows = scene.rows
     parts = [say("{rows}: as drawn", rows=rows_named(rows.drawn))] if rows.drawn else []
     for part in rows.others:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from equipoise.figures.chart_parts import by_name, continued, groups, told_speed
+from equipoise.figures.chart_parts import by_name, continued, groups, speed_text
 from equipoise.figures.style import short
 from equipoise.i18n import Note, all_of, said, say
 from equipoise.quantities import Dimension, Display, display, typeset
@@ -173,7 +173,7 @@ HANDY = {"mass": "g", "inertia": "kg mm^2", "angular speed": "rpm", "stiffness":
 
 
 def number_unit(dimension: str | None, values: Sequence[float] | Array) -> Display:
-    """The unit in which numbers of the model are told: the handy one, or one that suits them."""
+    """Display unit of numbers of the model: the customary unit, or one that suits their size."""
     if dimension is None:
         return Display("", 1.0)
     return display(cast(Dimension, dimension), np.asarray(values), HANDY.get(dimension))
@@ -185,8 +185,8 @@ def _units(landscape: Landscape) -> dict[str, Display]:
     return {path: number_unit(landscape.dimensions[path], values) for path, values in ranges}
 
 
-def told_best(landscape: Landscape) -> str:
-    """The best place in a sentence."""
+def optimum_text(landscape: Landscape) -> str:
+    """Sentence on the optimum of a landscape: its value, its place, and any ends of ranges met."""
     units = _units(landscape)
     places = [
         f"{named(landscape, path)} = {Axis(path, units[path]).quantity(value)}"
@@ -249,7 +249,7 @@ def landscape(result: Landscape) -> Chart:
     values = {
         "objective": objective_named(result.objective, len(result.machine.rows)),
         "unit": unit,
-        "speed": told_speed(result.machine.drive.speed),
+        "speed": speed_text(result.machine.drive.speed),
     }
     others = [
         f"{named(result, path)} = {_in_units(result, path, value)}"

@@ -67,7 +67,7 @@ KINDS = (
     ("#a3478f", "v"),
     ("#8a6d00", "P"),
 )
-"""Colour and sign of several curves that are told apart; what is beyond is thin."""
+"""Colour and sign of several curves; any further curves are thin."""
 
 POINTS, DIM = "#6b9fc9", "#c4c4c4"
 """Of what is many, and of that of it which is not wanted; in grey one is lighter."""
@@ -210,7 +210,7 @@ LOOKS |= {
     )
 }
 SEVERAL = sum(role.startswith("several ") for role in LOOKS)
-"""Signals of one quantity that are told apart; further ones look like the first again."""
+"""Signals of one quantity with looks of their own; further signals repeat the looks."""
 LOOKS["quieter"] = DrawingStyle(FAINT, 0.7, order=2.5)
 
 

@@ -54,8 +54,8 @@ QUANTITIES = {
     ),
 }
 PEAKS, ALIKE, MOST_SPEEDS = 3, 0.02, 0.9
-"""Curves whose highest peak is told; share by which two peaks differ that are told apart; share of
-the values that the unit suits."""
+"""Curves at most whose highest peak is labelled; relative difference above which two peaks count as
+two; share of the values that the unit suits."""
 MOST_ORDERS, USUAL_ORDERS = 20, (1.0, 2.0, 3.0)
 """Orders that are drawn in the map at most, and where none meets a mode."""
 HERTZ = Display("Hz", 1 / (2 * pi))
@@ -233,7 +233,7 @@ def _chart(sweep: Sweep, name: str, what: str, panels: list[Panel]) -> Chart:
 
 
 def _keys(sweep: Sweep, meeting: str) -> list[tuple[str, str]]:
-    """What is told of resonances; meeting : role of an order that meets a mode."""
+    """Entries of the legend on resonances; meeting : role of an order that meets a mode."""
     keys = [(meeting, say("order meets mode"))] if sweep.resonances else []
     if any(resonance.avoid is not None for resonance in sweep.resonances):
         keys.append(("loud band", say("keep away (pale: quiet)")))

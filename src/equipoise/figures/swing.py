@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 LARGEST = 0.04
 """Largest displacement that is drawn, over the size of the drawing."""
 LEAST = 0.01
-"""Share of the largest displacement below which one is not told."""
+"""Share of the largest displacement below which a displacement is not labelled."""
 CLEAR_ANGLES, INSTANTS = 360, 240
 """In a turn, among which a clear one is looked for; in a swing."""
 ACROSS = {"sway": to_say("sway"), "roll": to_say("roll"), "yaw": to_say("yaw")}
@@ -189,7 +189,7 @@ def _reach(scene: Scene, values: Array) -> float:
 
 
 def _across(scene: Scene, values: Array, reach: float) -> Iterator[tuple[str, str]]:
-    """Name and amplitude, with its unit, of what moves across the drawing enough to be told."""
+    """Name, and amplitude with its unit, of each out-of-plane motion that is not negligible."""
     for name in ACROSS:
         k = FREEDOMS.index(name)
         size = float(np.ptp(values[k])) / 2

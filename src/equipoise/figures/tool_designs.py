@@ -16,7 +16,7 @@ from equipoise.figures.tool_shaft import (
     engine_axis,
     hand_peaks,
     plane_named,
-    turns_told,
+    rpm_text,
     work_line,
     work_mark,
 )
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 MOST_CHANGES = 8
-"""Changes of a design that are told."""
+"""Changes of a design that are listed, at most."""
 ROUNDEST = ((1.0,), (5.0, 2.0), (3.0, 4.0, 7.0, 6.0, 8.0, 9.0), (1.5, 2.5))
 """First digits of the numbers of an axis of frequencies, the roundest first."""
 APART = 0.09
@@ -131,7 +131,7 @@ def variation_charts(variation: Variation) -> dict[str, Chart]:
 
 
 def number_unit(dimension: str) -> Display:
-    """The unit in which a number of a station is told."""
+    """Display unit of a number of a station."""
     return display(cast(Dimension, dimension), (), SHOWN_IN.get(dimension))
 
 
@@ -172,7 +172,7 @@ def _turns_axis(scale: float, top: float) -> Axis:
             far = all(abs(place(number) - place(item)) >= APART * top for item in chosen)
             if number <= highest and far:
                 chosen.append(number)
-    ticks = tuple((place(item), turns_told(item / RPM.factor)) for item in sorted(chosen))
+    ticks = tuple((place(item), rpm_text(item / RPM.factor)) for item in sorted(chosen))
     unit = Display("1/min", 1.0)
     return Axis(say("natural frequency"), unit, low=0.0, high=top, ticks=ticks)
 
@@ -195,7 +195,7 @@ def _lines(variation: Variation, x: Axis, top: float) -> Iterator[Line]:
     if tool.operation is not None:
         at = float(np.sqrt(tool.operation.speed / scale_of(tool)))
         if at <= top:
-            text = say("work, {speed} rpm", speed=turns_told(tool.operation.speed))
+            text = say("work, {speed} rpm", speed=rpm_text(tool.operation.speed))
             yield Line(at, "work", text, "y")
 
 
@@ -241,8 +241,8 @@ def design(result: ToolDesign) -> Chart:
     return Chart("design", result.tool.title, what, (panel,), keys=keys)
 
 
-def changes_told(design: ToolDesign) -> list[str]:
-    """What was changed but is not moved, in words; where they are many, the first of them."""
+def change_texts(design: ToolDesign) -> list[str]:
+    """Changes other than of lengths, before and after; at most `MOST_CHANGES` lines."""
     every = zip(design.variables, design.edges, strict=True)
     values = [(item, edge) for item, edge in every if item.dimension != "length"]
     words, count = [], len(values)

@@ -162,7 +162,7 @@ def _shape(modes: ToolModes, result: PlaneModes, number: int) -> Panel:
     ]
     hertz = float(result.cycles_per_second[number])
     if hertz:
-        minute = turns_told(float(result.frequency[number]))
+        minute = rpm_text(float(result.frequency[number]))
         lines = [
             f"{shown(hertz)} Hz",
             f"{minute} 1/min",
@@ -183,8 +183,8 @@ def _shape(modes: ToolModes, result: PlaneModes, number: int) -> Panel:
     )
 
 
-def turns_told(speed: float) -> str:
-    """A speed or frequency, rad/s, in turns a minute: four digits, and all before the point."""
+def rpm_text(speed: float) -> str:
+    """A speed or frequency, given in rad/s, as text in rpm: four digits, or all of the integer."""
     minute = speed * RPM.factor
     return shown(minute) if minute < 1e4 else f"{minute:.0f}"
 
@@ -218,7 +218,7 @@ def moment(response: ToolResponse, speed: float | None) -> Chart:
     if {plane for _, plane in displaced} == {0, 1}:
         keys.append(("other end", say("lateral plane")))
     what = say("RMS of the bending moment, and shape of each order when it is largest")
-    text = f"{what}; {turns_told(speed)} rpm"
+    text = f"{what}; {rpm_text(speed)} rpm"
     panels = _moments(tool, places, line, loudest), _shapes_of_orders(tool, places, displaced)
     return Chart("moment", tool.title, text, panels, keys=tuple(keys))
 
@@ -328,7 +328,7 @@ def work_mark(lines: Sequence[Line], y: Axis, above: bool = True) -> tuple[Mark,
     """The name of that line inside, near the upper or the lower end of a log axis."""
     low, high = ends(y)
     place = low * (high / low) ** (0.95 if above else 0.05)
-    names = {line.at: say("work, {speed} rpm", speed=turns_told(line.at)) for line in lines}
+    names = {line.at: say("work, {speed} rpm", speed=rpm_text(line.at)) for line in lines}
     return tuple(
         Mark(at, place, name, "work", 0.0, sign=False, distance=3.0) for at, name in names.items()
     )
@@ -407,7 +407,7 @@ def _quiet(
                 np.interp(speed, transmissions.speed, np.log(np.maximum(curve.values, 1e-300)))
             )
             at, role = max(float(value), low), f"quiet speed {number}"
-            yield Mark(speed, at, turns_told(speed), role, -90.0, optional=True)
+            yield Mark(speed, at, rpm_text(speed), role, -90.0, optional=True)
 
 
 def _phase(transmissions: Transmissions, name: str, number: int, plane: int) -> Curve:
@@ -465,7 +465,7 @@ TOTAL_VALUE = to_say("vibration total value aₕᵥ (ISO 5349-1)")
 
 
 def duration_of(exposure: ToolExposure) -> float:
-    """Time of work a day, s; eight hours where it is not told."""
+    """Time of work a day, s; eight hours by default."""
     return next((day.duration for day in exposure.days.values()), EIGHT_HOURS)
 
 
@@ -515,5 +515,5 @@ def hand_peaks(tool: Tool, speed: Array, curves: Sequence[SpeedCurve], y: Axis) 
         size = float(curve.values[k])
         if 0 < k < len(speed) - 1 and 0 < size <= (y.high or size):
             at = float(speed[k])
-            text = say("{value} at {speed} rpm", value=y.quantity(size), speed=turns_told(at))
+            text = say("{value} at {speed} rpm", value=y.quantity(size), speed=rpm_text(at))
             yield Mark(at, size, text, f"kind {number}", 20.0, sign=False, optional=True)

@@ -11,14 +11,14 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.figures.chart_parts import by_name
 from equipoise.figures.style import short
-from equipoise.figures.tool_designs import changes_told, design
+from equipoise.figures.tool_designs import change_texts, design
 from equipoise.figures.tool_shaft import (
     LONGEST,
     POINTS,
     at_largest,
     mode_charts,
+    rpm_text,
     station_flags,
-    turns_told,
 )
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.side import side_of
@@ -119,7 +119,7 @@ def side_design(design: ToolDesign) -> Chart:
     after = _panel(side_of(design.better), _named(design.better), say("after"), moved)
     what = say("The tool from the side before and after; arrows: what is moved along the shaft")
     return Chart(
-        "side-design", design.tool.title, what, (before, after), words=tuple(changes_told(design))
+        "side-design", design.tool.title, what, (before, after), words=tuple(change_texts(design))
     )
 
 
@@ -150,7 +150,7 @@ def _at_work(tool: Tool) -> Iterator[Panel]:
     if not most:
         return
     factor = float(f"{SWING * tool.shaft.length / most:.1g}")
-    title = say("at work, {speed} rpm", speed=turns_told(tool.operation.speed))
+    title = say("at work, {speed} rpm", speed=rpm_text(tool.operation.speed))
     remark = say(
         "order {order}, displacement drawn {factor} times as large",
         order=shown(float(response.orders[order])),

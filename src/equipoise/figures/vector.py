@@ -95,7 +95,7 @@ def _stroke(stroke: CanvasStroke) -> str:
 
 
 def _path(line: Array) -> str:
-    """Straight lines, each step told from the one before it."""
+    """SVG path data of straight lines, each step relative to the previous point."""
     tenths = np.round(10 * np.clip(line, -FAR, FAR)).astype(int).tolist()
     steps = (
         f"{_tenths(x - x0)},{_tenths(y - y0)}"

@@ -16,7 +16,7 @@ from equipoise.figures.chart_parts import (
     extremes,
     groups,
     read_axis,
-    told_speed,
+    speed_text,
     varies,
 )
 from equipoise.figures.style import free_name, short
@@ -103,9 +103,9 @@ def phase_axis(response: Response) -> Axis:
     return crank_axis(link, response.speed, response.turns, with_motor)
 
 
-def period_told(response: Response) -> str:
-    """Length of a period, speed and model in words."""
-    values = {"speed": told_speed(response.speed), "model": response.model}
+def period_text(response: Response) -> str:
+    """Length of a period in turns, crank speed and excitation model, as text."""
+    values = {"speed": speed_text(response.speed), "model": response.model}
     if response.turns == 1:
         return say("over one turn at {speed}; {model} model", **values)
     return say("over {turns} turns at {speed}; {model} model", turns=response.turns, **values)
@@ -122,7 +122,7 @@ def gauge(response: Response, name: str) -> Chart:
         marks = extremes(y, values, places, "main")
         panels.append(Panel(phase_axis(response), y, (Curve(theta, values),), marks))
     what = say("Rotation at {gauge}") if read.rotation else say("Motion at {gauge}")
-    what = f"{what.format(gauge=short(name))}, {period_told(response)}"
+    what = f"{what.format(gauge=short(name))}, {period_text(response)}"
     return Chart(f"gauge-{name}", response.machine.title, what, tuple(panels))
 
 
@@ -138,7 +138,7 @@ def drive(response: Response) -> Chart:
     what = say("Drive of {link}", link=short(response.machine.drive.link))
     rows = len(response.machine.rows)
     what += ", " + say("{rows} rows together", rows=rows) if rows > 1 else ""
-    what += f", {period_told(response)}"
+    what += f", {period_text(response)}"
     return Chart("drive", response.machine.title, what, tuple(panels))
 
 
@@ -165,7 +165,7 @@ def spectra(response: Response) -> Iterator[Chart]:
     every = list(response.gauges)
     for suffix, names in groups(every):
         what = say("Amplitude at the gauges by order") + continued(names, every)
-        values = {"speed": told_speed(response.speed), "model": response.model}
+        values = {"speed": speed_text(response.speed), "model": response.model}
         what += ", " + say("at {speed}; {model} model", **values)
         last = max(_last_order(response.gauges[name]) for name in names)
         panels = tuple(_bars(response.gauges[name], name, last) for name in names)
@@ -210,7 +210,7 @@ def mounts(response: Response) -> Iterator[Chart]:
     largest = _largest(response, at_rest)
     for suffix, names in groups(every):
         what = say("Force in the mounts on the support") + continued(names, every)
-        what = f"{what}, {period_told(response)}"
+        what = f"{what}, {period_text(response)}"
         panels = tuple(_mount(response, name, at_rest[name], largest) for name in names)
         keys, columns = (("main", say("force")), ("mean", say("at rest"))), min(2, len(panels))
         yield Chart(f"mounts{suffix}", response.machine.title, what, panels, columns, keys=keys)
@@ -247,14 +247,14 @@ def _mount(response: Response, name: str, rest: float, largest: Mapping[bool, fl
         values, places = np.maximum(values, 0.0), places[:1]
     label = say("torque") if rotation else say("force")
     y = read_axis(label, "force", rotation, largest[rotation], room=ROOM)
-    told_off = f"{short(name, 20)}: {_told_off(response, mount, lifted)}" if lifted else ""
+    lift_off = f"{short(name, 20)}: {_lift_off_text(response, mount, lifted)}" if lifted else ""
     return Panel(
         phase_axis(response),
         y,
         (Curve(theta, values), Curve(theta[[0, -1]], np.full(2, rest), "", "mean")),
         extremes(y, values, places, "main"),
         tuple(Band(low, high, "off", say("off its ground")) for low, high in lifted),
-        title=told_off or short(name, 44),
+        title=lift_off or short(name, 44),
         height=SMALL,
     )
 
@@ -270,8 +270,8 @@ def off_ground(mount: MountForce) -> list[tuple[float, float]]:
     ]
 
 
-def _told_off(response: Response, mount: MountForce, off: list[tuple[float, float]]) -> str:
-    """For how long it is off its ground, in words."""
+def _lift_off_text(response: Response, mount: MountForce, off: list[tuple[float, float]]) -> str:
+    """Share of the period for which a one-sided mount is off its ground, as text."""
     share = sum(high - low for low, high in off) / mount.force.period
     if not np.any(mount.force.sizes):
         return say("does not touch")

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 SILENT = 1e3
 """Times 1e-10 of the largest transmission, below which it is none."""
 MOST_QUIET, MOST_PEAKS = 8, 5
-"""Quiet speeds, and peaks, that are told of each curve."""
+"""Quiet speeds, and peaks, at most that are listed for each curve."""
 MOST_ROWS = 25
 """Rows of a variation."""
 DIGITS = 6
@@ -46,7 +46,7 @@ UNITS: dict[Dimension, str] = {
     "acceleration": "m/s^2",
     "angular speed": "rpm",
 }
-"""Units in which tools are told."""
+"""Dimension -> display unit of figures of tools."""
 SIDES = {"vertical": to_say("vertical"), "lateral": to_say("lateral")}
 
 
@@ -66,8 +66,8 @@ def rpm(speed: float) -> str:
     return number(speed / PER_RPM)
 
 
-def ends_told(speed: Array) -> dict[str, str]:
-    """The ends of a range of speeds, rpm, as values of a text."""
+def speed_range_texts(speed: Array) -> dict[str, str]:
+    """Ends of a range of speeds (S,), rad/s, as texts in rpm: `low` and `high`."""
     return {"low": rpm(float(speed[0])), "high": rpm(float(speed[-1]))}
 
 
@@ -205,7 +205,11 @@ def sweep_blocks(sweep: ToolSweep) -> Iterator[Block]:
     """Transmission of a unit force, and what the stations do, over a range of speeds."""
     count = len(sweep.speed)
     yield Text(
-        say("Engine at {low} to {high} rpm, {count} speeds", count=count, **ends_told(sweep.speed))
+        say(
+            "Engine at {low} to {high} rpm, {count} speeds",
+            count=count,
+            **speed_range_texts(sweep.speed),
+        )
     )
     yield from unbounded(sweep.tool)
     if sweep.transmissions is not None:

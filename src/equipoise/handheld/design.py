@@ -309,13 +309,13 @@ def design_tool(tool: Tool, progress: SearchProgress | None = None) -> ToolDesig
     """Change what the tool's [design] allows so that the hands feel least over its band.
 
     Designs spread over the whole room are tried, and the best of them followed downhill with exact
-    derivatives; `arrived` of `searches` tells how sure one may be that nothing better is there.
+    derivatives; `arrived` of `searches` indicates how sure one may be that nothing better is there.
 
     progress : is called with how many searches are done, and how many there are.
 
     Raises
     ------
-    ModelError : it tells no design, or as `felt.Band`.
+    ModelError : it has no design, or as `felt.Band`.
     ResponseError : nothing within the limits was found.
     """
     design = tool.design
@@ -323,9 +323,9 @@ def design_tool(tool: Tool, progress: SearchProgress | None = None) -> ToolDesig
         raise ModelError("design", NO_DESIGN)
     count, starts = SPEEDS, None
     rounds = []
-    tell = progress or (lambda done, total: None)
+    report = progress or (lambda done, total: None)
     for _ in range(DOUBLINGS + 1):
-        search = Search(tool, design, np.linspace(*design.speeds, count), tell, starts)
+        search = Search(tool, design, np.linspace(*design.speeds, count), report, starts)
         solution = solve(search)
         best = solution.places[0]
         rounds.append(solution)

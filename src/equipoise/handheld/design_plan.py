@@ -18,7 +18,7 @@ from equipoise.keys import (
     Tables,
     TextKind,
     declared,
-    told_by,
+    schema_by_dimension,
 )
 from equipoise.keys import key as _key
 from equipoise.mechanism.checks import numbered, unknown, wrong_speeds
@@ -59,7 +59,7 @@ SPEEDS = Listing(
 def _in_si(
     given: dict[str, Any], by: str, known: Mapping[str, Dimension], what: str, **ends: str
 ) -> dict[str, Any]:
-    """The values of a table with those in SI units whose dimension another of its keys tells.
+    """The values of a table, in SI units where their dimension follows from another of its keys.
 
     ends : field of each of them, with its key in the file.
     """
@@ -81,7 +81,7 @@ class DesignVariable(Frozen):
     key : one of `KEYS`; of a pair of numbers both become the same.
     """
 
-    conditions: ClassVar[Conditions] = told_by("key", ("from", "to"), KEYS)
+    conditions: ClassVar[Conditions] = schema_by_dimension("key", ("from", "to"), KEYS)
 
     station: str = _key(TextKind(), "name of the station", example="belt")
     key: str = _key(
@@ -113,7 +113,7 @@ class DesignLimit(Frozen):
     """Something that must not become larger, in SI units."""
 
     file_order = ("output", "station")
-    conditions: ClassVar[Conditions] = told_by("output", ("at_most",), OUTPUTS)
+    conditions: ClassVar[Conditions] = schema_by_dimension("output", ("at_most",), OUTPUTS)
 
     output: str = _key(
         TextKind(suggested=(*OUTPUTS,)),

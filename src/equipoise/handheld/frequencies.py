@@ -213,7 +213,7 @@ TOO_FAR_APART = Note(
 def natural_frequencies(tool: Tool, number: int) -> Array:
     """The first so many natural frequencies (2, number) of both planes, rad/s, without damping.
 
-    Rigid motions that no spring holds come first, as 0.  A frequency that stands twice is told
+    Rigid motions that no spring holds come first, as 0.  A double frequency is listed
     twice.  Hands known by a table of impedance are left out.
 
     Raises

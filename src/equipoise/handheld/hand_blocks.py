@@ -14,8 +14,8 @@ from equipoise.handheld.blocks import (
     SIDES,
     cell,
     column,
-    ends_told,
     rpm,
+    speed_range_texts,
     unbounded,
 )
 from equipoise.handheld.design_plan import KEYS
@@ -148,7 +148,8 @@ def design_blocks(design: ToolDesign, judged: bool = True) -> Iterator[Block]:
     ]
     labels = ("", say("before"), say("after"), say("change"), "")
     title = say(
-        "What to change, and what that brings at {low} to {high} rpm", **ends_told(design.speed)
+        "What to change, and what that brings at {low} to {high} rpm",
+        **speed_range_texts(design.speed),
     )
     yield Table(title, tuple(map(Column, labels)), tuple(rows))
     yield from unbounded(design.tool)
@@ -227,6 +228,6 @@ def sensitivity_blocks(
     title = say(
         "Change of the total value a_hv of the worst hand, RMS over {low} to {high} rpm, for 1 % "
         "more of each number (of a position, 1 % of the shaft)",
-        **ends_told(np.array(ends)),
+        **speed_range_texts(np.array(ends)),
     )
     yield Table(title, columns, tuple(rows))

@@ -108,7 +108,7 @@ class ToolExposure(Result):
     response : over the range of speeds.
     grips : by station.
     named : what a speed that the tool names is called, with its grips there.
-    days : the day's exposure of each hand; empty where no work is told.
+    days : the day's exposure of each hand; empty where the tool has no working time.
     """
 
     blocks_in = "handheld.hand_blocks.exposure_of_tool"
@@ -147,7 +147,7 @@ class ToolExposure(Result):
 
     @property
     def a8(self) -> float | None:
-        """Daily exposure A(8) of that hand, m/s2; None where no work is told."""
+        """Daily exposure A(8) of that hand, m/s2; None where the tool has no working time."""
         return None if self.worst is None else self.days[self.worst].a8
 
     declared: ClassVar[Declarations] = {
@@ -178,7 +178,7 @@ class ToolExposure(Result):
 def expose_tool(tool: Tool, speeds: Array, duration: float | None = None) -> ToolExposure:
     """What the hands get over a range of speeds, rad/s, and in a day.
 
-    duration : time a day, s, at the working speed, in the place of the work that the tool tells.
+    duration : time a day, s, at the working speed, instead of the tool's working time.
 
     Raises
     ------

@@ -32,7 +32,7 @@ from equipoise.results.result import Result
 from equipoise.signals import Array, highest_at
 
 POINTS = 401
-"""Places at which a shape is told."""
+"""Samples of a mode shape along the shaft."""
 
 LOAD_OFFSET, ASIDE, LOUDER = 1e-9, 1e-3, 100.0
 """Shares of an eigenvalue by which a load shakes beside it to bring out the shape, and further off;
@@ -127,7 +127,7 @@ class PlaneModes:
 class ToolModes(Result):
     """Free vibration of a tool.
 
-    places : (X,), m from the left end, at which shapes are told.
+    places : (X,), m from the left end, at which shapes are sampled.
     planes : vertical and lateral; the lateral one is the same object where the tool is alike.
     """
 

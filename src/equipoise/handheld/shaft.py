@@ -136,7 +136,7 @@ EITHER = Note("give either bending_stiffness and mass_per_length, or outer_diame
 
 
 def profile_conditions(*masses: str) -> dict[str, Any]:
-    """JSON Schema of a table with a section; `masses` are the keys that tell its mass."""
+    """JSON Schema of a table with a section; `masses` are the keys that give its mass."""
     by_stiffness = {
         "required": ["bending_stiffness"],
         "properties": dict.fromkeys(OF_TUBE, False),
@@ -189,7 +189,7 @@ def _linear(given: dict[str, Any]) -> float | None:
         raise ModelError(
             "mass", Note("got {text}; {right}", text=Measured(mass, "mass"), right=right)
         )
-    return mass / length if length > 0 else 0.0  # told by the checks of the tool
+    return mass / length if length > 0 else 0.0  # the checks of the tool refuse 0
 
 
 def _tube(given: Mapping[str, Any]) -> Tube:
@@ -230,7 +230,7 @@ def profile_table(profile: Section | Tube) -> dict[str, Any]:
 
     Raises
     ------
-    ModelError : it has what no file can tell.
+    ModelError : it has what no file can represent.
     """
     if isinstance(profile, Section):
         if profile != profile.section("euler-bernoulli"):

@@ -64,8 +64,8 @@ def _end(tool: Tool, station: Station) -> int:
 
 
 def _tubes(shaft: Shaft) -> list[TubeSign]:
-    """Parts of the shaft; one whose diameter is not told, as where tubes overlap, has the most
-    of those beside it.
+    """Parts of the shaft; a part without a diameter, as where tubes overlap, has the largest
+    diameter of its neighbours.
     """
     own = {(part.start, part.stop): part.profile for part in shaft.segments}
     values = [(a, b, own.get((a, b), shaft.profile)) for a, b, _ in shaft.pieces]

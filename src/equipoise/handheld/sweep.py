@@ -33,9 +33,9 @@ from equipoise.signals import Array, highest_at
 MODES = 6
 """Natural frequencies."""
 AROUND = (0.5, 1.25)
-"""Range about the working speed, as shares of it, where the tool tells none."""
+"""Range about the working speed, as shares of it, where the tool has no range of speeds."""
 SPEEDS = 400
-"""Equally spaced speeds in a range, if not told otherwise."""
+"""Equally spaced speeds in a range by default."""
 RESONANCE_OFFSETS = np.array([-0.03, -0.01, -0.003, 0.003, 0.01, 0.03])
 """Shares of a resonance without damping beside which it is looked at."""
 HALF = np.array([0.2, 0.4, 0.6, 0.8, 1, 1.3, 1.7, 2.3, 3, 4, 6, 9, 14, 22, 35])
@@ -414,7 +414,7 @@ def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolS
         )
     tool_sweep = ToolSweep(tool, np.asarray(speed), transmissions, response, tuple(further))
     if further:
-        tool_sweep.places(further)  # a place off the shaft is told at once
+        tool_sweep.places(further)  # refuse a place off the shaft at once
     return tool_sweep
 
 
@@ -427,7 +427,7 @@ def default_answers(tool: Tool) -> list[str]:
 
 
 def default_speeds(tool: Tool) -> tuple[float, float] | None:
-    """Lowest and highest speed of the engine, rad/s; None where the tool tells none."""
+    """Lowest and highest speed of the engine, rad/s; None where the tool has no operation."""
     operation = tool.operation
     if operation is None:
         return None

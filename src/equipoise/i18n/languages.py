@@ -10,9 +10,9 @@ rules are the table ``[particles]`` of a catalogue, which the live page follows 
 (`page/src/particles.ts`).
 
 A text with a count and a noun has one template in the code, in the plural: ``{count} designs``.
-The English catalogue has its other forms, and tells by which placeholder these go where that is not
-``count``; a catalogue of a language whose head has rules of plural gives a table of forms in place
-of a text: ``{ one = "{count} Entwurf", other = "{count} Entwürfe" }``.
+The English catalogue has its other forms, and names the placeholder on which they depend where that
+is not ``count``; a catalogue of a language whose head has rules of plural gives a table of forms
+in place of a text: ``{ one = "{count} Entwurf", other = "{count} Entwürfe" }``.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def package_of(code: str) -> str:
 
 def rules(language: str) -> Mapping[str, Any] | None:
     """The rules of a language as plain values: ``forms`` of each particle by the sound before it,
-    ``endings`` by which a word tells its sound (the first that matches counts), ``closing``, the
+    ``endings`` that give the sound of a word (the first that matches counts), ``closing``, the
     signs that may stand between the two, and ``reach``, how many signs before a particle are looked
     at.  None where a language has no particles.
     """

@@ -18,7 +18,7 @@ from equipoise.keys.conditions import any_of as any_of
 from equipoise.keys.conditions import lacks as lacks
 from equipoise.keys.conditions import needs as needs
 from equipoise.keys.conditions import not_both as not_both
-from equipoise.keys.conditions import told_by as told_by
+from equipoise.keys.conditions import schema_by_dimension as schema_by_dimension
 from equipoise.keys.declaring import REQUIRED as REQUIRED
 from equipoise.keys.declaring import ROW as ROW
 from equipoise.keys.declaring import SCHEMA_VERSION as SCHEMA_VERSION

@@ -28,8 +28,10 @@ def not_both(*keys: str) -> dict[str, Any]:
     return {"not": needs(*keys)}
 
 
-def told_by(name: str, sizes: Sequence[str], dimensions: Mapping[str, Dimension]) -> dict[str, Any]:
-    """JSON Schema of a table in which the key `name` tells the dimension of `sizes`."""
+def schema_by_dimension(
+    name: str, sizes: Sequence[str], dimensions: Mapping[str, Dimension]
+) -> dict[str, Any]:
+    """JSON Schema of a table in which the key `name` decides the dimension of `sizes`."""
     cases = []
     for dimension in dict.fromkeys(dimensions.values()):
         names = [item for item, own in dimensions.items() if own == dimension]

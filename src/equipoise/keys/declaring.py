@@ -45,8 +45,8 @@ class Key:
 
     name : in the file.  field : of the class, the same where nothing else is said.
     text : what it means, in words that go on after its name.
-    example : as it would stand in the file.  default : in Python; `shown` if the file's reader is
-        better told otherwise.
+    example : as it would stand in the file.  default : in Python; `shown` instead, if
+        documentation states it better.
     at_least, above, below : limits in SI units; `why` is said instead of words made of them.
     endless : it may be infinite, for no limit.  inside : no file has it.
     word : what its number is called, the name of the key in words where not given.
@@ -301,7 +301,7 @@ def numbers_of(value: Frozen | type[Frozen]) -> Mapping[str, Key]:
     """
     keys = keys_of(value if isinstance(value, type) else type(value)).items()
     numbers = {name: item for name, item in keys if isinstance(item.kind, Number) and item.field}
-    # What a number that something else tells is of, such as a limit, is not known here.
+    # The dimension of a number that depends on another key, such as a limit, is not known here.
     return {
         name: number
         for name, number in numbers.items()

@@ -128,7 +128,7 @@ class ParameterValue(Kind):
 
 @dataclass(frozen=True)
 class Anything(Kind):
-    """What cannot be told before something else is known; it comes through as it is.
+    """A value that another key has to be known to read; it comes through as it is.
 
     schema : what the JSON Schema says of it.
     """
@@ -141,7 +141,7 @@ _IN_QUOTES = Note("give number and unit in quotes")
 
 @dataclass(frozen=True)
 class DependentQuantity(Number):
-    """A number whose dimension something else tells; `Frozen.from_table` makes it of its text.
+    """A number whose dimension depends on another key; `Frozen.from_table` reads its text.
 
     right : what to give where no text is given.  schema : what the JSON Schema says of it.
     """
@@ -282,7 +282,7 @@ class Planes(Kind):
 class Named(Kind):
     """Some of a kind by names that the user chooses.
 
-    listed : or a list of the names alone, where other keys tell the rest.
+    listed : or a list of the names alone, where other keys have the rest.
     by : what the names are of, where they are of something that is there.
     """
 

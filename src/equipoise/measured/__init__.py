@@ -1,4 +1,4 @@
-"""Measured signals: what a recorded free decay tells of inertia, damping and friction."""
+"""Measured signals: inertia, damping and friction from a recorded free decay."""
 
 from __future__ import annotations
 

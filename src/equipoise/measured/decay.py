@@ -22,7 +22,7 @@ from equipoise.signals import Array
 Quantities = dict[str, FittedValue]
 
 MUCH_CORRELATED = 3.0
-"""Points over which a residual is correlated, from where on it is told."""
+"""Points over which a residual is correlated, from which on a note reports it."""
 FAR = 0.26
 """rad, at which displacement over arm is 1 % from the angle."""
 POOR = 2.0
@@ -62,7 +62,7 @@ MOST_DIGITS = 7
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Decay(Result):
-    """What a free decay tells; see docs/decay.md.
+    """Inertia, damping and friction identified from a free decay; see docs/decay.md.
 
     record : as it was identified, in m or rad.
     confidence : of the intervals, such as 0.95.
@@ -230,7 +230,7 @@ def _on_record(record: Record, turns: Turns, arm: float | None) -> Iterator[str]
 
 
 def _on_terms(by_line: Quantities, by_record: Quantities, turns: Turns) -> Iterator[str]:
-    """Which terms cannot be told from noise or from each other, or have the wrong sign."""
+    """Notes on terms that are indistinguishable from noise or each other, or of the wrong sign."""
     for term, name in TERMS.items():
         line, record = by_line[name], by_record[name]
         if record.includes_zero:

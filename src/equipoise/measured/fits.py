@@ -31,7 +31,7 @@ class FittedValue:
 
     @property
     def includes_zero(self) -> bool:
-        """Whether it cannot be told from zero; false where the interval is not known."""
+        """Whether the interval includes zero; false where the interval is not known."""
         return self.low is not None and self.high is not None and self.low <= 0 <= self.high
 
     def apart_from(self, other: FittedValue) -> bool:

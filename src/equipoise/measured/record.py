@@ -275,7 +275,7 @@ def _column(name: str, values: Any) -> Array:
 
 @dataclass(frozen=True)
 class FreeSwing:
-    """A free motion, told from one of its turning points.
+    """A free motion, described from one of its turning points.
 
     Parameters
     ----------
@@ -307,7 +307,7 @@ class FreeSwing:
         return self.rate * self.half_period
 
     def displacement(self, time: Array) -> Array:
-        """Displacement (N,) at times (N,), which may lie before the turning point told."""
+        """Displacement (N,) at times (N,), which may lie before that turning point."""
         since = (time - self.turned) / self.half_period
         number = np.floor(since).astype(int)
         first, last = int(np.min(number, initial=0)), int(np.max(number, initial=0))

@@ -141,7 +141,7 @@ def _first(times: Array, size: Array) -> float:
     """Time of the first from the times of all (K,), each moved back by whole half-periods, s.
 
     Friction bends a top more on one side than on the other, which moves it by so much over its
-    size; where sizes differ enough to tell, that is taken out.
+    size; where sizes differ enough to estimate that shift, it is removed.
     """
     if len(times) > 3 and np.max(size) > 2 * np.min(size):
         design = np.column_stack([size, np.ones(len(size))])

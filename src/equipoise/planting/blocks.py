@@ -41,7 +41,7 @@ DRIVEN = (
     to_say("{link} driven at {speed} rpm, clockwise; machine drives {travel} at {forward}"),
 )
 UNITS: dict[Dimension, str] = {"time": "ms", "angular speed": "rpm", "length": "mm"}
-"""Units in which these are told."""
+"""Dimension -> display unit of figures of planting."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def cell(value: float | None, name: str, scale: float = 0.0) -> Value | None:
 
 
 def quantity(value: float, kind: Dimension | None, scale: float = 0.0) -> Value:
-    """A number of some dimension, in the unit in which it is told."""
+    """A number of some dimension, SI units, with its display unit."""
     unit = None if kind is None else UNITS.get(kind)
     return Value(value, scale, after=2 if kind == "angle" else None, dimension=kind, unit=unit)
 

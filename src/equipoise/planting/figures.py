@@ -410,7 +410,7 @@ def sharpest_bend(curve: TipCurve, name: str, drive: Any, share: Any = 1.0) -> F
 
 
 def _slow_bend(curve: TipCurve, drive: Any, slope: Signal) -> Array:
-    """Crank angle (P,) of the bend at the slowest place, which may be sharper than samples tell."""
+    """Crank angle (P,) of the bend at the slowest place, which may lie between samples."""
 
     def rate2(theta: Array) -> Any:
         return np.abs(curve.at(theta).place_1 + drive) ** 2
@@ -516,8 +516,8 @@ def _length(curve: TipCurve, breaks: Array, drive: Any) -> Array:
 def _hole_length(curve: TipCurve, entry: Array, leave: Array) -> Array:
     """Way over ground between the outermost places at which the finger cuts the surface.
 
-    Instants at which the whole finger is below the surface do not count; a finger that comes or
-    goes with its base first opens no hole that could be told: NaN.
+    Instants at which the whole finger is below the surface do not count; a finger that enters or
+    leaves with its base first opens no hole of a defined size: NaN.
     """
     base = finger_base(curve)
     if base is None:

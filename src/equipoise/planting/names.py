@@ -96,7 +96,7 @@ OTHERS = (
     *LINKAGE,
     *SHAKING_FIGURES,
 )
-"""Further ones that a search tells before and after."""
+"""Further figures that a search compares before and after."""
 DIMENSIONS: dict[str, Dimension] = {
     **dict.fromkeys(("surface", "soil.ground_advance"), "length"),
     "speed": "angular speed",

@@ -43,7 +43,7 @@ class Designs:
 
     vary : names of numbers with their limits, m, rad or plain; None for what is `usual`.
     Arms that are alike stay so, unless what varies names gears of the further ones alone.
-    sense : in which the crank turns.  Where it is "either", a last number tells: below 0
+    sense : in which the crank turns.  Where it is "either", a last number decides: below 0
         clockwise.
     """
 

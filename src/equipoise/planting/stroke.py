@@ -1,6 +1,6 @@
 """Instants of a stroke: visits to the soil, release, pick-up, clearance, and arms that are alike.
 
-Gears are told by their angles at crank angle 0, at which the arms are not in the same place.  Where
+Gears are given by their angles at crank angle 0, at which the arms are in different places.  Where
 the shape of gears changes these angles have to follow, or the arms would no longer be alike.
 """
 

@@ -26,13 +26,13 @@ from equipoise.results.blocks import (
 Kind = tuple[Dimension | None, str | None]
 """Dimension and unit of a number; those of one kind have one unit in a table."""
 Sizes = Mapping[tuple[int, Kind], float]
-"""The largest number of each kind in each column; what is rounding beside it is told as 0."""
+"""The largest number of each kind in each column; numbers that are rounding beside it show as 0."""
 FAINT, FAINT_IN_ROW = 1e-5, 1e-4
-"""Over the largest number of its kind in a table, and in a row, which tells one thing: a smaller
+"""Over the largest number of its kind in a table, and in a row, which has one subject: a smaller
 number has no meaning for a reader, since the large one has four digits, and is shown as 0."""
 
 UNCHANGED = change(1.0, 1.0)
-"""What `change` tells of two equal figures."""
+"""Text of `change` for two equal figures."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class CellText:
     """A cell as text.
 
     at : where the value holds.  number : whether it is set to the right.
-    limit : that the value breaks, where it is told.
+    limit : the limit that the value breaks; empty if not shown.
     """
 
     text: str = ""
@@ -87,7 +87,7 @@ class Grid:
 
     @property
     def leading(self) -> int:
-        """How many columns tell the rows: one, or two of words where the first tells some alike."""
+        """Number of columns that name the rows: two, both of words, if the first has duplicates."""
         names = {row[0].text for row in self.rows}
         return 2 if len(names) < len(self.rows) and self.is_words(0) and self.is_words(1) else 1
 
@@ -140,7 +140,7 @@ def _faint(table: Table, row: tuple[Cell, ...], sizes: Sizes) -> dict[Kind, floa
 
 
 def _unit_of_row(table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> str:
-    """The unit of numbers of which not even the column tells it."""
+    """Unit of the numbers of a row in columns without a dimension of their own."""
     own = (
         shown[_kind(value, column)].unit
         for column, cell in zip(table.columns, row, strict=True)

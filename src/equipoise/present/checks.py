@@ -20,14 +20,14 @@ from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.outputs.declared import body_named
 from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, format_quantity, number
-from equipoise.quantities.numbers import rate_told, time_told
+from equipoise.quantities.numbers import duration_text, rate_text
 from equipoise.results.analysis import analyze
 from equipoise.results.blocks import Block, Cell, Column, FileText, Notes, Table, Text, Value
-from equipoise.results.cam_blocks import cams_told
+from equipoise.results.cam_blocks import cam_descriptions
 from equipoise.results.lost_contacts import preloads_to_hold
-from equipoise.results.machine_blocks import bodies_tables, driven, place_told
+from equipoise.results.machine_blocks import bodies_tables, driven, point_text
 from equipoise.signals import Array
-from equipoise.studies.blocks import Units, in_unit, labelled, spread_told, unit_in
+from equipoise.studies.blocks import Units, in_unit, labelled, spread_text, unit_in
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, estimated
 from equipoise.studies.run import Route
@@ -66,7 +66,7 @@ COMPUTED_HEADS = (
 
 
 def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
-    """Everything about a study that can be told before it is computed."""
+    """Blocks on a study before it is computed: its numbers, limits, designs and expected time."""
     compute = evaluator(study)
     own = study.own
     outcome = compute(own[None])
@@ -107,7 +107,7 @@ def _times(study: Study, compute: Evaluator) -> Iterator[str]:
         "time for all: {total} on {processors}; measured: {rate} on one, with {designs}",
         total=_about(estimate.seconds),
         processors=say("{count} processors", count=estimate.workers),
-        rate=rate_told(estimate.rate),
+        rate=rate_text(estimate.rate),
         designs=say("{count} designs", count=estimate.designs),
     )
 
@@ -136,7 +136,9 @@ def _times(study: Study, compute: Evaluator) -> Iterator[str]:
 
 
 def _about(seconds: float) -> str:
-    return say("about {time}", time=time_told(seconds)) if seconds >= 1 else say("less than 1 s")
+    return (
+        say("about {time}", time=duration_text(seconds)) if seconds >= 1 else say("less than 1 s")
+    )
 
 
 def _is_searched(study: Study) -> bool:
@@ -151,7 +153,7 @@ def _is_tolerance(study: Study) -> bool:
 def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
     for variable, value in zip(study.vary, own.tolist(), strict=True):
         unit = unit_in(units, variable.path)
-        spread = spread_told(variable.spread, unit)
+        spread = spread_text(variable.spread, unit)
         yield labelled(unit), variable.path, in_unit(value, unit), spread
 
 
@@ -209,7 +211,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     parts = (
         *_joints(machine),
         *_elements(motion),
-        *cams_told(machine, linkage.joints),
+        *cam_descriptions(machine, linkage.joints),
         *_drive_train(machine),
         *_support(machine),
     )
@@ -454,7 +456,7 @@ def _support(machine: Machine) -> Iterator[str]:
         template,
         mass=format_quantity(support.mass, "mass", "kg"),
         motions=said(all_of(support.coordinates, commas=True)),
-        pivot="" if support.pivot is None else place_told(support.pivot),
+        pivot="" if support.pivot is None else point_text(support.pivot),
     )
     for name, mount in support.mounts.items():
         parts = said(series([*_mount(mount)]))
@@ -493,7 +495,7 @@ def _reading(item: Mount | Gauge) -> str:
         way = f"({coordinates(map(number, item.direction))})"
     else:
         way = format_quantity(item.direction, "angle")
-    return say("along {way} at {place}", way=way, place=place_told(item.point))
+    return say("along {way} at {place}", way=way, place=point_text(item.point))
 
 
 # -- tools ----------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ from typing import Any
 
 import equipoise
 from equipoise.balancing.blocks import outcome_blocks
-from equipoise.balancing.outcome import nothing_told
+from equipoise.balancing.outcome import no_benefit_sentences
 from equipoise.errors import UsageError, at_place
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
@@ -39,10 +39,10 @@ from equipoise.results.blocks import (
 )
 from equipoise.results.headline import verdict_blocks
 from equipoise.results.joint_blocks import elements_tables, joint_blocks, kind_tables
-from equipoise.results.machine_blocks import angles_told, driven, model_blocks
+from equipoise.results.machine_blocks import crank_angles_text, driven, model_blocks
 from equipoise.results.result import in_own_words
 from equipoise.results.yardsticks import GaugeReading, assess, verdict
-from equipoise.vibration.blocks import model_told, resonances_table, response_blocks
+from equipoise.vibration.blocks import model_text, resonances_table, response_blocks
 
 KIM_CHUNG = (
     "Kim, K. U., Chung, C. J.: An analytical method for kinematic analysis of the planting "
@@ -235,7 +235,7 @@ def balance_blocks(findings: Findings) -> Iterator[Block]:
     if findings.helped or balanced.advice is not None:
         yield from outcome_blocks(balanced)
     else:
-        yield from map(Text, nothing_told(balanced))
+        yield from map(Text, no_benefit_sentences(balanced))
 
 
 def _of_tool(
@@ -362,13 +362,13 @@ def _animation(findings: Findings) -> str:
 
 def _settings_of_linkage(findings: Findings) -> Iterator[str]:
     motion = findings.analysis.motion
-    yield angles_told(findings.analysis)
+    yield crank_angles_text(findings.analysis)
     if motion.acceleration:
         yield say("Crank acceleration {value} rad/s²", value=number(motion.acceleration))
     gravity = coordinates(number(part) for part in findings.machine.gravity)
     yield say("Gravity ({value}) m/s²", value=gravity)
     if findings.response is not None:
-        yield model_told(findings.response.model)
+        yield model_text(findings.response.model)
     if findings.balanced is not None:
         yield say("Balanced by: {method}", method=said(findings.balanced.method))
 

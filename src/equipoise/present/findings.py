@@ -1,4 +1,4 @@
-"""Everything that can be told of a file, each part computed when it is first asked for."""
+"""All results of a model file, each computed on first access."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def part(name: str) -> Callable[[Callable[[Any], Part]], cached_property[Part | 
 
 @dataclass(frozen=True, eq=False)
 class Findings(_ComputedParts):
-    """What can be told of a linkage.
+    """All results of a linkage, each computed on first access.
 
     machine : at the speed that is asked for.
     text : of its file.  file : its name.
@@ -168,7 +168,7 @@ class Findings(_ComputedParts):
 
 @dataclass(frozen=True, eq=False)
 class ToolFindings(_ComputedParts):
-    """What can be told of a hand-held tool.
+    """All results of a hand-held tool, each computed on first access.
 
     tool : working at the speed that is asked for.
     text : of its file.  file : its name.
@@ -190,7 +190,7 @@ class ToolFindings(_ComputedParts):
 
     @part(to_say("speeds"))
     def speeds(self) -> np.ndarray[Any, Any] | None:
-        """Speeds of the engine, rad/s, closer about resonances; None where the tool tells none."""
+        """Speeds of the engine (N,), rad/s, denser about resonances; None without an operation."""
         from equipoise.handheld.sweep import SPEEDS, default_speeds, speeds_between
 
         ends = default_speeds(self.tool)
@@ -246,7 +246,7 @@ def find(
     speed: float | str | None = None,
     swings: bool = False,
 ) -> Findings | ToolFindings:
-    """Everything that can be told of a machine or a tool.
+    """All results of a machine or a tool, each computed on first access.
 
     model : the machine or tool, the path of its file, or the name of a bundled example.
     angles : crank angles in a turn.

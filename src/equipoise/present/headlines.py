@@ -1,6 +1,6 @@
-"""What is seen in a part or a picture of a report, in one line made of its figures.
+"""The result of a section or a picture of a report, in one line with its figures.
 
-Lines end without a point, as titles do; one that there is nothing to tell of is empty.
+Lines end without a point, as titles do; a line without a result is empty.
 """
 
 from __future__ import annotations
@@ -160,7 +160,7 @@ def moved(response: Response, name: str) -> str:
 
 
 def loudest_gauge(response: Response) -> str:
-    """The loudest order at the gauge that is told first."""
+    """Sentence on the order with the largest amplitude at the first gauge."""
     name, gauge = next(iter(response.gauges.items()))
     squares = gauge.displacement.sizes**2
     squares[0] = 0.0
@@ -484,7 +484,7 @@ COMPARED = {
     "moment": "shaking_moment.rms",
     "rows": "rows.shaking_force.rms",
 }
-"""Picture of before and after -> the figure that its line tells."""
+"""Picture of before and after -> path of the figure in its headline."""
 
 
 def compared(findings: Findings, picture: str) -> str:

@@ -40,7 +40,7 @@ LAST_WESTERN = "\u2e7f"
 
 
 def check_pdf(language: str) -> None:
-    """Tell what is missing before anything is computed."""
+    """Raise if something that a PDF needs is missing, before anything is computed."""
     families(language)
 
 

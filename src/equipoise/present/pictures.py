@@ -44,7 +44,7 @@ def pages(
     headline: Callable[[], str] = str,
     detail: bool = False,
 ) -> Iterator[PictureEntry]:
-    """What goes on over several pictures; how many, only their charts tell."""
+    """Entries of charts that go on over several pictures; their number is known once made."""
     for number, chart in enumerate(make(), 1):
         if number == 1:
             yield PictureEntry(name, caption, partial(unchanged, chart), headline, detail)
@@ -126,7 +126,7 @@ class LazyPicture:
 
     name : which also does for a file.  section : one of `SECTIONS`.
     caption : an English sentence on what it is, to be said when it is shown.
-    headline : says what is seen in it, in a line as of `headlines`; empty where nothing is told.
+    headline : states the result that it shows, in a line as of `headlines`; may be empty.
     detail : whether a report has it in its appendix.
     """
 
@@ -507,7 +507,7 @@ def drawings(
         pictures = _draw(findings, rest, by_rows)
         of_helper: Drawings = here.recv()
         return pictures | of_helper
-    except EOFError:  # the helper failed, and what it failed of is to be told
+    except EOFError:  # the helper failed: drawing here raises its error again
         return pictures | _draw(findings, other, by_rows)
     finally:
         helper.kill()
@@ -531,7 +531,7 @@ def _send(
 ) -> None:
     try:
         pipe.send(_draw(findings, sections, by_rows))
-    except BaseException:  # what goes wrong here goes wrong again where it can be told
+    except BaseException:  # the main process draws again, and raises the error there
         pipe.close()
 
 

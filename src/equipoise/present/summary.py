@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from math import pi
 
 from equipoise.balancing.comparison import WORSE
-from equipoise.balancing.outcome import good_already, helps_told
-from equipoise.balancing.sentences import capital, listed, worse_told
+from equipoise.balancing.outcome import benefit_sentences, good_already
+from equipoise.balancing.sentences import capital, deterioration_sentences, listed
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.outputs.declared import joint_named, named
@@ -54,12 +54,12 @@ def answers(findings: Findings, stated: str = "") -> Iterator[SummaryAnswer]:
         )
         yield SummaryAnswer(say("Why"), tuple(_why(findings)))
         if findings.balanced is not None:
-            worse = tuple(worse_told(findings.balanced)) if findings.helped else ()
-            helps = tuple(helps_told(findings.balanced, stated))
+            worse = tuple(deterioration_sentences(findings.balanced)) if findings.helped else ()
+            helps = tuple(benefit_sentences(findings.balanced, stated))
             yield SummaryAnswer(say("What helps most"), helps, worse)
-    if vibration := tuple(vibration_told(findings)):
+    if vibration := tuple(vibration_sentences(findings)):
         yield SummaryAnswer(say("What that does to the support"), vibration)
-    if planting := tuple(planting_told(findings)):
+    if planting := tuple(planting_sentences(findings)):
         yield SummaryAnswer(say("Planting"), planting)
 
 
@@ -274,7 +274,7 @@ def check_whole_cycle(findings: Findings) -> None:
         )
 
 
-def vibration_told(findings: Findings) -> Iterator[str]:
+def vibration_sentences(findings: Findings) -> Iterator[str]:
     """What the gauges read, and the nearest loud resonance."""
     response = findings.response
     if response is None:
@@ -307,7 +307,7 @@ def vibration_told(findings: Findings) -> Iterator[str]:
         yield say("{sentence}.", sentence=capital(note.said()))
 
 
-def planting_told(findings: Findings) -> Iterator[str]:
+def planting_sentences(findings: Findings) -> Iterator[str]:
     """Depth, entry and exit of each arm, hills, speed of the fastest tip."""
     if findings.planting is None:
         return

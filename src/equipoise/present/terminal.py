@@ -34,9 +34,9 @@ GAP, HEAD, DEEPER = 2, 14, 2
 """Places between columns, of a line of a heading with short words, and by which further lines of a
 cell stand to the right."""
 WORDS: dict[Emphasis, str] = {"broken": to_say("over the limit"), "worse": to_say("worse")}
-"""What is said beside what stands out, where there is no colour."""
+"""Emphasis -> the word that replaces its colour on a terminal without colours."""
 CODES = {"title": "1", "section": "1;4", "head": "2", "broken": "1;31", "worse": "1;31"}
-"""How a terminal with colours is told to show a part."""
+"""Part of the output -> parameters of its ANSI escape sequence."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Looks:
         return f"\x1b[{CODES[part]}m{text}\x1b[0m" if self.coloured and part and text else text
 
     def word(self, emphasis: Emphasis | None, limit: str = "") -> str:
-        """What is said behind what stands out.  limit : that is broken, where it is told."""
+        """Word that follows an emphasized cell; `limit` is the broken limit, empty if not shown."""
         if emphasis is None or (self.coloured and not limit):
             return ""
         if limit:
@@ -242,7 +242,7 @@ def _turned(grid: Grid) -> Grid:
 
 
 def _laid_out(grid: Grid, room: int, looks: Looks) -> list[list[str]]:
-    """Lines of a table's parts, each of which begins with what tells the rows."""
+    """Lines of each part of a table that is too wide; each part repeats the leading columns."""
     columns = [*_columns(grid, room, looks)]
     parts = _parts(columns, grid.leading, room)
     return [[*_lines(part, len(grid.rows), looks)] for part in parts]

@@ -98,7 +98,8 @@ def improved(findings: ToolFindings) -> str:
 DAY = 86400.0
 """s."""
 RESONANCE_SHARE = 0.1
-"""Distance of a natural frequency from what shakes, over the latter, below which it is told."""
+"""A natural frequency is listed where its distance from an excitation frequency, over the latter,
+is below this."""
 
 
 def tool_tiles(findings: ToolFindings) -> Iterator[Tile]:

@@ -22,7 +22,7 @@ ROUNDING = 1e-10
 LEAST, MOST = 1e-3, 1e6
 """Sizes between which a number is written without a power of ten."""
 SAME = 5e-4
-"""Share of a change that is told as none."""
+"""Relative change that counts as none."""
 
 MINUS = "\N{MINUS SIGN}"
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -71,15 +71,15 @@ def span(values: Iterable[float], scale: float = 0.0, to: str = " to ") -> str:
     return f"{number(low, scale)}{to}{number(high, scale)}"
 
 
-def rate_told(rate: float | None) -> str:
-    """Designs a second."""
+def rate_text(rate: float | None) -> str:
+    """A rate of designs a second as text; empty for None and 0."""
     if not rate:
         return ""
     return f"{float(f'{rate:.3g}'):.0f} designs/s" if rate >= 100 else f"{rate:.3g} designs/s"
 
 
-def time_told(seconds: float) -> str:
-    """A time as one says it."""
+def duration_text(seconds: float) -> str:
+    """A duration, given in s, as text in s, in min and s, or in h and min."""
     if seconds < 60:
         return f"{seconds:.1f} s"
     minutes, rest = divmod(round(seconds), 60)
@@ -272,7 +272,7 @@ def display(dimension: Dimension | None, values: Any = (), unit: str | None = No
 
     That is the one which a reader has chosen; else one in which they are best read.
 
-    unit : in which they are told while their sizes allow it, instead of the usual one.
+    unit : to use while sizes allow it, instead of the customary one.
     """
     if dimension is None:
         return Display("", 1.0)
@@ -312,7 +312,7 @@ def format_quantity(
 ) -> str:
     """A value (SI) as a sentence has it, with its unit; further arguments as of `display`.
 
-    scale : beside which a smaller value is rounding, and is told as 0.
+    scale : beside which a smaller value is rounding, and is printed as 0.
     """
     shown = display(dimension, [value], unit)
     return shown.with_unit(shown.text(value, scale, digits))

@@ -164,7 +164,7 @@ def readings(number: str) -> tuple[str, str]:
     return pointed if re.fullmatch(NUMBER, pointed) else "", whole
 
 
-def separators_told(number: str, unit: str = "") -> str:
+def separators_note(number: str, unit: str = "") -> str:
     """Say what a number with commas or separators of thousands may be; empty where it has none.
 
     unit : written behind each reading, in quotes.
@@ -213,7 +213,7 @@ def _right(text: str, dimension: Dimension) -> str:
         return Note('{noun} is wanted, not a range; give one such as "{low}"', noun=noun, low=low)
     parts = re.fullmatch(r"(.*[0-9.,]) *([^\s0-9.,].*)", text)
     known = parts is not None and plain_unit(parts[2]) in kind.units
-    if parts is not None and known and (name := separators_told(*parts.groups())):
+    if parts is not None and known and (name := separators_note(*parts.groups())):
         return name
     whole = re.fullmatch(rf"({NUMBER})( *)(\S.*)", text)
     if whole is None:

@@ -288,8 +288,8 @@ class Analysis(Result):
         split : whether to add every force by cause and by link.
         outputs : names of further outputs that are added; None stands among the values of those
             that are infinite somewhere.
-        strokes : whether to tell figures of sliders, rockers and cams, and notes: some
-            milliseconds.
+        strokes : whether to include figures of sliders, rockers and cams, and notes, which take
+            some milliseconds.
         wanted : names of the outputs that stand in arrays and summary; None for all.
         """
         result: Values = {
@@ -492,7 +492,7 @@ def _friction(losses: Losses | None) -> Values:
 
 
 def _undecided(linkage: Linkage) -> Values:
-    """Joints of which statics does not tell the force, where there are such."""
+    """Joints with statically indeterminate reactions; empty where there are none."""
     outcome = indeterminate_reactions(linkage)
     result: Values = {}
     if outcome.open:
@@ -546,7 +546,7 @@ def analyze(
     """
     motion = move(machine, angles, speed, acceleration)
     if about is not None:
-        in_frame(machine.frame, about)  # a wrong point is told of a model without masses too
+        in_frame(machine.frame, about)  # refuse a wrong point even where a model has no masses
     if massless(machine):
         return Analysis(motion, None)
     analysis = Analysis(motion, forces(motion, about))

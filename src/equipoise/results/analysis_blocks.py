@@ -17,13 +17,13 @@ from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.joint_blocks import elements_tables, joint_blocks, kind_tables
 from equipoise.results.machine_blocks import (
-    angles_told,
+    crank_angles_text,
     driven,
     drives_table,
     four_bar_facts,
     four_bar_table,
     largest,
-    place_told,
+    point_text,
     points_table,
     smallest,
     span,
@@ -38,17 +38,17 @@ if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
 MOST_ORDERS = 8
-"""Orders that are told of."""
+"""Orders at most in a table of harmonics."""
 MOST_DEAD = 4
-"""Dead positions that are told beside the outermost two."""
-TOLD_ANGLES = 24
-"""Crank angles in a turn at which an output is told that is chosen by its name."""
+"""Dead positions at most that are listed beside the outermost two."""
+LISTED_ANGLES = 24
+"""Crank angles in a turn at which an output that the user chose is tabulated."""
 
 
 def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     """Motion, forces and joints."""
     machine, motion = analysis.machine, analysis.motion
-    yield Text(f"{driven(machine, motion.speed)}; {angles_told(analysis)}")
+    yield Text(f"{driven(machine, motion.speed)}; {crank_angles_text(analysis)}")
     yield from motion_blocks(analysis)
     yield from kind_tables(analysis, "motion")
     yield from elements_tables(analysis)
@@ -199,7 +199,7 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
     about = analysis.forces.about
     title = say(
         "On frame and drive; extremes with their crank angle, moments about {place}",
-        place=place_told((about.real, about.imag)),
+        place=point_text((about.real, about.imag)),
     )
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
     yield Table.of(title, ("", *labels), rows)
@@ -231,7 +231,7 @@ def _by_link(analysis: Analysis) -> Table:
 
 
 CANCELLING = 0.5
-"""Share below 0 from which the parts of a force mostly cancel, and shares tell a reader nothing."""
+"""A cause whose share is below minus this mostly cancels the others: shares then mislead."""
 
 
 def shares(parts: Mapping[str, Array], motion: Motion) -> dict[str, float]:
@@ -347,7 +347,7 @@ def outputs_table(analysis: Analysis, names: Iterable[str]) -> Table:
     """Outputs over crank angle: at those that were asked for, or some equally spaced ones."""
     ones = analysis.outputs.chosen(names)
     theta, motion = analysis.crank_angle, analysis.motion
-    apart = max(len(theta) // (TOLD_ANGLES * motion.turns), 1) if motion.whole_cycle else 1
+    apart = max(len(theta) // (LISTED_ANGLES * motion.turns), 1) if motion.whole_cycle else 1
     columns = [Column(item.label(), item.dimension, alike=False) for item in ones]
     cells = []
     for entry in ones:

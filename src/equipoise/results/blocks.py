@@ -239,7 +239,8 @@ class ReportSection:
 # -- before and after ------------------------------------------------------------------------------
 
 SAME, ROUNDING = 1e-6, 1e-9
-"""Share of a figure, and of what it is told beside, by which it has to change to be told again."""
+"""Changes below these are not listed: a share of the figure itself, and, against rounding, of the
+largest number of its table column."""
 
 
 def interleave_changes(before: Iterable[Block], after: Iterable[Block]) -> Iterator[Block]:
@@ -284,7 +285,7 @@ def _named_after(row: tuple[Cell, ...]) -> tuple[Cell, ...]:
 
 
 def _alike(cell: Cell, other: Cell) -> bool:
-    """Whether two cells tell the same, but for rounding."""
+    """Whether two cells have equal contents, but for rounding."""
     if isinstance(cell, Value) and isinstance(other, Value):
         least = ROUNDING * max(cell.scale, other.scale)
         return isclose(cell.value, other.value, rel_tol=SAME, abs_tol=least)

@@ -1,4 +1,4 @@
-"""What an analysis tells of its cams: how sharp and steep they are, and where contact is lost."""
+"""Blocks of an analysis on its cams: radii of curvature, pressure angles, and loss of contact."""
 
 from __future__ import annotations
 
@@ -52,8 +52,8 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
         yield Notes(lost)
 
 
-def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
-    """What each cam is, a sentence each."""
+def cam_descriptions(machine: Machine, joints: Structure) -> Iterator[str]:
+    """A sentence on each cam: its law, follower and closure, and its least radius of curvature."""
     for fit in fits_of(machine, joints):
         cam, (radius, where) = fit.cam, sharpest(fit)
         low, high = (

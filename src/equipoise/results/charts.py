@@ -1,7 +1,7 @@
 """A chart as data: curves of quantities, what marks them, and what they are drawn against.
 
-Nothing here knows colours, inches or Matplotlib: what is drawn has a role, and who renders the
-chart gives each role its look.  Values are in SI units; an axis tells in which unit it is read.
+Nothing here knows colours, inches or Matplotlib: each element has a role, and the renderer gives
+each role its look.  Values are in SI units; an axis has the unit of its labels.
 """
 
 from __future__ import annotations
@@ -156,7 +156,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Mark:
-    """A place that is told, such as an extreme; SI units.
+    """A labelled point, such as an extreme; SI units.
 
     wish : direction in which its text stands best, deg.  sign : whether a sign stands at the place.
     optional : whether the text may be left out where there is no room.
@@ -263,7 +263,7 @@ class Panel:
 
     title : above the left end.  remark : above the right end, small.
     message : in the middle, where there is nothing else.
-    keyed : whether its curves are told in a legend of its own, above it, and not in the chart's.
+    keyed : whether its curves have a legend of their own, above it, and not in the chart's.
     equal : whether both axes have one scale; rings : circles about the origin instead of a grid.
     bare : without axes.  height : points; as wide as it needs where `equal`.
     flag_words : what the rows of flags are.  left, right : lines of words beside the axes.

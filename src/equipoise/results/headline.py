@@ -1,6 +1,6 @@
 """What stands first of an analysis: the verdict for this machine, what else is large, what is next.
 
-What is large is told by `yardsticks`, against which every figure is measured.
+`yardsticks` has the reference value against which each figure is large or not.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
 MOST_LARGE, MOST_SMALL = 3, 2
-"""Figures that are told beside the verdict: of those that are large, and where none is."""
+"""Figures at most beside the verdict: among large figures, and where no figure is large."""
 MOST_NOTES = 3
 """Notes that stand first; the others follow with all tables."""
 ELSE_LARGE = to_say("Other large figures, each with its reference value")

@@ -18,11 +18,11 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import PER_RPM, angle, format_quantity
 
 LEAST_EFFECT = 1e-6
-"""Contact force over the preload of a spring: one that acts less on a follower does not hold it."""
+"""Contact force over preload below which a spring does not act on a follower, but for rounding."""
 
 
-def lost_told(let_go: LetGo, sprung: bool) -> Note:
-    """Where nothing keeps a cam's follower there, at the speed analysed.
+def lift_off_note(let_go: LetGo, sprung: bool) -> Note:
+    """Note on the crank angles at which a follower lifts off its cam, at the analysed speed.
 
     sprung : whether the file has springs at all, which may then be too weak.
     """
@@ -57,9 +57,9 @@ def _limit(speed: float, sprung: bool) -> Note:
 def preloads_to_hold(machine: Machine) -> Iterator[Note]:
     """Of each follower that lifts off at the file's speed, a preload that holds it there.
 
-    Contact forces are linear in the preload of a spring, so that one more analysis tells how much
-    of it each crank angle needs.  Of the springs with which no follower lifts off that was held
-    before, the one that needs the least change is named; none where there is no such spring.
+    Contact forces are linear in the preload of a spring, so that one more analysis gives the
+    preload that each crank angle needs.  Of the springs with which no follower lifts off that was
+    held before, the one that needs the least change is named; none where there is no such spring.
     """
     if not machine.cams or massless(machine):
         return
@@ -127,4 +127,4 @@ def _needed(present: Forces, cam: Cam, number: int) -> float:
 def lost_contacts(forces: Forces) -> tuple[Note, ...]:
     """Where springs do not keep followers on their cams, at the speed analysed."""
     sprung = any(forces.motion.machine.force_elements)
-    return tuple(lost_told(item, sprung) for item in let_go(forces) if item.ranges)
+    return tuple(lift_off_note(item, sprung) for item in let_go(forces) if item.ranges)

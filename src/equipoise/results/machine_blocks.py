@@ -85,13 +85,13 @@ def span(motion: Motion, values: Array, scale: float = 0.0) -> Span:
 
 
 def place(xy: tuple[float, ...], unit: Display) -> str:
-    """A place without its unit."""
+    """Coordinates of a point, given in m, as text in a unit, without the unit's name."""
     scale = max(map(abs, xy))
     return coordinates(unit.text(part, scale) for part in xy)
 
 
-def place_told(xy: tuple[float, ...]) -> str:
-    """A place as a sentence has it: ``(12.00, 0) mm``."""
+def point_text(xy: tuple[float, ...]) -> str:
+    """Coordinates of a point, given in m, with their unit: ``(12.00, 0) mm``."""
     unit = display("length", xy)
     return unit.with_unit(f"({place(xy, unit)})")
 
@@ -268,8 +268,8 @@ def _support(machine: Machine) -> Iterator[str]:
 # -- motion ----------------------------------------------------------------------------------------
 
 
-def angles_told(analysis: Analysis) -> str:
-    """How many crank angles there are, and when everything repeats."""
+def crank_angles_text(analysis: Analysis) -> str:
+    """Number of crank angles of an analysis, and turns after which the motion repeats."""
     motion = analysis.motion
     count = len(motion.crank_angle)
     if not motion.whole_cycle:
@@ -349,13 +349,13 @@ def four_bar_facts(four_bar: FourBar) -> Iterator[str]:
 
 
 def driven(machine: Machine, speed: float) -> str:
-    """How the drive runs."""
+    """Law and speed of all drives as a sentence; `speed` is that of the crank, rad/s."""
     drive = machine.drive
     law = drive.stroke or drive.motion
     if machine.drives and machine.only_swings:
         return say(
             "{drives}, {rate} cycles a minute",
-            drives=say(", ").join(map(drive_told, machine.driven)),
+            drives=say(", ").join(map(drive_law_text, machine.driven)),
             rate=number(machine.cycles_per_minute(speed)),
         )
     if machine.drives or (law is not None and law.windings):
@@ -363,13 +363,13 @@ def driven(machine: Machine, speed: float) -> str:
             "crank angle at {speed} rpm ({rate} rad/s): {drives}",
             speed=number(speed / PER_RPM),
             rate=number(speed),
-            drives=say(", ").join(map(drive_told, machine.driven)),
+            drives=say(", ").join(map(drive_law_text, machine.driven)),
         )
     if law is not None:
         return say(
             "{what} from {low} to {high} and back, {rate} cycles a minute",
             what=pushed_named(drive) if drive.pushes else drive.link,
-            **told_between(law),
+            **law_range_texts(law),
             rate=number(machine.cycles_per_minute(speed)),
         )
     return say(
@@ -381,7 +381,7 @@ def driven(machine: Machine, speed: float) -> str:
 
 
 def drives_table(analysis: Analysis) -> Iterator[Table]:
-    """What each drive does in a cycle, where there is more to it than one crank."""
+    """Work of each drive in a cycle; no table where one crank drives the machine."""
     if not analysis.machine.has_crank and analysis.motion.whole_cycle:
         columns = (say("drive"), Column(say("work"), "energy"))
         forces = analysis.resolved.forces
@@ -390,10 +390,10 @@ def drives_table(analysis: Analysis) -> Iterator[Table]:
         yield Table.of(say("Work of the drives in a cycle"), columns, work)
 
 
-def drive_told(drive: Drive | FurtherDrive) -> str:
-    """How a driven link goes with the crank angle."""
+def drive_law_text(drive: Drive | FurtherDrive) -> str:
+    """Motion of a driven link over the crank angle: its stroke, ratio or law, as a phrase."""
     if drive.stroke is not None:
-        ends = told_between(drive.stroke)
+        ends = law_range_texts(drive.stroke)
         return say("{what} goes from {low} to {high} and back", what=pushed_named(drive), **ends)
     if drive.motion is None:
         ratio = number(getattr(drive, "ratio", 1.0))
@@ -404,15 +404,15 @@ def drive_told(drive: Drive | FurtherDrive) -> str:
     return say("{link} moves from {low} to {high} by a law", link=drive.link, low=low, high=high)
 
 
-def told_between(law: Law) -> dict[str, str]:
-    """The ends of a law's range, the unit behind the second."""
+def law_range_texts(law: Law) -> dict[str, str]:
+    """Extremes of a law as texts `low` and `high`; the unit follows the second alone."""
     low, high = law.extremes
     unit = display(law.dimension, [low, high])
     return {"low": unit.text(low), "high": unit.with_unit(unit.text(high))}
 
 
 def pushed_named(drive: Drive | FurtherDrive) -> str:
-    """What pushes, in words."""
+    """Name of the cylinder or sliding joint that pushes, in the language that is spoken."""
     return said(pushing(drive))
 
 

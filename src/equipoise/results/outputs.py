@@ -171,7 +171,7 @@ class AnalysisOutputs:
 
     @property
     def arrays(self) -> list[AnalysisOutput]:
-        """Outputs that stand among the arrays; the size of a vector is told by its components."""
+        """Outputs among the arrays; a vector is listed by components alone, as its size follows."""
         return self._where(lambda declared: declared.array)
 
     @property
@@ -312,7 +312,7 @@ FIGURES = MEASURES | {
     "max": to_say("largest"),
     "min": to_say("smallest"),
 }
-"""What is told of an output by the last word of its path."""
+"""Last word of the path of a figure -> name of that statistic of the output."""
 CAUSES = {
     "translation": to_say("inertia of the centres of mass"),
     "rotation": to_say("inertia of rotation"),
@@ -366,7 +366,7 @@ def objective_named(objective: Objective, rows: int = 1, measured: bool = True) 
 
 
 def unit_of_measure(output: str, measure: str) -> str:
-    """SI unit of a figure that is told before and after."""
+    """SI unit of a figure that is compared before and after balancing."""
     return "J" if measure == "area" else unit_of(output)
 
 

@@ -9,7 +9,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.dynamics.assessment import joint_remarks, mass_remarks, questions
 from equipoise.mechanism.dynamics.forces import Forces
-from equipoise.mechanism.dynamics.reactions import idle_told
+from equipoise.mechanism.dynamics.reactions import idle_teeth_notes
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
@@ -57,7 +57,7 @@ KINDS = (
     RemarkKind("joints", of_linkage=joint_remarks),
     RemarkKind(
         "joints",
-        lambda analysis: idle_told(analysis.motion.linkage, analysis.forces.solved.state),
+        lambda analysis: idle_teeth_notes(analysis.motion.linkage, analysis.forces.solved.state),
         of_forces=True,
     ),
     RemarkKind("end", of_linkage=questions),

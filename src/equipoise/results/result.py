@@ -180,8 +180,8 @@ Along = tuple[tuple[str, ...], Array]
 
 ABSCISSAE = {"time": "s", "crank_angle": "rad", "speed": "rad/s", "places": "m"}
 ABSCISSAE |= {"orders": "", "values": ""}
-"""What arrays are told along, and its SI unit; the first of them that an array has beside it, or
-beside what it stands in."""
+"""Name of an abscissa of arrays -> its SI unit.  An array has the first of these that is an
+attribute of its own object, or else of the object that contains that."""
 
 
 class Result(Displayed):
@@ -193,13 +193,13 @@ class Result(Displayed):
 
     @property
     def owner(self) -> Any:
-        """The machine, tool or study that it tells of; None where it is of neither."""
+        """The machine, tool or study of this result; None where it belongs to neither."""
         owners = (getattr(self, name, None) for name in ("machine", "original", "tool", "study"))
         return next((owner for owner in owners if owner is not None), None)
 
     @property
     def title(self) -> str:
-        """Of the machine, tool or study that it tells of."""
+        """Title of the machine, tool or study of this result; empty where it belongs to neither."""
         return "" if self.owner is None else str(self.owner.title)
 
     def in_own_units(self) -> AbstractContextManager[None]:
@@ -231,17 +231,17 @@ class Result(Displayed):
         return [*{column[0]: column for column in result}.values()]  # parts share an abscissa
 
     blocks_in: ClassVar[str]
-    """Module and function that tell what it shows, such as ``vibration.blocks.response_blocks``."""
+    """Module and function of its blocks, such as ``vibration.blocks.response_blocks``."""
 
     def blocks(self, **options: Any) -> Sequence[Block]:
-        """What it shows, in the language that is spoken."""
+        """Its tables, sentences and notes, in the language that is spoken."""
         with self.in_own_units():
             own = _function(self.blocks_in)(self, **options)
             return (*own, *figures_of(self, self.declared))
 
     headline_in: ClassVar[str] = ""
-    """Module and function that tell what stands first of it, such as
-    ``results.headline.analysis_headline``; none where its blocks begin with it.
+    """Module and function of the blocks that come first, such as
+    ``results.headline.analysis_headline``; empty where its other blocks begin with the verdict.
     """
 
     def headline(self, alone: bool = False, **options: Any) -> Sequence[Block]:
@@ -285,9 +285,9 @@ class Result(Displayed):
         """The columns of its CSV file where it has one, over the first of them, by name and SI unit
         such as ``drive_torque [N m]``; loads pandas.
 
-        Else a row for each of its records, or for each place along what all is told along, with
-        columns by dotted path, those of a table (N, K) by its path and a number.  What is told
-        along nothing gives one row.
+        Else a row for each of its records, or for each sample of the common abscissa, with
+        columns by dotted path, those of a table (N, K) by its path and a number.  A result without
+        an abscissa gives one row.
         """
         import pandas
 

@@ -230,8 +230,8 @@ def assess(
     """Figures of a machine against their yardsticks, the largest first.
 
     Of each family, such as all joints, the largest member alone; of several rows the figures of
-    all rows together.  A machine without masses has only what its motion tells; one without any
-    yardstick an empty tuple.
+    all rows together.  A machine without masses has figures of motion alone; the tuple is empty
+    where no figure has a yardstick.
 
     Parameters
     ----------
@@ -319,7 +319,7 @@ def contact_sentence(entry: FigureAssessment) -> str:
 def sentence(entry: FigureAssessment, crank_turns: bool = True) -> str:
     """The figure beside its yardstick, in the language that is spoken; without a point.
 
-    crank_turns : of the machine; without, where it is so large is told as an angle of the cycle.
+    crank_turns : whether the machine's crank turns; if not, a position is an angle of the cycle.
     """
     is_beside = entry.dimension in ANGLES_AND_SPEEDS or entry.is_limit
     both = [entry.value, entry.yardstick] if is_beside else [entry.value]
@@ -355,7 +355,7 @@ FEW = 0.1
 def _is_of_one_row_or_drive(output: AnalysisOutput) -> bool:
     """Whether all rows together, or the drives one by one, have the same output."""
     machine = output.analysis.machine
-    one_of_drives = bool(machine.told_drives) and output.name == machine.drive.effort
+    one_of_drives = bool(machine.listed_drives) and output.name == machine.drive.effort
     return one_of_drives or f"rows.{output.name}" in output.analysis.outputs
 
 

@@ -27,7 +27,7 @@ def load(path_or_name: str | os.PathLike[str]) -> Any:
     Returns
     -------
     Machine, Tool or Study
-        In SI units and radians.  What tells no kind is read as the file of a linkage.
+        In SI units and radians.  A file of no recognizable kind is read as that of a linkage.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def dumps(model: Machine | Tool | Study) -> str:
     Raises
     ------
     ModelError
-        Something has no file name, or a section has what no file can tell.
+        Something has no file name, or a section has what no file can represent.
     """
     if isinstance(model, Frozen):
         return dumped(model)
@@ -89,7 +89,7 @@ def save(model: Machine | Tool | Study, path: str | os.PathLike[str]) -> None:
     UsageError
         The file cannot be written; says why.
     ModelError
-        A section has what no file can tell.
+        A section has what no file can represent.
     """
     if isinstance(model, Frozen):
         save_model(model, Path(path))

@@ -1,7 +1,7 @@
 """Tables of a file that are added, changed and deleted, such as one spring or one mount.
 
-All is done to the content of the file, as plain values, so that the reader of files tells what is
-wrong.  The number after the last one of a list, such as ``springs[3]`` where there are two, is
+All is done to the content of the file, as plain values, so that the reader of files reports
+errors.  The number after the last one of a list, such as ``springs[3]`` where there are two, is
 that of a new entry.
 """
 

@@ -307,7 +307,7 @@ def unit_of(given: str) -> str:
 
 
 def handy(dimension: Dimension) -> str:
-    """Unit in which quantities of a dimension are usually told."""
+    """Customary unit of quantities of a dimension."""
     return KINDS[dimension].printed[0]
 
 
@@ -380,9 +380,9 @@ def words_of(
 ) -> Note | None:
     """The number that stands at a place in words; None where its keys have none.
 
-    Of a point on the x axis of a body, or told by its distance, it is the length from the point in
+    Of a point on the x axis of a body, or given by its distance, it is the length from the point in
     the origin of that body, where there is one, and the other coordinate is not among the `others`
-    beside which it is told.
+    beside which it is named.
 
     known : how many tables on the way to it, from the top, are named by a heading, so that the
         words leave them out.
@@ -399,7 +399,7 @@ def words_of(
         alone = isinstance(layer.key.kind, KeyTable)
         if not layer.called and not (alone and above):
             return None
-        if not (alone and above):  # a table tells what stands in it, not what is further down
+        if not (alone and above):  # a table names its own keys, not those of tables in it
             what = Note(layer.called, **layer.names, what=what)
     for part in () if length else (_number(last), location.part or last.names.get("part")):
         if part:

@@ -223,7 +223,7 @@ def _plain(value: Any) -> Any:
 def to_csv(analysis: Analysis, outputs: Iterable[str] = ()) -> str:
     """Every array against crank angle, one row a crank angle; units stand in the header.
 
-    outputs : names of those that are told instead.
+    outputs : names of the outputs to write instead.
     """
     ones = analysis.outputs.chosen(outputs) or analysis.outputs.arrays
     values = [(item.name, item.unit, item.values) for item in ones]

@@ -63,8 +63,8 @@ def loads_tool(text: str, source: str = "<text>", folder: Folder = None) -> Tool
 def machine_of(content: Mapping[str, Any], reader: AdjacentFiles) -> Machine:
     """The machine of the content of a file; `reader` gets its tables by their files' names.
 
-    The table [balance] is read when the machine is there, which tells what outputs are measured
-    in; few files have it, and its modules take time to import.
+    The table [balance] is read when the machine is there, which has the dimensions of
+    outputs; few files have it, and its modules take time to import.
     """
     balance = content.get("balance")
     rest = {name: value for name, value in content.items() if name != "balance"}
@@ -108,7 +108,7 @@ def _limit(machine: Machine, given: dict[str, Any]) -> Any:
             share = parse_share(text) if key == "at_most" else None
             if share is not None:
                 return Limit(objective, ratio=share)
-            # Only an output that there is tells what unit is wanted.
+            # The unit follows only from an output that exists.
             for wrong in wrong_limit("", Limit(objective, asks=((key, 1.0),)), machine):
                 raise ModelError(wrong.where.removeprefix("."), wrong.what)
             quantity = quantity_of(objective, machine)
@@ -224,7 +224,7 @@ def plain_of(model: Machine | Tool, names: Mapping[str, str]) -> dict[str, Any]:
 
     Raises
     ------
-    ModelError : a tool has what no file can tell.
+    ModelError : a tool has what no file can represent.
     """
     makers: dict[type[Frozen], Callable[[Any], dict[str, Any]]] = {}
     if isinstance(model, Machine) and model.balance is not None:
@@ -258,7 +258,7 @@ def dumped(model: Machine | Tool) -> str:
 
     Raises
     ------
-    ModelError : something has no file name, or a section has what no file can tell.
+    ModelError : something has no file name, or a section has what no file can represent.
     """
     parts = parts_of(model)
     of_tool = not isinstance(model, Machine)
@@ -288,7 +288,7 @@ def taken_along(model: Machine | Tool, name: str) -> tuple[str, dict[str, str]]:
 
     Raises
     ------
-    ModelError : a linkage of a tool has no file, or a section has what no file can tell.
+    ModelError : a linkage of a tool has no file, or a section has what no file can represent.
     """
     from equipoise.schema.tables import format_table
 

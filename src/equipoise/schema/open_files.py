@@ -182,7 +182,7 @@ TABLES: dict[FileKind, set[str]] = {
     "tool": {"shaft"},
     "study": {"model", "outputs", "sampling"},
 }
-"""Tables and keys that tell what a file is of."""
+"""Kind of file -> tables and keys by which it is recognized."""
 OTHERS: dict[FileKind, str] = {
     "linkage": "the file of a linkage, without a table [shaft]; use `equipoise analyze FILE`",
     "tool": "the file of a tool, with a table [shaft]; use `equipoise tool FILE`",
@@ -294,7 +294,7 @@ def _file_meant(name: str) -> Note | None:
 
 
 def kind_of(content: Mapping[str, Any]) -> FileKind | None:
-    """What a file is of, by its tables; None where they do not tell."""
+    """Kind of a file by its tables; None where these belong to no kind or to several."""
     kinds = [kind for kind, tables in TABLES.items() if tables & content.keys()]
     return kinds[0] if len(kinds) == 1 else None
 

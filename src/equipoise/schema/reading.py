@@ -1,8 +1,8 @@
 """From the content of a file to values, and what has been found wrong on the way.
 
 A file is read in two steps.  First every value is read for itself, and whatever is wrong is
-gathered: the first problem is told, with the number of the others.  Then the objects are made, from
-the inside out, with what lies in files beside; what does not go together is told at once.
+gathered: the first problem is reported, with the number of the others.  Then the objects are made,
+from the inside out, with what lies in files beside; what does not go together is reported at once.
 """
 
 from __future__ import annotations

@@ -190,7 +190,7 @@ def _spectrum(text: str, names: list[str]) -> Accelerations:
 def _axes(
     text: str, first: str, names: list[str], taken: Taken = None
 ) -> tuple[tuple[str, ...], dict[str, Array]]:
-    """Axes that a file has, and its columns; one that has none is told of all three."""
+    """Axes that a file has, and its columns; the error of a file without axes names all three."""
     axes = tuple(axis for axis in AXES if axis in names) or AXES
     return axes, arrays_of(text, ((first, *axes),), taken)
 

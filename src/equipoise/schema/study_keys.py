@@ -1,4 +1,4 @@
-"""Keys of study files; values come through as they are, for what varies tells what they measure."""
+"""Keys of study files; values come through as they are, since their dimension is that of a path."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ VALUE = Anything(
         "examples": ["60 mm"],
     }
 )
-"""Number and unit in quotes, or a plain number: which, is told by what it is a value of."""
+"""Number and unit in quotes, or a plain number, by the dimension of what it is a value of."""
 LIMITS = Listing(VALUE, (2,), Note('two limits, such as ["60 mm", "80 mm"]'))
 ANY_WHOLE = Whole(most=10**18)
 PATHS = Listing(TextKind(), (2,), Note("a list of two paths"))

@@ -39,7 +39,7 @@ def resume(
 ) -> Store:
     """Compute what is missing in a store; the same bytes as if nothing had ever stopped.
 
-    Where nothing is missing, nothing is done but telling the progress.
+    Where nothing is missing, nothing is done but to report progress.
 
     Parameters
     ----------
@@ -113,10 +113,10 @@ def unit_named(name: str) -> Unit:
 
 
 def units_of(study: Study) -> dict[str, Unit]:
-    """How each number and output is told, by its name: in which unit, and what it is called.
+    """Display unit and label of each number and output, by name.
 
-    Units that are chosen go first.  Else numbers are told in the unit in which the model file gives
-    them, figures in the one in which the study limits them, and else in one that is usual.
+    Units that are chosen go first.  Else a number has the unit of the model file, a figure that of
+    its limit in the study, and else the customary unit of its dimension.
     """
     given = _given(study.file)
     numbers = {item.path: unit_named(_of_number(study, item)) for item in study.vary}

@@ -1,7 +1,7 @@
 """CSV files with units in the header: tables of loads, laws, soil, a motor and implements.
 
-Everything is told by the file itself: the separator by its header, the decimal sign by its numbers.
-What may be read in two ways is refused with both.
+The format is detected from the file: the separator from its header, the decimal sign from its
+numbers.  What may be read in two ways is refused with both.
 
 ::
 
@@ -40,7 +40,7 @@ from equipoise.quantities import (
     parse,
     plain_unit,
 )
-from equipoise.quantities.reading import DECIMAL_COMMA, readings, separators_told, usual_unit
+from equipoise.quantities.reading import DECIMAL_COMMA, readings, separators_note, usual_unit
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import from_polar
 
@@ -306,8 +306,8 @@ def columns_of(text: str, forms: Forms, taken: Taken = None) -> Columns:
 
 
 def arrays_of(text: str, forms: Forms, taken: Taken = None) -> dict[str, Array]:
-    """Columns of a table as arrays (N,), for files of a million rows: cell by cell only to tell a
-    mistake.
+    """Columns of a table as arrays (N,), for files of a million rows: cell by cell only to locate
+    an error.
     """
     import numpy as np
 
@@ -395,7 +395,7 @@ def value_of(line: int, name: str, unit: str, cell: str, forms: Forms = ()) -> f
     except UsageError as error:
         if _is_number(cell):
             raise wrong(line, error.note, name) from error
-        right = separators_told(cell) or Note("give a finite number with a decimal point")
+        right = separators_note(cell) or Note("give a finite number with a decimal point")
         what = Note("got {given}; {right}", given=shortened(cell), right=right)
         raise wrong(line, what, name) from error
 

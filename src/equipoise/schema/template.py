@@ -64,7 +64,7 @@ class Template:
 
     Raises
     ------
-    ModelError : the model file is wrong, as `equipoise.load` and `equipoise.load_tool` tell it.
+    ModelError : the model file is wrong; same errors as `equipoise.load` and `load_tool`.
     """
 
     def __init__(
@@ -99,7 +99,7 @@ class Template:
 
         Raises
         ------
-        ModelError : a tool has what no file can tell.
+        ModelError : a tool has what no file can represent.
         """
         names, known = named_parts(model)
         return cls(text_of(model, names), model.title, known=known)
@@ -148,7 +148,7 @@ class Template:
     def words(self, path: str, others: Collection[str] = (), known: int = 0) -> Note | str:
         """A number of the file in words, such as ``mass of the crank``; its path where it has none.
 
-        others : paths of the numbers beside which it is told.
+        others : paths of the numbers beside which it is named.
         known : how many tables of its path, from the top, a heading names already.
 
         Raises

@@ -82,7 +82,7 @@ class Writer:
 
 
 def _given(to_table: Callable[[Any], dict[str, Any]], value: Any, place: KeyPath) -> dict[str, Any]:
-    """What the file says of an object; errors tell its place."""
+    """Table of an object in the file; errors name its place."""
     try:
         return to_table(value)
     except ModelError as error:

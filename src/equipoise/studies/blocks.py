@@ -32,14 +32,14 @@ if TYPE_CHECKING:
 Array = np.ndarray[Any, Any]
 
 MOST = 20
-"""Designs of a front that are told."""
+"""Designs of a front at most that are listed."""
 MOST_CHOICES = 5
-"""Values of a list that are told."""
+"""Values of a list at most that are listed."""
 
 
 @dataclass(frozen=True)
 class Unit:
-    """How a number or a figure of a study is told: its unit, SI where no other is known, and words.
+    """Display unit, SI where no other is known, and label of a number or a figure of a study.
 
     name : nothing of a plain number.
     factor : of it, in SI units.
@@ -64,7 +64,7 @@ Units = Mapping[str, Unit]
 
 
 def unit_in(units: Units | None, name: str) -> Unit:
-    """How a number or figure is told; by its path or name, in SI units, where nothing is known."""
+    """Unit and label of a number or figure; SI and its path or name, where nothing is known."""
     result = (units or {}).get(name, Unit())
     return result if result.label else replace(result, label=name)
 
@@ -97,7 +97,7 @@ def labelled(unit: Unit) -> str:
     return say(", ").join(filter(None, (unit.called, unit.name)))
 
 
-def spread_told(spread: Spread, unit: Unit) -> str:
+def spread_text(spread: Spread, unit: Unit) -> str:
     """How a number varies, such as ``60.00 to 80.00`` or ``71.50 +- 0.2000``, without its unit."""
 
     def formatted(value: float) -> str:
@@ -440,7 +440,7 @@ def _causes(tolerances: Tolerances, units: Units | None) -> Table:
     for cause in tolerances.causes:
         shares = (cause.halved, cause.removed) if has_unchanged else ()
         cells = (None if share is None else Value(100 * share, after=digits) for share in shares)
-        given = "; ".join(tolerance_told(tolerances, path, units) for path in cause.numbers)
+        given = "; ".join(tolerance_text(tolerances, path, units) for path in cause.numbers)
         gain = Value(100 * cause.gain, after=1)
         rows.append((named_together(cause.numbers, units), given, gain, *cells))
     texts = [say("variance less by")]
@@ -453,8 +453,8 @@ def _causes(tolerances: Tolerances, units: Units | None) -> Table:
     return Table(title, columns, tuple(rows))
 
 
-def tolerance_told(tolerances: Tolerances, path: str, units: Units | None) -> str:
-    """A tolerance as one says it: ``+- 0.1000 mm`` or ``deviation 2.000 g``."""
+def tolerance_text(tolerances: Tolerances, path: str, units: Units | None) -> str:
+    """A tolerance as text: ``+- 0.1000 mm`` or ``deviation 2.000 g``."""
     unit = unit_in(units, path)
     (spread,) = (item.spread for item in tolerances.study.vary if item.path == path)
     if isinstance(spread, Uniform):

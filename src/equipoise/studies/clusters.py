@@ -60,7 +60,7 @@ class Cluster(Pool):
         return future
 
     def look(self) -> None:
-        with suppress(SilentError):  # if it has gone for good, the chunks under way will tell
+        with suppress(SilentError):  # if it has gone for good, the chunks under way fail
             self._counted()
 
     def _counted(self) -> int:
@@ -137,7 +137,7 @@ class Call:
     """A function and its arguments; reading it from its bytes calls it.
 
     What Dask cannot read ends a worker.  It can read bytes, wherever nothing else is installed, and
-    whatever goes wrong then is told.
+    errors after that are reported.
     """
 
     function: Callable[..., Any]
@@ -168,7 +168,7 @@ def _compute(
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep the libraries from writing about what is told in a sentence."""
+    """Keep the libraries from logging what an error reports in a sentence."""
     levels = {log: log.level for log in map(logging.getLogger, LOGS)}
     for log in levels:
         log.setLevel(logging.CRITICAL + 1)

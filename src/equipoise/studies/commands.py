@@ -112,7 +112,7 @@ def read(values: Values, steps: Sequence[Step]) -> float:
 
 
 def figure_name(steps: Sequence[Step]) -> Any:
-    """What is told last, such as ``rms``."""
+    """Name of the last step, such as ``rms``."""
     return steps[-1].name if isinstance(steps[-1], Of) else steps[-1]
 
 
@@ -397,7 +397,7 @@ def analyzed(
 ) -> Values:
     """`equipoise analyze`, with ``--split`` and ``--orders`` where their keys are wanted.
 
-    ways : to figures, of whose outputs alone arrays and summary are told; None for all outputs.
+    ways : to figures, whose outputs alone are in arrays and summary; None for all outputs.
     """
     from equipoise.results.analysis import LEAST_ANGLES, analyze, order_values
     from equipoise.results.outputs import NAMED_FIGURES
@@ -609,7 +609,7 @@ def _steps(
     values = _values(study, model, command, begins)
     try:
         return tuple(_resolved(study, values, output) for output in asked.values())
-    except UsageError:  # told again with all that there is
+    except UsageError:  # raised again with the names of all that there is
         values = _values(study, model, command, None)
     steps = []
     for number, output in asked.items():

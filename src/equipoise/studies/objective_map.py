@@ -2,7 +2,7 @@
 
 The machines are those of the model with some of its numbers changed, counterweights among them.
 Where two of them differ in masses alone, every output is linear in the inertial parameters of the
-links, so that one of them tells all.
+links, so that one of them determines all.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ MOST = 1_000
 CLOSE = 1e-7
 """Share of the ranges to which the best place is found."""
 LINEAR_AT_ONCE = 65_536
-"""Machines that differ in masses, after which the progress is told."""
+"""Machines that differ in masses, after which progress is reported."""
 AT_ONCE = 128
 """Machines whose signals are computed at a time, so that these stay in the processor's cache."""
 COUNTERWEIGHT = re.compile(r"counterweights\.(?P<link>.+)\.(?P<key>mass|radius|direction)")
@@ -67,8 +67,10 @@ KEYS = {"mass": "mass", "radius": "length", "direction": "angle"}
 """Numbers of a counterweight, which no file has, and what they are."""
 
 
-def told_as(model: Model, path: str, others: Collection[str] = ()) -> tuple[str | None, Note | str]:
-    """Dimension of a number of the model or of a counterweight, None of a plain one; its words.
+def number_description(
+    model: Model, path: str, others: Collection[str] = ()
+) -> tuple[str | None, Note | str]:
+    """Dimension (None if dimensionless) and name of a number of the model or of a counterweight.
 
     Raises
     ------
@@ -374,7 +376,7 @@ def landscape(
     ----------
     model : such as ``Template.load("yamashita-1")``.
     over : two paths with their rising values, SI units and radians; the first is drawn along x.
-    of : what is told, such as ``Objective("shaking_force.y", "ripple")``.
+    of : the figure, such as ``Objective("shaking_force.y", "ripple")``.
     given : other numbers to set first, by path.
     progress : called with how many machines are analysed, and how many there are.
     workers : processes that analyse machines one by one, where that takes more than some seconds;
@@ -394,9 +396,9 @@ def landscape(
     linkage_of(model.base())
     given = dict(given or {})
     paths, columns = _checked(over, given)
-    told_ases = {path: told_as(model, path, paths) for path in (*paths, *given)}
-    dimensions = {path: kind for path, (kind, _) in told_ases.items()}
-    words = {path: item for path, (_, item) in told_ases.items()}
+    descriptions = {path: number_description(model, path, paths) for path in (*paths, *given)}
+    dimensions = {path: kind for path, (kind, _) in descriptions.items()}
+    words = {path: item for path, (_, item) in descriptions.items()}
     maker = MachineVariants(model, given)
     base = maker.machine({})
     if missing := massless(base):
@@ -439,7 +441,7 @@ def _computed(
     others: Callable[[ChunkTask], Pool] | None,
 ) -> Array:
     """The objective (P,) at points (P, 2); what is analysed one by one is shared out."""
-    tell = None if progress is None else lambda done: progress(done, len(points))
+    report = None if progress is None else lambda done: progress(done, len(points))
     linear = isinstance(value, LinearValues)
     make = partial(_itself, value)
     if linear:
@@ -448,12 +450,12 @@ def _computed(
         value, make, np.concatenate, workers, shared=not linear, elsewhere=others
     ) as evaluate:
         if not linear:
-            return evaluate(points, tell)
+            return evaluate(points, report)
         result = []
         for k in range(0, len(points), LINEAR_AT_ONCE):
             result.append(evaluate(points[k : k + LINEAR_AT_ONCE]))
-            if tell is not None:
-                tell(min(k + LINEAR_AT_ONCE, len(points)))
+            if report is not None:
+                report(min(k + LINEAR_AT_ONCE, len(points)))
         return np.concatenate(result)
 
 

@@ -89,7 +89,7 @@ def feasible(outputs: Sequence[Output], figures: Array) -> Array:
     )
 
 
-def designs_told(
+def design_records(
     numbers: Sequence[str], values: Array, outputs: Sequence[str], figures: Array
 ) -> list[dict[str, Any]]:
     """Designs (K), each with its values (K, d) of numbers and figures (K, m) of outputs by name."""

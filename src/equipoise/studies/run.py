@@ -71,7 +71,7 @@ def sweep(
     workers : threads or processes on this machine; as many as it has processors if not given.
     cluster : address of a Dask scheduler whose workers compute instead, such as
         ``tcp://192.168.0.7:8786``.
-    progress : is told how far it is.
+    progress : called with the progress.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def resume(
 ) -> Store:
     """Compute what is missing in a store; the same bytes as if nothing had ever stopped.
 
-    Where nothing is missing, nothing is done but telling the progress.
+    Where nothing is missing, nothing is done but to report progress.
 
     Parameters
     ----------
@@ -141,13 +141,13 @@ def _fill(
     """Compute and store what is missing or damaged."""
     with store.writing():
         tally, missing = _counted(store, study)
-        tell = progress or (lambda _: None)
-        tell(tally.progress())
+        report = progress or (lambda _: None)
+        report(tally.progress())
         try:
             for designs, block in runner.each(map(store.designs, missing)):
                 _store(store, designs, block)
                 tally.add(block, computed=True)
-                tell(tally.progress())
+                report(tally.progress())
         except StoppedError as error:
             raise UsageError(
                 at_place(

@@ -1,8 +1,8 @@
 """Global search of designs for one or several objectives, generation by generation.
 
 A solver asks for designs, in the places 0 to 1 of each number's range or list; the study's
-evaluator computes a whole generation at once.  What is told in the end is the best of all designs
-that were ever computed, not of the last generation.
+evaluator computes a whole generation at once.  The result is the best of all designs that
+were ever computed, not of the last generation.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from equipoise.studies.outcomes import (
     Evaluator,
     Hypervolumes,
     Outcome,
-    designs_told,
+    design_records,
     failures,
     far_apart,
     feasible,
@@ -71,7 +71,7 @@ VIOLATIONS[[NO_MACHINE, NO_ASSEMBLY, NO_FULL_TURN]] *= (4.0, 3.0, 2.0)
 class Searched(Result):
     """Result of a search: K designs that keep every limit and that no other beats in everything.
 
-    front : number of all such designs; of more than a population some that lie far apart are told.
+    front : number of all such designs; of more than a population some far apart are listed.
     objectives : output -> ``smallest`` or ``largest``.
     values : (K, d).  figures : (K, m).  SI units, in the order of the first objective.
     computed : number of different designs; failures : of these by reason; tried : all of them.
@@ -120,7 +120,7 @@ class Searched(Result):
             "computed": self.computed,
             "failures": dict(self.failures),
             "volumes": [None if isnan(volume) else volume for volume in self.volumes.tolist()],
-            "designs": designs_told(study.paths, self.values, study.names, self.figures),
+            "designs": design_records(study.paths, self.values, study.names, self.figures),
         }
 
 

@@ -28,7 +28,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
 from equipoise.studies.outcomes import (
     Block,
-    designs_told,
+    design_records,
     far_apart,
     feasible,
     non_dominated,
@@ -52,7 +52,7 @@ MOST, SOME = 2000, 250
 BINS = 40
 """Along each side of a picture of many."""
 MIDST, DECADES = (5, 95), 30.0
-"""Percentiles of a figure above 0, and their ratio from which it is told by its decades."""
+"""Percentiles of a figure above 0, and their ratio from which its axis is logarithmic."""
 MOST_COLUMNS = 11
 """Stream of random numbers of those designs that are drawn as lines."""
 
@@ -210,7 +210,7 @@ def _counts(
 
 
 COUNT = 10
-"""Designs that are told, if not told otherwise."""
+"""Designs that are listed by default."""
 
 
 class NothingBestError(UsageError):
@@ -234,7 +234,7 @@ class Best(Result):
     by : what makes them the best, and which way; several give a Pareto front.
     designs : (K,) their numbers.  values : (K, d).  figures : (K, m).  SI units.
     numbers, outputs : names of the columns of values and figures.
-    front : number of Pareto-optimal designs, of which K are told; 1 where there
+    front : number of Pareto-optimal designs, of which K are listed; 1 where there
         is one figure to go by, but for others just as good.
     kept, computed, stored : number of designs that keep every limit, that have figures, that are
         stored at all.
@@ -260,7 +260,7 @@ class Best(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
-        values = designs_told(self.numbers, self.values, self.outputs, self.figures)
+        values = design_records(self.numbers, self.values, self.outputs, self.figures)
         numbered = zip(self.designs.tolist(), values, strict=True)
         return {
             "by": dict(self.by),
@@ -283,7 +283,7 @@ def best(
 
     Parameters
     ----------
-    count : the most that are told; of a larger front some that lie far from each other.
+    count : the most that are listed; of a larger front some that lie far from each other.
     by : outputs, or varied numbers, to go by instead of the objectives of the study, each
         ``smallest`` or ``largest``; where None, as the study has it, or ``smallest``.
     nearest : where no design keeps every limit, whether to give those that come nearest, by the sum

@@ -440,7 +440,7 @@ def as_usage_error(
 
 
 LONGEST = 200
-"""Signs that are told of what went wrong."""
+"""Characters at most of an error that are kept."""
 
 
 def brief(error: Exception) -> str:

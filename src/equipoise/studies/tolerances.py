@@ -1,10 +1,10 @@
 """What manufacturing tolerances do to the figures of a machine, and shares of the variance.
 
 A and B are two tables of designs that have nothing to do with each other.  A with the columns of
-one cause taken from B tells what that cause does: first order, what it does by itself; total, with
-all that it does together with others (Sobol 2001).  The estimates are (b) and (f) of Table 2 of
-Saltelli et al. 2010.  A once more, with the tolerance of one cause halved or gone, tells what is
-left without it; that is computed, not inferred.
+one cause taken from B gives the effect of that cause: first order, by itself; total, with all its
+interactions with others (Sobol 2001).  The estimates are (b) and (f) of Table 2 of
+Saltelli et al. 2010.  A once more, with the tolerance of one cause halved or gone, gives the
+scatter that is left; that is computed, not inferred.
 
 The scatter of each figure comes from one run over many machines, whose numbers are drawn from their
 tolerances.  Which tolerance causes it comes from a second run of about the same length, see
@@ -44,7 +44,7 @@ TWICE = 7
 DRAWN_AGAIN, BLOCKS = 400, 1024
 """Bootstrap samples, and blocks of rows that are drawn."""
 LEAST_ROWS_OF_SHARES = 16
-"""Designs of A from which shares are told."""
+"""Designs of A from which on shares are estimated."""
 
 
 @dataclass(frozen=True)
@@ -167,9 +167,9 @@ def _drawn_again(terms: Array, seed: int) -> Array:
 
 
 PERCENTILES = (0.1, 1.0, 5.0, 50.0, 95.0, 99.0, 99.9)
-"""Shares of machines, %, below whose figures the table tells of; the middle one is the median."""
+"""Percentiles of the table, %; the middle one is the median."""
 BEYOND = 10
-"""Machines that have to lie beyond a percentile for it to be told."""
+"""Machines that have to lie beyond a percentile for it to be listed."""
 BINS, ROUNDING = 40, 1e-12
 """Of a histogram; share of a figure below which its differences are rounding."""
 
@@ -253,9 +253,9 @@ def share_of(good: Array) -> IntervalEstimate:
 
 
 QUICK = 0.1
-"""Time after which progress is told, s; more machines are computed together if it takes less."""
+"""Time between reports of progress, s; more machines are computed together if these take less."""
 LEAST_ROWS = 32
-"""Rows of A with which causes are told apart."""
+"""Rows of A, at least, by which causes are separated."""
 
 OnProgress = Callable[[int, int], None]
 """Is called with how many machines are computed, and how many there are."""
@@ -284,11 +284,11 @@ class Cause:
 class Tolerances(Result):
     """What the tolerances of a study do.
 
-    designs : machines whose scatter is told.  failures : of these by reason.
+    designs : machines of the scatter.  failures : of these by reason.
     within : share of them that keep every limit; None where there are none.
     scatters : by output.
     causes : what to tighten first comes first.
-    rows : machines in each of the tables by which causes are told apart.
+    rows : machines in each of the tables by which causes are separated.
     unchanged : share of the machines of table A within all limits, beside `halved` and `removed`.
     computed : machines in all.
     """
@@ -344,7 +344,7 @@ def tolerance(
     Parameters
     ----------
     study : varies by normal and uniform tolerances; `sampling.designs` machines are drawn for the
-        scatter, and about as many again to tell the tolerances apart.
+        scatter, and about as many again to separate the tolerances.
     progress : see `OnProgress`.
     compute : computes designs instead of the study's own evaluator.
     workers : processes that compute what no loop does, where that takes more than some seconds; as
@@ -396,7 +396,7 @@ def _tolerances(study: Study, evaluate: Evaluator, progress: OnProgress | None) 
 
 
 def rows_of(designs: int, causes: int) -> int:
-    """Rows of the tables that tell causes apart, with about as many machines as the scatter has."""
+    """Rows of the tables that separate causes, with about as many machines as the scatter has."""
     return int(2 ** ((designs // (2 + 3 * causes)).bit_length() - 1)) if designs else 0
 
 
@@ -437,7 +437,7 @@ def _check(study: Study) -> None:
 
 @dataclass
 class _Run:
-    """Computes machines, and tells how far it is.
+    """Computes machines, and reports progress.
 
     step : machines that are computed together; twice as many while that is quick, up to `most`.
     """

@@ -27,7 +27,7 @@ class Surroundings:
 
     machine : makes the whole machine, which a sketch may not be.
     radii : of pins that are drawn to scale, by point, m.
-    travel : tells how far a slider is along its guide, m, at one or at all crank angles.
+    travel : gives the displacement of a slider along its guide, m, at one or at all crank angles.
     """
 
     machine: Callable[[], Machine]

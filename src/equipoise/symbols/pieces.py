@@ -57,7 +57,7 @@ class Piece:
     layer : ``field``, ``support``, ``rows``, ``wheels``, ``guides``, ``stands``, ``links``,
         ``springs``, ``pivots``, ``blocks``, ``riders``, ``joints``, ``tray`` or ``drive``.
     link : whose plate or bar it is, if any.
-    part : ``slider``, or the list of a coupling, and the name of that which it tells.
+    part : ``slider``, or the list of a coupling, and the name of what it shows.
     still : whether it stands on the ground, and not on the support.
     table : key of the list that has the numbers which shape it, of signs of parts.
     """

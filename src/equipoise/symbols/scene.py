@@ -65,7 +65,7 @@ def called(wheels: Sequence[Wheel]) -> str:
 def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) -> Iterator[Wheel]:
     """Gears, pulleys and pinions, of which each has its pin on the carrier.
 
-    angles : of the links in one pose, rad, which tell how curves lie that are no circles.
+    angles : of the links in one pose, rad, which orient curves that are no circles.
     """
     for coupling in joints.couplings:
         wheels = [*coupling.circles(partial(_distance, joints, bodies, coupling))]
@@ -464,7 +464,7 @@ class Scene:
     def spots(self, mark: BodyMark, outermost: bool = False) -> Array:
         """Where corners of a mark are, or of the box around a circle, (n, N) complex, m.
 
-        outermost : whether those farthest out are enough, as many as a picture tells apart.
+        outermost : whether those farthest out are enough, as many as a picture resolves.
         """
         if mark.to:
             return np.array([self.places[mark.point], self.places[mark.to]])

@@ -64,7 +64,7 @@ class BodyMark:
     """A shape that moves with a body, maybe the frame: from a point of that, in the body's axes.
 
     to : another point, to which the shape is stretched instead, along over 1 from the first.
-    part : list and name of what it tells, if a page can have that deleted by it.
+    part : list and name of what it shows, if a page can have that deleted by it.
     table : key of the list that has the numbers which shape it.
     legend : role of what a legend shows of it, and what it calls that.
     """

@@ -56,8 +56,8 @@ TURNED: tuple[Kind, ...] = (
 """Of a gauge's displacement, velocity and acceleration, along a line or about an axis."""
 
 
-def model_told(model: Model) -> str:
-    """Which model answers, and what it stands for."""
+def model_text(model: Model) -> str:
+    """Sentence on the excitation model, and on what it assumes."""
     return say("Vibration by the {model} model: {what}", model=model, what=say(MODELS[model]))
 
 
@@ -84,7 +84,7 @@ def response_blocks(
 ) -> Iterator[Block]:
     """Gauges, orders, mounts and drive; and the gauges by the other models."""
     yield Text(_driven(response))
-    yield Text(model_told(response.model))
+    yield Text(model_text(response.model))
     if response.modes:
         yield modes_table(response.modes)
     yield from _gauges(response)
@@ -355,9 +355,9 @@ def _in_stretches(name: str, values: Array, ends: Ends, kind: Kind) -> tuple[Cel
 
 
 MOST_PEAKS = 6
-"""Peaks that are told of each gauge."""
+"""Peaks at most that are listed for each gauge."""
 MET_ORDERS = (1, 2, 3, 4)
-"""Orders of which the speeds that meet a mode are told."""
+"""Orders whose speeds that meet a mode are listed."""
 CRANK: tuple[Dimension, str] = ("angular speed", "rpm")
 
 # -- over speeds -----------------------------------------------------------------------------------
@@ -375,7 +375,7 @@ def sweep_blocks(sweep: Sweep) -> Iterator[Block]:
             count=len(sweep.speed),
         )
     )
-    yield Text(model_told(sweep.model))
+    yield Text(model_text(sweep.model))
     yield modes_table(sweep.modes)
     if sweep.resonances:
         yield resonances_table(sweep)
@@ -441,8 +441,8 @@ def free_blocks(free: FreeVibration) -> Iterator[Block]:
         yield Text(say("Mass of the linkages: distributed, mean over one turn."))
     else:
         yield Text(say("Mass of the linkages at the drive's pivot."))
-    yield Text(model_told(model))
-    yield Text(_reference_told(free))
+    yield Text(model_text(model))
+    yield Text(_reference_text(free))
     yield modes_table(free.modes)
     yield _met(free)
     title = say("Shapes; displacements in m beside rotations in rad, amplitude and phase")
@@ -454,8 +454,8 @@ def free_blocks(free: FreeVibration) -> Iterator[Block]:
         yield Notes(free.notes)
 
 
-def _reference_told(free: FreeVibration) -> str:
-    """About which point matrices and shapes are."""
+def _reference_text(free: FreeVibration) -> str:
+    """Sentence on the reference point of matrices and mode shapes."""
     shown = display("length", [*free.reference], "mm")
     place = coordinates(shown.text(part, AT_RESONANCE) for part in free.reference)
     support = free.linear.body.support

@@ -70,7 +70,7 @@ class SupportBody:
 
     @cached_property
     def reference(self) -> Array:
-        """The point whose displacement is told, (3,), m."""
+        """The point whose displacement is reported, (3,), m."""
         return np.array(self.support.reference)
 
     def wrench(self, force: Array, point: Any) -> Array:

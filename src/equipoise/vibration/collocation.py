@@ -2,7 +2,7 @@
 
 Between two points of a mesh the solution is a polynomial whose derivative meets the equations at
 Gauss's nodes.  Newton's method condenses every interval to an affine map from its begin to its
-end; their product closes the period and is the monodromy matrix, whose eigenvalues tell whether
+end; their product closes the period and is the monodromy matrix, whose eigenvalues decide whether
 disturbances die out.
 """
 
@@ -161,7 +161,7 @@ def solve(
 
     Returns
     -------
-    Orbit, whose `change` tells whether Newton's method has come to rest.
+    Orbit, whose `change` shows whether Newton's method has converged.
     """
     nodes = nodes_of(points)
     rates = system.rates(nodes.ravel())

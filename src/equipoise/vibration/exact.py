@@ -56,7 +56,7 @@ from equipoise.vibration.steady import (
 STALLING_TURNS = 10
 """Cycles in which a motor has to stall, from the speed of its mean torque, if it does at all."""
 LEANING = 10.0
-"""deg, from which on it is told how far from the drawn position the support has come to rest."""
+"""deg: static rotation of the support from the drawn position, from which on a note reports it."""
 
 
 def solve_exact(
@@ -250,7 +250,7 @@ class ExactSolution:
         return Periodic.of(samples, self.turns)
 
     def response(self, brief: bool = False) -> Response:
-        """Everything that is told of it; `brief` leaves out the joint forces."""
+        """The response of this steady state; `brief` leaves out the joint forces."""
         return Response(
             self.machine,
             "exact",

@@ -216,7 +216,7 @@ def simulate(
     duration : s, or a text such as ``"2 s"``.
     speed : of the crank, rad/s, or a text such as ``"300 rpm"``, which it has at once; with
         `drive` it stands still at first, and the motor brings it up.
-    samples : number of instants that are told; 72 in each turn, and 2000 at least, if None.
+    samples : number of instants of the result; 72 in each turn, and 2000 at least, if None.
 
     Raises
     ------

@@ -129,7 +129,7 @@ def _resonances(response: Response) -> Iterator[str]:
     try:
         linear = Linear.of(response.machine, excitation_model_of(response.model))
         met = resonances(linear, *around(response.machine.drive, response.speed))
-    except EquipoiseError:  # a support that small motion does not describe has none to tell
+    except EquipoiseError:  # without a small-motion description there are no resonances
         return
     if met:
         text = said(resonance_note(met, response.speed))

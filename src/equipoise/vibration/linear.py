@@ -53,7 +53,7 @@ STILL = 1e-7
 
 
 def find_modes(mass: Array, damping: Array, stiffness: Array) -> tuple[Mode, ...]:
-    """Modes of M x'' + C x' + K x = 0, by frequency; overdamped and growing ones are told twice.
+    """Modes of M x'' + C x' + K x = 0, by frequency; overdamped and growing modes count twice.
 
     mass, damping, stiffness : (D, D).
     """
@@ -64,8 +64,8 @@ def find_modes(mass: Array, damping: Array, stiffness: Array) -> tuple[Mode, ...
     system[count:, count:] = -np.linalg.solve(mass, damping)
     values, vectors = np.linalg.eig(system)
     least = STILL * float(np.max(np.abs(values), initial=0.0))
-    # Eigenvectors of a zero that stands twice, for standing and drifting, are one; the stiffness
-    # tells free motions apart.
+    # A double zero eigenvalue, for rest and drift, has a single eigenvector; so free motions are
+    # taken from the null space of the stiffness.
     _, sizes, shapes = svd(stiffness)
     free = sizes <= STILL**2 * np.max(sizes, initial=0.0)
     modes = [Mode(0j, _scaled(shape)) for shape in shapes[free].astype(complex)]
@@ -469,7 +469,7 @@ class Linear:
         return values
 
     def _resonant(self, impedance: Array, frequency: Array) -> bool:
-        """Whether an order meets a mode that nothing damps, as near as rounding tells."""
+        """Whether an order meets an undamped mode, up to rounding."""
         inertia = frequency[:, None] ** 2 * np.diagonal(self.mass)
         size = np.abs(np.diagonal(self.stiffness)) + inertia
         size[0] = 1.0
@@ -505,7 +505,7 @@ def gauges_of(body: SupportBody) -> dict[str, Gauge]:
 
 
 QUIET = 1e-3
-"""Share of the loudest resonance at every gauge below which one is not told."""
+"""Share of the loudest resonance at every gauge below which a resonance is not listed."""
 LOUD = 0.1
 """Share of the loudest resonance from which one matters to whoever chooses a speed."""
 LEAST_DAMPING = 1e-4
@@ -624,7 +624,7 @@ def warned(linear: Linear, speed: float) -> tuple[Note, ...]:
     """Warning of a resonance of a machine whose crank turns at a speed, rad/s."""
     turns = linear.excitation.motion.turns
     meets = False
-    for mode in linear.modes:  # told apart first by modes alone, which takes no time
+    for mode in linear.modes:  # modes alone are tested first, which takes no time
         order = max(1, round(mode.natural_frequency / abs(speed) * turns)) / turns
         low, high = _avoid(mode.natural_frequency / order, mode) or (0.0, 0.0)
         meets = meets or low <= abs(speed) <= high

@@ -49,7 +49,7 @@ from equipoise.vibration.body import PITCH
 
 @dataclass(frozen=True, eq=False)
 class ReducedInertia:
-    """Sums over all links at crank angles (N,), as told above.
+    """Sums over all links at crank angles (N,), as defined above.
 
     mass : kg.  first, first_1, first_2 : complex, kg m.
     inertia, inertia_1, spin, spin_1, drive, drive_1 : kg m2.
@@ -99,7 +99,7 @@ def sums(machine: Machine, theta: Array, reference: complex, speed: float) -> Re
     Parameters
     ----------
     theta : (N,) crank angles of a row of phase 0, rad.
-    reference : point of the support that places are told from, m.
+    reference : point of the support from which positions are measured, m.
     speed : of the crank, rad/s, for loads that depend on it, and for friction.
 
     Raises
@@ -219,7 +219,7 @@ class BaseMotion:
 
     place, rate, change : (3, N) displacement, velocity and acceleration along surge, heave, pitch.
     crank_angle, crank_speed, crank_acceleration : (N,), rad, rad/s and rad/s2, relative to it.
-    reference : the point whose displacement is told, m.
+    reference : the point whose displacement is reported, m.
     """
 
     place: Array

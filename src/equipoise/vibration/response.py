@@ -1,4 +1,4 @@
-"""What is told of vibration: modes, and how the support answers at one speed of the crank."""
+"""Results of vibration: modes, and the response of the support at one speed of the crank."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ MODELS: dict[Model, str] = {
 }
 """What each model of the support stands for, from the plainest on."""
 NEUTRAL = 1e-9
-"""How near to 1 a multiplier is told as 1."""
+"""Distance from 1 within which a Floquet multiplier counts as 1."""
 LEAST_ORDERS = 10
 """Orders that are listed where fewer are left."""
 SMALL = 1e-9
@@ -428,7 +428,7 @@ class Response(Result):
 
     @property
     def stable(self) -> bool | None:
-        """Whether small disturbances do not grow; None where no multipliers tell."""
+        """Whether small disturbances do not grow; None without Floquet multipliers."""
         if self.multipliers is None or not self.multipliers.size:
             return None
         return bool(np.abs(self.multipliers[0]) <= 1 + NEUTRAL)

@@ -124,7 +124,7 @@ class Sweep(Result):
     """Steady vibration of a machine on its support over a range of speeds.
 
     speed : (S,) of the crank, rad/s, rising in size.  Where no steady state was found, values are
-    NaN and `notes` tell.
+    NaN and `notes` say so.
     """
 
     blocks_in = "vibration.blocks.sweep_blocks"
@@ -155,7 +155,7 @@ class Sweep(Result):
 
     @property
     def _stability(self) -> list[bool] | None:
-        """Whether the steady state at each speed is stable; None where no multipliers tell."""
+        """Whether the steady state at each speed is stable; None without Floquet multipliers."""
         return self.stable.tolist() if self.model in {"coupled", "exact"} else None
 
     @property
@@ -224,7 +224,7 @@ def sweep_speed(
         raise MassError(missing)
     if machine.support is None:
         raise ModelError("support", MISSING)
-    for end in (slowest or fastest, fastest):  # a range that begins at 0 is told as such below
+    for end in (slowest or fastest, fastest):  # a range that begins at 0 is refused as such below
         steady_speed(machine, end, drive)
     if slowest * fastest <= 0 or abs(slowest) >= abs(fastest):
         raise UsageError(
@@ -258,7 +258,7 @@ def sweep_speed(
 
 
 def _silent(done: int, total: int) -> None:
-    """Of what is done tell nothing."""
+    """Report no progress."""
 
 
 def _missing(grid: Array, answers: list[Response | None]) -> list[Note]:

@@ -160,7 +160,7 @@ def with_slider(
 
 
 def _guiding(sketch: Sketch, toward: Spot, point: str) -> str:
-    """The body whose line a slider gets where none is told."""
+    """The body whose line a slider gets by default."""
     if toward.point is None:
         return FRAME
     check_point(sketch, toward.point)

@@ -22,10 +22,10 @@ class Counterpart(Protocol):
 
     @property
     def has_more(self) -> bool:
-        """Whether there is more to tell, which takes longer."""
+        """Whether deferred replies are due."""
 
-    def tell_more(self) -> Iterator[Reply]:
-        """What takes longer."""
+    def deferred_replies(self) -> Iterator[Reply]:
+        """Replies that take too long for every move of a drag."""
 
 
 def answers(to: Counterpart, content: object) -> Iterator[Reply]:
@@ -45,5 +45,5 @@ def answers(to: Counterpart, content: object) -> Iterator[Reply]:
     if message.preview:
         return
     if to.has_more:
-        yield from to.tell_more()
+        yield from to.deferred_replies()
     yield completed(message.seq)

@@ -1,4 +1,4 @@
-"""Balancing as a page is told of it."""
+"""Results of balancing as messages to a page."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from equipoise.balancing.advice import advice_against, advise
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.optimisation import balance
-from equipoise.balancing.outcome import nothing_told
+from equipoise.balancing.outcome import no_benefit_sentences
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.sentences import (
-    aims_told,
+    deterioration_sentences,
     figure_named,
     figure_unit,
-    proof_told,
-    worse_told,
+    objectives_text,
+    proof_sentences,
 )
 from equipoise.balancing.workshop import SPREAD, sentences
 from equipoise.dataclass import dataclass
@@ -131,7 +131,7 @@ def _replaced_shafts(base: Design, balanced: Balanced) -> list[str]:
 
 
 def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
-    """Value of each objective, SI units, as `balance` tells it."""
+    """Value of each objective, SI units, as `balance` reports it."""
     if plan.phases is None:
         return {
             objective.name: Problem.value_of(machine, objective) for objective in plan.objectives
@@ -143,12 +143,12 @@ def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
 def nothing_gained(balanced: Balanced) -> str | None:
     """The sentence that what was to become small hardly does; None where it does."""
     if balanced.advice is not None:
-        return None if balanced.helps else " ".join(nothing_told(balanced))
+        return None if balanced.helps else " ".join(no_benefit_sentences(balanced))
     if balanced.gain > GAIN:
         return None
     return say(
         "nothing to gain: balancing would not make {aims} smaller by {share} %",
-        aims=aims_told(balanced),
+        aims=objectives_text(balanced),
         share=f"{100 * GAIN:g}",
     )
 
@@ -258,11 +258,11 @@ def _center(link: Link) -> tuple[float, float]:
     return link.center_of_mass or (0.0, 0.0)
 
 
-def balanced_told(base: Computed, after: Computed, balanced: Balanced) -> Values:
+def balanced_values(base: Computed, after: Computed, balanced: Balanced) -> Values:
     """What to change, aims and every figure before and after, and what is proved.
 
-    base, after : the design before and after, computed; what the page reads of these beside it is
-        told as it is read there.
+    base, after : the design before and after, computed; their figures
+        are read from them as the page shows them.
     """
     replaced, shafts = _taken_away(base.design, balanced), _replaced_shafts(base.design, balanced)
     old, new = balanced.before, balanced.after
@@ -276,9 +276,9 @@ def balanced_told(base: Computed, after: Computed, balanced: Balanced) -> Values
         ],
         "aims": [_aim(balanced, aim, figures) for aim in balanced.aims],
         "figures": [_figure(balanced, name, *figures[name]) for name in names],
-        "worse": list(worse_told(balanced)),
+        "worse": list(deterioration_sentences(balanced)),
         "gauges_worse": any(worse.group == "gauges" for worse in balanced.worse),
-        "proof": " ".join(proof_told(balanced)),
+        "proof": " ".join(proof_sentences(balanced)),
         "notes": list(map(said, balanced.notes)),
     }
 
@@ -349,11 +349,11 @@ class BalanceSession(Protocol):
     def go_to(self, computed: Computed | Incomplete, label: str) -> None:
         """Make another design the one that is."""
 
-    def telling(self) -> AbstractContextManager[None]:
+    def localized(self) -> AbstractContextManager[None]:
         """Inside, the reader's language is spoken, in the units of the file that is open."""
 
     def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
-        """Tell of what is shown."""
+        """Replies on the design that is shown."""
 
 
 @dataclass(frozen=True)
@@ -373,14 +373,14 @@ def computed(session: BalanceSession, base: Computed, message: Message) -> Balan
     """Balance a design; errors as of `balance`."""
     moved = base.moved
     result = balanced(moved, message.flag("hold", False))
-    with session.telling():
+    with session.localized():
         nothing = nothing_gained(result)
     if nothing is not None:
         return Balancing(nothing)
     design = balanced_design(moved, result)
     after = solved(design)
-    with session.telling():
-        return Balancing(design=design, content=balanced_told(base, after, result))
+    with session.localized():
+        return Balancing(design=design, content=balanced_values(base, after, result))
 
 
 def adopted(

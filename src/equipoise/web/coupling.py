@@ -1,8 +1,8 @@
 """Couplings that are added to a machine that is made: gears, belts, racks.
 
 Each function takes a sketch to another one, or refuses in an `EquipoiseError`.  Links keep the
-places in which they are drawn; what a drawing tells, such as the radius of a pinion, nobody has
-to say.
+places in which they are drawn; what follows from a drawing, such as the radius of a pinion, is
+not asked for.
 """
 
 from __future__ import annotations

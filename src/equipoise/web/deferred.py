@@ -1,4 +1,4 @@
-"""What takes longer to tell of a design: strokes, what it plants, how its support is shaken."""
+"""Slow results of a design: strokes, planting figures, vibration of its support."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values
     try:
         response = responded(shown)
         curves = _curves(shown, response.speed, progress)
-    except EquipoiseError:  # of which `response_of` has told
+    except EquipoiseError:  # which `response_of` has reported
         return None
     block = FloatBlock()
     content = _displacements(shown, response, block)
@@ -170,9 +170,9 @@ def deferred_replies(
     """Planes from the side, strokes, gauges, planting figures, the response over speed; each as
     values and a block of floats.
 
-    against : the design that figures are told against, if any.
+    against : the design that figures are compared with, if any.
     sweep : whether the response is wanted.
-    outdated : tells when the design is no longer shown, so that the rest is not wanted.
+    outdated : whether the design is no longer shown, so that the rest is not wanted.
     """
     if computed.analysis.machine.has_planes and not outdated():
         from equipoise.figures import render
@@ -181,13 +181,13 @@ def deferred_replies(
         yield {"type": "side", "svg": render(side(computed.analysis)).decode()}, b""
     # Where there are none any more, such as losses of friction, the page hides those that it has.
     if not outdated():
-        figures, block = _told_against("strokes", _strokes, computed, against), FloatBlock()
+        figures, block = _compared_figures("strokes", _strokes, computed, against), FloatBlock()
         charts = [*_along_links(computed.analysis, block)]
         yield {**figures, "charts": charts, "arrays": block.placement}, block.data
     if can_be_shaken(computed.analysis.machine) and not outdated():
-        yield _told_against("gauges", _gauges, computed, against), b""
+        yield _compared_figures("gauges", _gauges, computed, against), b""
     if _plants(computed) and not outdated():
-        planted = _told_against("planting", _planted, computed, against)
+        planted = _compared_figures("planting", _planted, computed, against)
         if not outdated():
             yield planted, b""
     if not sweep or not can_be_shaken(computed.analysis.machine):
@@ -208,7 +208,7 @@ def deferred_replies(
 
 @dataclass(frozen=True)
 class FigureValue:
-    """A figure that is told: what it is called, its value (SI units), and how it is shown."""
+    """A figure: its label, its value (SI units), and its display unit."""
 
     label: str
     value: float
@@ -219,10 +219,10 @@ class FigureValue:
 _Figures = Mapping[str, FigureValue]
 
 
-def _told_against(
+def _compared_figures(
     kind: str, of: Callable[[Computed], _Figures], computed: Computed, against: Computed | None
 ) -> Values:
-    """Figures of a design, each with what it is in the other one where that has it too."""
+    """Figures of a design, each beside the same figure of the other design, if that has it."""
     try:
         figures = of(computed)
     except EquipoiseError as error:
@@ -237,7 +237,7 @@ def _told_against(
 
 
 def _shown(name: str, figure: FigureValue, other: FigureValue | None) -> Values:
-    """A figure in the unit in which it is told; None where it is not finite."""
+    """A figure in its display unit; None where it is not finite."""
     shown = display(figure.dimension, [figure.value], figure.unit)
 
     def there(value: float) -> float | None:
@@ -250,11 +250,11 @@ def _shown(name: str, figure: FigureValue, other: FigureValue | None) -> Values:
 
 
 READ = {"peak_to_peak": to_say("peak to peak"), "vibration_rms": to_say("RMS")}
-"""What is told of a gauge's reading; RMS is about the mean."""
+"""Statistics of a gauge's reading; RMS is about the mean."""
 
 
 def _gauges(computed: Computed) -> _Figures:
-    """Figures of what gauges read; none without a steady state, of which `response_of` tells."""
+    """Figures of the gauges; none without a steady state, which `response_of` reports."""
     try:
         gauges = responded(computed).gauges
     except EquipoiseError:

@@ -37,7 +37,7 @@ def completed(document: Document, entry: Entry, own: Machine) -> Document:
         try:
             return _in_a_cycle(document, entry)
         except (KeyError, UsageError):
-            return document  # its reader tells what is wrong
+            return document  # its reader reports the error
     return document
 
 
@@ -75,7 +75,7 @@ def _in_twos(document: Document, entry: Entry, own: Machine) -> Document:
     try:
         plane = parse(entry.values.get("plane"), "length")
     except UsageError:
-        return document  # its own reader tells what is wrong
+        return document  # its own reader reports the error
     middle = own.links[str(link)].plane
     other = 2 * middle - plane if plane != middle else plane + APART
     second = next(item for item in map(f"{name}{{}}".format, count(2)) if item not in bearings)

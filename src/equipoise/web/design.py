@@ -160,7 +160,7 @@ def _opposite(machine: Machine, link: str) -> Counterweight:
 def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
     """A link with a counterweight on it in mass, centre of mass and inertia.
 
-    pin : from which the weight's place is told, in the link's axes, m.
+    pin : from which the weight's place is measured, in the link's axes, m.
     """
     if not weight.mass:
         return link

@@ -52,7 +52,7 @@ class PageBackend:
     folder: Path | None = None
 
     def hello(self) -> Reply:
-        """The first thing that a page is told."""
+        """The first reply to a page."""
         reply = self.session.hello()
         reply.content["machine"] |= self.tool is not None or self.studied
         reply.content["base"] = reply.content["base"] or self._name
@@ -154,7 +154,7 @@ class PageBackend:
         """What a store or a tool answers."""
         if message.kind == "ready":
             yield self.hello()
-        with self._telling():
+        with self._localized():
             if self.tool is not None and not self.studied:
                 replies = [*self.tool.receive(message)]
             elif self.store is None or message.kind not in OF_STORE:
@@ -170,15 +170,15 @@ class PageBackend:
 
     @property
     def has_more(self) -> bool:
-        """Whether there is more to tell, which takes longer."""
+        """Whether deferred replies are due."""
         return self._of_session and self.session.has_more
 
-    def tell_more(self) -> Iterator[Reply]:
-        """What takes too long to be told at every move of a drag."""
-        return self.session.tell_more()
+    def deferred_replies(self) -> Iterator[Reply]:
+        """Replies that take too long for every move of a drag."""
+        return self.session.deferred_replies()
 
-    def _telling(self) -> AbstractContextManager[object]:
-        """Inside, the reader's language is spoken, in the units of the file that is open."""
+    def _localized(self) -> AbstractContextManager[object]:
+        """Context in the reader's language and in the units of the open file."""
         inside = ExitStack()
         inside.enter_context(speaking(self.session.language))
         if self.tool is not None and not self.studied:

@@ -46,7 +46,7 @@ class Disk:
 
     @property
     def name(self) -> str:
-        """As readers are told of it."""
+        """Base name of the file, printable."""
         return printable(os.path.basename(self.path))
 
     @property
@@ -60,7 +60,7 @@ class Disk:
         return COMMENT.search(self.text) is not None
 
     def status(self, model: Machine | Tool | None) -> dict[str, Any]:
-        """Name of the file, and whether it tells just this model; none is unfinished."""
+        """Name of the file, and whether it has exactly this model; None is an unfinished model."""
         return {"name": self.name, "saved": self.model == model, "comments": self.has_comments}
 
     def reply(self, seq: int | None, text: str) -> Reply:
@@ -96,7 +96,7 @@ class Disk:
         ------
         UsageError : somebody else has changed the file meanwhile, or it cannot be written, or
             lacks a table beside it.
-        ModelError : it has what no file can tell.
+        ModelError : it has what no file can represent.
         """
         text = dumps(model)
         with self.lock:

@@ -161,7 +161,7 @@ def speech_of(language: str) -> dict[str, Any]:
 def played(computed: Computed, replies: Iterable[Reply], language: str) -> str:
     """The HTML file.
 
-    replies : all that a page could be told of the machine.
+    replies : every reply that a page could get on the machine.
 
     Raises
     ------

@@ -156,7 +156,7 @@ FORBIDDEN = re.compile(r'[\\/:*?"<>|]+')
 
 
 Replies = Callable[[str], Iterable[Reply]]
-"""All that a page could be told of the design, in a language."""
+"""Every reply that a page could get on the design, in a language."""
 
 
 def downloaded(

@@ -29,7 +29,7 @@ def stage_of(scene: Scene, handles: Sequence[str], circles: Sequence[Values] = (
     """Names and the drawing of a scene.
 
     signs : from the back to the front, each with its ``layer``, the ``link`` that it is, the
-        ``part`` (``slider`` or ``gears``, and its name) that it tells, what it moves with
+        ``part`` (``slider`` or ``gears``, and its name) that it shows, what it moves with
         (`symbols.pieces.Hold`, with the ``length`` of which it is stretched), and its shapes:
         role, whether it is closed, radius (m), and that in pixels, then x and y (m) and offsets
         from there (pixels) of each corner.
@@ -107,7 +107,7 @@ def _reference(scene: Scene) -> list[float] | None:
 
 
 def shapes_of(shapes: Sequence[Shape]) -> list[list[Any]]:
-    """Shapes as a page is told them, see `stage_of`."""
+    """Shapes as values of a message, see `stage_of`."""
     if not shapes:
         return []
     places = np.concatenate([shape.places for shape in shapes])

@@ -157,7 +157,7 @@ def edited(base: Computed, changes: Iterable[Change], previous: Computed | None 
 
 
 def _agreeing(base: Computed, design: Design, goals: Goals, previous: Computed) -> Computed | None:
-    """The design with what has to go along so that all joints fit, if that can be told."""
+    """The design with the other changes that make all joints fit, or None if these are unknown."""
     if base.motion.linkage.shared is None:
         return None
     result = following(base.motion, design.own, goals)

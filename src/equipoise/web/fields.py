@@ -42,7 +42,7 @@ from equipoise.web.design import Design, pin_of
 from equipoise.web.messages import Drag
 
 MOST = 4
-"""Points of a body of which every two have their length told."""
+"""Points of a body, at most, of which every two have a field for their distance."""
 REACHED = 1e-9
 """Over the lengths that are held: how far beyond each other they may be."""
 
@@ -123,8 +123,8 @@ class Measure:
 def measures_of(points: Mapping[str, Vector]) -> Iterator[Measure]:
     """Every length between the first points of a body, and directions of lines from its first.
 
-    Of the first line the direction is what the axes of a link are, so that it is told of further
-    ones only where the body is a link: its second point lies on the x axis.
+    Of the first line the direction is what the axes of a link are, so that further
+    lines have a direction only where the body is a link: its second point lies on the x axis.
     """
     names = [*points][:MOST]
     for start, end in combinations(names, 2):
@@ -184,7 +184,7 @@ FINE = 1000
 FREE = 0.5
 """How far from where it was a coordinate's slider reaches, over the size of the machine."""
 DIGITS, SHOWN, HANDY = 7, 5, 8
-"""Digits of a number in use and of others, and signs of one that is told in no other unit."""
+"""Digits of a number in use and of others; characters up to which a number keeps its unit."""
 SAME_AS_TYPED = 1e-9
 """Over a length or a mass, or in rad: the most that rounding parts it from what gives it."""
 CENTER: Vector = (0.0, 0.0)
@@ -424,7 +424,7 @@ def _with_parameter(
 def _field(
     path: KeyPath, group: str, label: str, dimension: Dimension | None, value: float
 ) -> Field:
-    """A number of the machine, which its path tells how to change."""
+    """Field of a number of the machine, which is changed by its path."""
     *above, last = path
     place = KeyPath((*above, "xy".index(last))) if last in ("x", "y") else path
     return Field(str(path), group, label, dimension, value, partial(_put, path), place=place)
@@ -539,7 +539,7 @@ def _rows(machine: Machine) -> Iterator[Field]:
 
 
 NOT_OF_PLANTING = ("release", "acceleration_limit", "soil_acceleration_limit")
-"""What only tells when something happens, or what is wanted."""
+"""Keys of planting that only locate an event or set a limit."""
 
 
 def _planting(machine: Machine) -> Iterator[Field]:

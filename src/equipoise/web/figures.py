@@ -132,8 +132,8 @@ def signals_of(analysis: Analysis) -> Signals:
         signals["rocking_moment"] = solved.across.rocking_moment.value
     signals |= {
         name: analysis.outputs[name].values
-        for name, told_signal in told_signals().items()
-        if told_signal.group == "forces" and not told_signal.part and name in analysis.outputs
+        for name, declared in listed_signals().items()
+        if declared.group == "forces" and not declared.part and name in analysis.outputs
     }
     signals |= {f"joint.{name}": joint.size for name, joint in solved.joints.items()}
     return signals | _of_all_rows(analysis)
@@ -215,15 +215,15 @@ def _before(analysis: Analysis) -> _Read:
 def _figures(read: _Read, old: _Read | None) -> Iterator[Values]:
     size, several = _size_of(read.motion.machine), "rows.shaking_force" in read.signals
     loudest = max(read.loudest, 0.0 if old is None else old.loudest)
-    for name, told_signal in told_signals().items():
+    for name, declared in listed_signals().items():
         if name not in read.signals:
             continue
         values = read.signals[name]
         least = NOTHING * loudest * (1.0 if _is_force(name) else size)
-        label = told_signal.say("", several)
+        label = declared.say("", several)
         for measure, shown in MEASURES.items():
             value = _plain(getattr(read.figures[name], measure), least)
-            unit = display(told_signal.dimension)
+            unit = display(declared.dimension)
             entry = {
                 "name": f"{name}.{measure}",
                 "signal": label,
@@ -239,16 +239,16 @@ def _figures(read: _Read, old: _Read | None) -> Iterator[Values]:
             yield entry
 
 
-def told_signals() -> dict[str, Declared]:
-    """Outputs of which figures are told: those of frame and drive, and of all rows together.
+def listed_signals() -> dict[str, Declared]:
+    """Outputs whose figures are listed: those of frame and drive, and of all rows together.
 
     The size of a vector stands before its components.
     """
-    return _told_signals(tuple(DECLARED))
+    return _listed_signals(tuple(DECLARED))
 
 
 @cache
-def _told_signals(names: tuple[str, ...]) -> dict[str, Declared]:
+def _listed_signals(names: tuple[str, ...]) -> dict[str, Declared]:
     by_name = {
         name: item
         for name, item in ((name, DECLARED[name]) for name in names)
@@ -387,14 +387,12 @@ def _choice(analysis: Analysis, signals: Signals, name: str) -> Values | None:
 
 def _listed_names(signals: Signals) -> list[str]:
     """Names of signals of frame and drive, those of all rows first, without parts of vectors."""
-    whole = [
-        name for name, told_signal in told_signals().items() if told_signal.part not in ("x", "y")
-    ]
+    whole = [name for name, declared in listed_signals().items() if declared.part not in ("x", "y")]
     return sorted((n for n in whole if n in signals), key=lambda n: not n.startswith(ROWS))
 
 
 def _by_order(analysis: Analysis, signals: Signals) -> Iterator[Values]:
-    """Choices of spectra: those of all rows where these are told, and of one row."""
+    """Choices of spectra: those of all rows where these are listed, and of one row."""
     for name in _listed_names(signals):
         whole = _choice(analysis, signals, name)
         assert whole is not None

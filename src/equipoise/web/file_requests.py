@@ -29,7 +29,7 @@ class DesignsSession(Protocol):
     def current(self) -> Computed:
         """The design that is."""
 
-    def telling(self) -> AbstractContextManager[None]:
+    def localized(self) -> AbstractContextManager[None]:
         """Inside, the reader's language is spoken."""
 
     def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
@@ -41,7 +41,7 @@ class DesignsSession(Protocol):
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message."""
 
-    def tell_more(self) -> Iterator[Reply]:
+    def deferred_replies(self) -> Iterator[Reply]:
         """What takes longer."""
 
 
@@ -60,15 +60,15 @@ def _download(session: DesignsSession, message: Message) -> Iterator[Reply]:
     current = session.current()
 
     def everything(language: str) -> Iterator[Reply]:
-        """All that a page could be told of the design."""
+        """Every reply that a page could get on the design, in a language."""
         other = type(session)()
         other.open(current.design, current)
         other.wanted = tuple(output.name for output in current.analysis.outputs)
         yield from other.receive(Message("speak", None, {"languages": [language]}))
         yield from other.receive(Message("ready", None, {}))
-        yield from other.tell_more()
+        yield from other.deferred_replies()
 
-    with session.telling():
+    with session.localized():
         content, data = downloaded(current, message, everything)
     yield Reply({"type": "file", "seq": message.seq, **content}, data)
 
@@ -76,7 +76,7 @@ def _download(session: DesignsSession, message: Message) -> Iterator[Reply]:
 def _gallery(session: DesignsSession, message: Message) -> Iterator[Reply]:
     pictures = pictured()
     while True:
-        with session.telling():  # left where this waits: whoever goes on may be another thread
+        with session.localized():  # left where this waits: whoever goes on may be another thread
             picture = next(pictures, None)
         if picture is None:
             break

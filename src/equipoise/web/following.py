@@ -31,8 +31,8 @@ FITS = 1e-10
 FARTHER, OF_FRAME = 0.1, 10.0
 """Cost of moving a point for each pin on the way to what was moved, and for one of the frame."""
 ROUNDS, LEAST, SAME, THERE = 30, 1e-9, 1e-12, 1e-6
-"""Of weighted least squares; over the largest change, what none counts as, and what counts as one;
-sums that tell the same."""
+"""Rounds of reweighted least squares; floor of the weights, and change that counts as one, over the
+largest change; relative singular value below which equations are dependent."""
 
 Goals = dict[str, tuple[int, complex]]
 """Points that are dragged: the sample at which each is to be at a place, m."""
@@ -61,7 +61,7 @@ class Following:
 
 
 def following(motion: Motion, machine: Machine, goals: Goals) -> Following | None:
-    """The machine with what has to go along, if bodies that do not turn against each other tell.
+    """The machine with dependent changes, from bodies that do not rotate relative to each other.
 
     motion : of the machine before it was changed.  goals : where points were dragged to.
     """

@@ -1,6 +1,6 @@
 """Forms of the tables of a file: a control for each key, as the key is declared.
 
-Nothing here knows a table or a key; what each kind of value takes is told in `CONTROLS`.
+Nothing here knows a table or a key; `CONTROLS` has the control of each kind of value.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ RAIL = 0.35
 
 @dataclass(frozen=True, eq=False)
 class Incomplete:
-    """A sketch, and the sentence that tells why it does not move yet."""
+    """A sketch, and the sentence that states why it does not move yet."""
 
     design: Sketch
     lacks: str
@@ -158,7 +158,7 @@ def plain_of(computed: Computed | Incomplete) -> Machine:
 
 
 def status_of_sketch(incomplete: Incomplete) -> Values:
-    """As `status_of` tells of a finished machine."""
+    """Status of an incomplete machine, with the keys of `status_of`."""
     sketch = incomplete.design
     drive = sketch.drive.link if sketch.drive else None
     return {

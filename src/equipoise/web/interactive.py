@@ -45,7 +45,7 @@ from equipoise.web.documents import ALONE, asset, data, document, script, style,
 from equipoise.web.drawing import stage_of
 from equipoise.web.edits import movable
 from equipoise.web.fields import CYCLE_SPEED, SECTIONS, measures_of
-from equipoise.web.figures import told_signals
+from equipoise.web.figures import listed_signals
 from equipoise.web.following import extent_of
 from equipoise.web.following_signs import ties_of
 
@@ -293,7 +293,7 @@ class Interactive:
     def _outputs(self) -> Iterator[Values]:
         """What can be drawn over the crank angle, and of what figures are reported."""
         groups = {group: say(title) for group, title in GROUPS.items()}
-        first = told_signals()
+        first = listed_signals()
         for output in self.outputs:
             yield {
                 "name": output.name,

@@ -31,7 +31,7 @@ computation takes to unwind, so that the second error does not meet the first on
 
 
 def share_heaps() -> None:
-    """Let threads share heaps, where the C library can be told to.
+    """Let threads share heaps, where the C library has an option for it.
 
     Else each has its own, where what it has freed is kept for itself in pieces, and a server that
     lives long grows though it holds no more than before.
@@ -42,7 +42,7 @@ def share_heaps() -> None:
 
 
 def give_back() -> None:
-    """Give the system the memory that is free, where the C library can be told to.
+    """Give free memory back to the system, where the C library has a call for it.
 
     What took long may have needed hundreds of MB, of which pieces that are in use keep the rest.
     """

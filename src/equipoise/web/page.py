@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 MOST_WAITING, MOST_QUESTIONS = 100, 3
 PAUSE = 0.2
-"""s without a message, after which what takes longer is told too."""
+"""s without a message, after which deferred replies are sent."""
 NEXT = 0.1
-"""s in which a drag that goes on has its next move here; else what follows a state is told too."""
+"""s within which a drag that goes on sends its next move; else what follows a state is sent too."""
 SELDOM = 0.2
-"""s after which that is told of a drag that never pauses."""
+"""s after which that is sent even during a drag that never pauses."""
 FULL = Note("questions that take long are still being answered; wait for them")
 FLOODED = "too many messages at once; load the page again"
 POLICY_VIOLATION, TRY_LATER = 1008, 1013
@@ -42,7 +42,7 @@ class Page:
     lanes : threads that compute; what takes long has its own, so that dragging goes on.
     question : the work on the last question that takes long, and whether it goes on (`answering`).
     cancelled : questions that take long and were cancelled, and are to be refused.
-    whole : when all that follows from a message was told last, s.
+    whole : when all that follows from a message was sent last, s.
     """
 
     def __init__(self, socket: WebSocket, desk: PageBackend, lanes: Lanes) -> None:
@@ -167,16 +167,16 @@ class Page:
     def _go_on(self, message: Message) -> None:
         self.answered = max(self.answered, message.seq or 0)
         if _done(self.deferred_task):
-            self.deferred_task = asyncio.create_task(self._tell_more())
+            self.deferred_task = asyncio.create_task(self._send_deferred())
 
-    async def _tell_more(self) -> None:
-        """What takes too long to be told at every move of a drag; then, that all is told."""
+    async def _send_deferred(self) -> None:
+        """Send deferred replies, then the message that all answers have been sent."""
         while not self.closed:
             last = self.last
             if self.desk.has_more:
                 await asyncio.sleep(PAUSE)
                 if not self.waiting and self.last is last:
-                    await self._answer(self.desk.tell_more(), None, self.lanes.long)
+                    await self._answer(self.desk.deferred_replies(), None, self.lanes.long)
             elif self.completed_seq < self.answered:
                 self.completed_seq = self.answered
                 await self._send(completed(self.completed_seq))
@@ -210,7 +210,7 @@ class Page:
             await self._send(refused(seq, unexpected(error)))
 
     async def _overtaken(self, now: float) -> bool:
-        """Whether a drag goes on, so that what else there is to tell of this move is left."""
+        """Whether a drag goes on, so that further replies on this move are omitted."""
         if now - self.whole > SELDOM:
             return False
         if not self.waiting:
@@ -229,7 +229,7 @@ class Page:
 
 
 async def turn_away(socket: WebSocket, why: Note) -> None:
-    """Tell a page that it cannot be served."""
+    """Refuse to serve a page, with the reason."""
     await socket.accept()
     await socket.send_bytes(packed(refused(None, UsageError(why))))
     await socket.close(TRY_LATER, why)

@@ -47,7 +47,7 @@ class RunSession(Protocol):
     def number_of(self, result: Computed) -> int:
         """By which a page knows that it shows a design."""
 
-    def telling(self) -> AbstractContextManager[None]:
+    def localized(self) -> AbstractContextManager[None]:
         """Inside, the reader's language is spoken, in the units of the file that is open."""
 
 
@@ -69,7 +69,7 @@ def computed(session: RunSession, base: Computed, message: Message) -> Reply:
             raise UsageError(CHANGED)
 
     result = run_of(base, progress)
-    with session.telling():
+    with session.localized():
         content, data = run_message(result, base)
     head = {"type": "run", "seq": message.seq, "design": session.number_of(base)}
     return Reply({**head, **content}, data)

@@ -2,7 +2,7 @@
 
 Only the page whose address was printed may talk to it, from this machine.  A page of another site
 can send requests to 127.0.0.1, and a name of another site can be made to point there.  So every
-request has to carry the token, a Host that is this server, and, where the browser tells it, an
+request has to carry the token, a Host that is this server, and, where the browser sends it, an
 Origin that is this server too.
 """
 
@@ -92,7 +92,7 @@ HEADERS = {
     "cross-origin-resource-policy": "same-origin",
     "cache-control": "no-store",
 }
-"""Of every response.  Nothing is loaded from elsewhere, and the token is told to nobody."""
+"""Of every response.  Nothing is loaded from elsewhere, and the token is sent to nobody."""
 _ENCODED = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
 
 
@@ -132,7 +132,7 @@ class Guard:
         if len(hosts) != 1 or hosts[0] not in self.hosts:
             return HOST
         own = {f"http://{host}" for host in self.hosts}
-        # A WebSocket is opened by pages only, which tell where they are from.
+        # A WebSocket is opened by pages only, which state their origin.
         if not set(origins) <= own or (scope["type"] == "websocket" and len(origins) != 1):
             return ORIGIN
         return "" if compare_digest(scope["query_string"], self.query) else TOKEN
@@ -141,7 +141,7 @@ class Guard:
 async def refuse(problem: str, scope: Scope, send: Send) -> None:
     """Answer with one sentence, also where a WebSocket was asked for."""
     body, begin, headers = f"equipoise: {problem}\n".encode(), "websocket.http.response", []
-    if scope["type"] == "http":  # else the server itself tells these two
+    if scope["type"] == "http":  # else the server itself sends these two
         begin = "http.response"
         headers = [
             (b"content-type", b"text/plain; charset=utf-8"),
@@ -249,15 +249,17 @@ def served(
         yield uvicorn.Server(config), listener, f"http://{ADDRESS}:{port}/?token={token}"
 
 
-def serve(begin: Callable[[], PageBackend], port: int | None, tell: Callable[[str], None]) -> None:
+def serve(
+    begin: Callable[[], PageBackend], port: int | None, announce: Callable[[str], None]
+) -> None:
     """Serve pages on this machine until interrupted; errors as `served`.
 
-    tell : is given the address of the page, which is served from then on.
+    announce : called with the address of the page, which is served from then on.
     """
     sys.setswitchinterval(SWITCH)
     with served(begin, port) as (server, listener, address):
         try:
-            tell(address)
+            announce(address)
             server.run(sockets=[listener])
         except KeyboardInterrupt:
             answered()

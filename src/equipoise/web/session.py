@@ -59,7 +59,7 @@ class Session:
     preview : what it is while something is dragged; each one starts from `current_state`.
     before : with which it is compared, if with any.
     scale : of the sliders.
-    more_told : the design of which `tell_more` has told, and that which it was told against.
+    more_told : the design of which `deferred_replies` has told, and that which it was told against.
     response_told : the design whose response the page has, and the record drawn beside it.
     wanted : outputs that the page draws besides those that it always does.
     language : that its reader speaks.  disk : the file that is open, if it can be saved.
@@ -79,8 +79,8 @@ class Session:
     preview: Computed | Incomplete | None = None
     before: Computed | None = None
     scale: Scale | None = None
-    more_told: tuple[Computed | Incomplete | None, Computed | None] = (None, None)
-    response_told: tuple[Computed | Incomplete | None, MeasuredSignals | None] = (None, None)
+    deferred_sent: tuple[Computed | Incomplete | None, Computed | None] = (None, None)
+    response_sent: tuple[Computed | Incomplete | None, MeasuredSignals | None] = (None, None)
     wanted: tuple[str, ...] = ()
     language: str = "en"
     disk: Disk | None = None
@@ -103,7 +103,7 @@ class Session:
             yield from getattr(self, f"_{message.kind}")(message)
         except EquipoiseError as error:
             yield refused(message.seq, error, self.language)
-        except Exception:  # a mistake of the program; what cannot be told must not stay
+        except Exception:  # a mistake of the program; a design without replies must not stay
             if message.kind not in SLOW:  # beside which other steps are made
                 self.history, self.current_state, self.preview = good
             raise
@@ -112,7 +112,7 @@ class Session:
 
     def _ready(self, message: Message) -> Iterator[Reply]:
         yield self.hello()
-        self.response_told = None, None  # a page that begins has nothing
+        self.response_sent = None, None  # a page that begins has nothing
         if self.current_state is not None:
             yield from self.state_replies(message.seq)
 
@@ -155,7 +155,7 @@ class Session:
 
     def _edit(self, message: Message) -> Iterator[Reply]:
         commit, problem = message.flag("commit", True), None
-        with self.lock, self.telling():
+        with self.lock, self.localized():
             base, preview = self.base(), None
             try:
                 preview = changed(base, message.changes(), commit, self.preview)
@@ -174,7 +174,7 @@ class Session:
             yield from self.state_replies(message.seq)
 
     def _make(self, message: Message) -> Iterator[Reply]:
-        with self.lock, self.telling():
+        with self.lock, self.localized():
             base = sketch_of(self.base(), message.whole("at", 0))
             sketch, label = sketch_after(base, message)
             result = computed_or_incomplete(sketch)
@@ -210,7 +210,7 @@ class Session:
     # -- its state ---------------------------------------------------------------------------------
 
     def hello(self) -> Reply:
-        """The first thing that a page is told."""
+        """The first reply to a page."""
         return Reply(
             {
                 "type": "hello",
@@ -257,29 +257,29 @@ class Session:
 
     @property
     def has_more(self) -> bool:
-        """Whether there is more to tell of the design, which takes longer."""
-        text, against = self.more_told
+        """Whether deferred replies on the design are due."""
+        text, against = self.deferred_sent
         if not isinstance(self.current_state, Computed):
             return False
         return self.view is not text or self._against is not against
 
-    def tell_more(self) -> Iterator[Reply]:
-        """What takes too long to be told at every move of a drag; ends when the design changes."""
-        wanted = self.more_wanted()
+    def deferred_replies(self) -> Iterator[Reply]:
+        """Replies that take too long for every move of a drag; they end when the design changes."""
+        wanted = self.deferred_request()
         if wanted is None:
             return
         result, against, sweep = wanted
         text = deferred_replies(result, against, sweep, lambda: self.view is not result)
         while True:
-            with self.telling():  # left where this waits: whoever goes on may be another thread
+            with self.localized():  # left where this waits: whoever goes on may be another thread
                 item = next(text, None)
             if item is None:
                 return
             content, data = item
             yield Reply({"seq": None, **content}, data)
 
-    def more_wanted(self) -> tuple[Computed, Computed | None, bool] | None:
-        """What `tell_more` is about to compute, from then on known as computed.
+    def deferred_request(self) -> tuple[Computed, Computed | None, bool] | None:
+        """What `deferred_replies` is about to compute, from then on known as computed.
 
         Returns
         -------
@@ -289,13 +289,13 @@ class Session:
         view = self.view
         if not isinstance(view, Computed):
             return None
-        sweep, against = self.more_told[0] is not view, self._against
-        self.more_told = view, against
+        sweep, against = self.deferred_sent[0] is not view, self._against
+        self.deferred_sent = view, against
         return view, against, sweep
 
     @contextmanager
-    def telling(self) -> Iterator[None]:
-        """Inside, the reader's language is spoken, in the units of the file that is open."""
+    def localized(self) -> Iterator[None]:
+        """Context in the reader's language and in the units of the open file."""
         with speaking(self.language), ExitStack() as units:
             if self.current_state is not None:
                 units.enter_context(showing_by_default(units_of(self.view.design)))
@@ -348,13 +348,13 @@ class Session:
 
     def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown, and how its support is shaken; notes come before its own."""
-        with self.telling():
+        with self.localized():
             state = self._state(seq)
         state.content["notes"] = [*notes, *state.content["notes"]]
         yield state
         if isinstance(self.view, Incomplete):
             return
-        with self.telling():
+        with self.localized():
             compared = [*self.view_state.compared(None if self.preview else self.current())]
         yield from compared
         yield from self._response(seq)
@@ -363,14 +363,14 @@ class Session:
         """How the support is shaken, where the page has that of another design.
 
         It has no response over speed, which takes longer; the page loses the one that it has, so
-        that `tell_more` has to tell it again.
+        that `deferred_replies` has to send it again.
         """
-        now, before = (self.shown, self.view_state.record), self.response_told
+        now, before = (self.shown, self.view_state.record), self.response_sent
         if now[0] is before[0] and now[1] is before[1]:
             return
-        with self.telling():
+        with self.localized():
             response = response_of(self.shown)
-        self.response_told, self.more_told = now, (None, None)
+        self.response_sent, self.deferred_sent = now, (None, None)
         if response is not None:
             content, data = response
             yield Reply({"type": "response", "seq": seq, **content}, data)
@@ -428,7 +428,7 @@ class Session:
 
     @property
     def _against(self) -> Computed | None:
-        """The design that figures are told against, if any."""
+        """The design that figures are compared with, if any."""
         state = self.current_state if self.preview is not None else None
         shown = state if isinstance(state, Computed) else None
         return self.view_state.against(shown) or self.before

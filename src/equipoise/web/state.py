@@ -23,7 +23,7 @@ from equipoise.web.edits import Computed, kept_with_first, movable
 from equipoise.web.figures import charts_of, least_of, signals_of
 from equipoise.web.following import extent_of
 from equipoise.web.measured_records import MeasuredSignals
-from equipoise.web.view_state import arrows_of, measured_told, points_of
+from equipoise.web.view_state import arrows_of, points_of, record_values
 
 MOST_ORDER = 20
 """Highest order of the spectra."""
@@ -43,7 +43,7 @@ def state_of(
     spectra : its amplitudes by order, see `spectra_of`.
     before : whose curves are drawn behind its own, if any's.
     wanted : names of further outputs that it draws, as far as there are such.
-    against : whose figures are told beside its own, if any's; `before` where it is not given.
+    against : the design whose figures stand beside its own, if any; `before` by default.
     arrows_at : a point of which velocity, acceleration and forces are drawn.
     record : that is drawn beside its own signals.
     """
@@ -90,7 +90,7 @@ def state_of(
         "compared": against is not None,
         "beside": machine.has_planes,
         "points": points_of(analysis),
-        "record": measured_told(record, computed, block),
+        "record": record_values(record, computed, block),
         "arrows_at": arrows_at,
         "arrows": arrows_of(analysis, arrows_at, block) if arrows_at else [],
         **ground_of(computed, block),
@@ -104,18 +104,18 @@ def outputs_of(analysis: Analysis) -> list[Values]:
     units = tuple((dimension, display(dimension)) for dimension in analysis.outputs.dimensions)
     groups = tuple(say(title) for title in GROUPS.values())
     several = len(analysis.machine.rows) > 1
-    return _outputs_told(tuple(analysis.outputs.names), several, units, groups, spoken())
+    return _output_values(tuple(analysis.outputs.names), several, units, groups, spoken())
 
 
 @lru_cache(16)
-def _outputs_told(
+def _output_values(
     names: tuple[str, ...],
     several: bool,
     units: tuple[tuple[Dimension | None, Display], ...],
     groups: tuple[str, ...],
     language: str,
 ) -> list[Values]:
-    """What is told of outputs, which stay from one move of a drag to the next."""
+    """Labels, units and groups of outputs, which stay from one move of a drag to the next."""
     by_dimension, headings = dict(units), dict(zip(GROUPS, groups, strict=True))
     with speaking(language):
         return [
@@ -134,7 +134,7 @@ def _outputs_told(
 
 
 def status_of(computed: Computed) -> Values:
-    """What is told of the making of a machine.
+    """Status of a machine: its mobility, and a sentence on it.
 
     mobility : number of free motions.  text : a sentence: what moves, or what is missing.
     finished : whether it can be computed.  drive : the crank, if there is one that turns.

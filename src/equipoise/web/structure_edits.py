@@ -232,7 +232,7 @@ def _aimed(sketch: Sketch, number: int, slider: Slider) -> Sketch:
 
 
 def straight(sketch: Sketch, links: Iterable[str], digits: int = DIGITS) -> Sketch:
-    """Links in whose axes nothing but points is told get axes from their first to their second."""
+    """Give links whose axes only points refer to axes from their first point to their second."""
     values = {body for key, item in sketch.entries() for body in _axes_of(key, item)}
     for name in links:
         link = sketch.links.get(name)
@@ -260,7 +260,7 @@ def straight(sketch: Sketch, links: Iterable[str], digits: int = DIGITS) -> Sket
 
 
 def _axes_of(key: str, entry: Any) -> Iterator[str]:
-    """Bodies in whose axes an entry tells something."""
+    """Bodies in whose axes an entry has coordinates or directions."""
     if key == "sliders":
         yield from (entry.link, entry.on)
     if key in ("loads", "timed_loads"):
@@ -473,7 +473,7 @@ def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
             planes = {new if item == old else item: z for item, z in planes.items()}
             there = replace(sketch.links[body], planes=planes)
             sketch = replace(sketch, links={**sketch.links, body: there})
-    return _retold(sketch, "point", old, new)
+    return _tables_renamed(sketch, "point", old, new)
 
 
 def _renamed_link(sketch: Sketch, old: str, new: str) -> Sketch:
@@ -482,11 +482,11 @@ def _renamed_link(sketch: Sketch, old: str, new: str) -> Sketch:
         key: {new if item == old else item: value for item, value in getattr(sketch, key).items()}
         for key in ("links", "poses", "counterweights")
     }
-    return _retold(replace(sketch, **values), "link", old, new)
+    return _tables_renamed(replace(sketch, **values), "link", old, new)
 
 
-def _retold(sketch: Sketch, what: What, old: str, new: str) -> Sketch:
-    """The tables of a sketch, which name a point or link by its new name."""
+def _tables_renamed(sketch: Sketch, what: What, old: str, new: str) -> Sketch:
+    """A sketch whose tables refer to a point or link by its new name."""
     rest = {key: renamed_in(value, what, old, new) for key, value in sketch.rest.items()}
     values: dict[str, Any] = {
         key: renamed_in(getattr(sketch, key), what, old, new) for key in ("drive", "sliders")

@@ -31,11 +31,11 @@ class EntrySession(Protocol):
     def go_to(self, computed: Computed | Incomplete, label: str) -> None:
         """Make another design the one that is."""
 
-    def telling(self) -> AbstractContextManager[None]:
+    def localized(self) -> AbstractContextManager[None]:
         """Inside, the reader's language is spoken, in the units of the file that is open."""
 
     def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
-        """Tell of what is shown."""
+        """Replies on the design that is shown."""
 
 
 def stroked(sketch: Sketch, entry: Entry) -> Entry:
@@ -69,13 +69,13 @@ def _pushed(sketch: Sketch, values: Mapping[str, Any]) -> float | None:
 
 
 def _tables(session: EntrySession, message: Message) -> Iterator[Reply]:
-    with session.telling():
+    with session.localized():
         tables = tables_of(plain_of(session.base()))
     yield Reply({"type": "tables", "seq": message.seq, **tables})
 
 
 def _entry(session: EntrySession, message: Message) -> Iterator[Reply]:
-    with session.lock, session.telling():
+    with session.lock, session.localized():
         base = session.base()
         entry = stroked(sketch_of(base, 0), message.entry())
         session.go_to(with_entry(base, entry), message.label)

@@ -72,7 +72,7 @@ RuleValues = TypedDict(
         "dependentSchemas": NotRequired[dict[str, "RuleValues"]],
     },
 )
-RuleValues.__doc__ = "The part of a JSON Schema that tells which keys go together."
+RuleValues.__doc__ = "The part of a JSON Schema that states which keys go together."
 
 
 class FormValues(TypedDict):

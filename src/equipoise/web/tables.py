@@ -26,7 +26,7 @@ from equipoise.web.forms import Values, forms_of, text_of, word_of
 from equipoise.web.messages import Entry
 
 MOST_WORDS = 4
-"""Keys of an entry that are told where it is listed."""
+"""Keys of an entry, at most, that are shown where it is listed."""
 LONGEST_VALUE = 40
 MANY_DIGITS = re.compile(r"^-?\d*\.\d{6,}(?:e-?\d+)?(?= )")
 """A computed number before its unit."""
@@ -70,7 +70,7 @@ def _worked_out(of: type[Frozen], name: str, value: Any, names: Names) -> Any:
     try:
         worked_out = parse_expression(value.strip(), dimension, names)
     except UsageError:
-        return value  # its reader tells what is wrong
+        return value  # its reader reports the error
     if names_in(value):
         return f"{SIGN}{value.strip()}"
     is_plain = re.fullmatch(pattern(dimension), value.strip())
@@ -90,7 +90,7 @@ def tables_of(machine: Machine) -> Values:
     """What a page needs to show and change every table of a machine's file.
 
     groups : a key below which there are tables, or can be, in the order of the file.
-    forms : by the name that groups tell.
+    forms : by the name that groups have.
     bodies : points of the frame and of links by name, in their own axes, m.
     outputs : those that balancing can take, each with what it is called.
     """
@@ -109,7 +109,7 @@ def tables_of(machine: Machine) -> Values:
 def _groups(
     machine: Machine, of: type[Frozen], entry: Mapping[str, Any] | None, place: KeyPath, name: str
 ) -> Iterator[Values]:
-    """The groups below an entry; below one that is not there they tell what has to be added first.
+    """The groups below an entry; below one that is not there they name what has to be added first.
 
     name : what the entry is called.
     """

@@ -197,7 +197,7 @@ class ToolDesk:
             statement["files"] = files
         return Reply(statement, text.encode())
 
-    # -- what it is told ---------------------------------------------------------------------------
+    # -- values for replies ------------------------------------------------------------------------
 
     @property
     def shown(self) -> ToolStep:
@@ -222,7 +222,7 @@ class ToolDesk:
         return {path: item for path, item in numbers.items() if not path.startswith(NOT_SHOWN)}
 
     def _fields(self) -> Iterator[Values]:
-        """Numbers as `fields` tells those of a linkage."""
+        """Fields of the tool's numbers, with the keys of `fields` of a linkage."""
         values, length = self.shown.values, self.first.tool.shaft.length
         for path, number in self._numbers().items():
             value = float(values.get(path, number.value))

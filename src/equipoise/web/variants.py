@@ -23,20 +23,20 @@ Values = dict[str, Any]
 MOST, LONGEST = 12, 40
 """Variants; signs of the name of one."""
 NOTHING, STEP, OPENED = "nothing", "step", "opened"
-"""What figures are told against, besides a variant: that before the last change, or as opened."""
+"""Designs for comparison, besides a variant: none, that before the last change, or as opened."""
 VARIANT = "variant:"
 """What stands before the name of one."""
 
 
 @dataclass(frozen=True)
 class Variants:
-    """Designs that are kept, by name, and what the one that is shown is told against."""
+    """Designs that are kept, by name, and the design with which the one shown is compared."""
 
     pinned_designs: Mapping[str, Computed] = field(default_factory=dict)
     against: str = STEP
 
     def pinned(self, computed: Computed) -> Variants:
-        """One more, which is what the design is told against from now on.
+        """Variants with one more, with which the design is compared from now on.
 
         Raises
         ------
@@ -85,14 +85,14 @@ class Variants:
         against = STEP if self.against == VARIANT + name else self.against
         return Variants(MappingProxyType(by_name), against)
 
-    def told_against(self, what: str) -> Variants:
+    def with_comparison(self, what: str) -> Variants:
         """Variants compared with something else: one of the three words, or a variant."""
         if what not in (NOTHING, STEP, OPENED):
             self.of(what.removeprefix(VARIANT))
         return replace(self, against=what)
 
     def named(self) -> str:
-        """What figures are told against, in words."""
+        """Name of the design with which figures are compared, in the language that is spoken."""
         if self.against == STEP:
             return say("before the last change")
         if self.against == OPENED:

@@ -20,7 +20,7 @@ from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.deferred import SAMPLES
 from equipoise.web.drawing import ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed
-from equipoise.web.figures import told_signals
+from equipoise.web.figures import listed_signals
 from equipoise.web.measured_records import MeasuredSignals, compared_with, record_of_text
 from equipoise.web.messages import MOST_OUTPUTS, Message
 from equipoise.web.replies import Reply
@@ -88,13 +88,13 @@ def charted(output: str) -> bool:
     """Whether an output has a chart without being asked for."""
     if output.startswith("joints."):
         return output.count(".") == 1
-    return output in told_signals()
+    return output in listed_signals()
 
 
-def measured_told(
+def record_values(
     record: MeasuredSignals | None, computed: Computed, block: FloatBlock
 ) -> Values | None:
-    """A record beside a design: its name and what is to be said; signals go to the block.
+    """Values of a record compared with a design: its name and notes; signals go to the block.
 
     ``measured.`` and the name of an output : (N,) SI units, NaN in gaps; what gauges read has as
     many numbers as their response.
@@ -134,7 +134,7 @@ class ViewState:
     table: dict[str, Any] | None = None
 
     def against(self, previous: Computed | None) -> Computed | None:
-        """The design that figures are told against; None where they are told alone.
+        """The design that figures are compared with; None without a comparison.
 
         previous : the one that a drag, which is under way, began with.
         """
@@ -204,7 +204,7 @@ class ViewSession(Protocol):
         """Make another design the one that is."""
 
     def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
-        """Tell of what is shown."""
+        """Replies on the design that is shown."""
 
 
 def _arrows(session: ViewSession, message: Message) -> Iterator[Reply]:
@@ -247,7 +247,7 @@ def _go(session: ViewSession, message: Message) -> None:
 
 
 def _against(session: ViewSession, message: Message) -> None:
-    session.view_state.variants = session.view_state.variants.told_against(message.text("to"))
+    session.view_state.variants = session.view_state.variants.with_comparison(message.text("to"))
 
 
 def _record(session: ViewSession, message: Message) -> Iterator[Reply]:

@@ -138,7 +138,7 @@ class Foreground:
             return True
         if not self.desk.has_more or any(task.message is None for task, _ in self._running):
             return False
-        wanted = session.more_wanted()
+        wanted = session.deferred_request()
         if wanted is not None:
             result, against, sweep = wanted
             self._begin(None, result, against, sweep)
@@ -168,7 +168,7 @@ class Foreground:
         running, self._running = self._running, deque()
         self.tasks.clear()
         if any(task.message is None for task, _ in running):  # which is wanted as before
-            self.desk.session.more_told = None, None
+            self.desk.session.deferred_sent = None, None
         self._cancelled += [task.message for task, _ in running if task.message is not None]
 
     # -- one step ----------------------------------------------------------------------------------
@@ -332,7 +332,7 @@ class Background:
             if task.message is None:
                 assert outcome is not None
                 against = None if task.against is None else solved(task.against)
-                with session.telling():
+                with session.localized():
                     for content, data in deferred_replies(
                         outcome, against, task.sweep, lambda: False
                     ):

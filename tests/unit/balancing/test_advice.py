@@ -17,7 +17,7 @@ from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.first_order import end_weights_for
 from equipoise.balancing.headlines import Saving, assessed, watched_of, worse_headlines
-from equipoise.balancing.outcome import helps_told, why_not
+from equipoise.balancing.outcome import benefit_sentences, why_not
 from equipoise.balancing.policy import (
     HEADLINE_GROWTH,
     LEAST_GAIN,
@@ -27,7 +27,7 @@ from equipoise.balancing.policy import (
 from equipoise.balancing.remedies import Sector as SectorShape
 from equipoise.balancing.remedies import is_worth, plate_of, sectors, with_sectors
 from equipoise.balancing.room import pivots_of, room_about, rooms_about
-from equipoise.balancing.sentences import aims_told, proof_told, worse_told
+from equipoise.balancing.sentences import deterioration_sentences, objectives_text, proof_sentences
 from equipoise.balancing.spaced_arms import spaced_arms_for
 from equipoise.balancing.workshop import in_short, sentences
 from equipoise.errors import EquipoiseError, MassError
@@ -113,12 +113,12 @@ def test_where_nothing_large_shakes_the_masses_are_left_as_they_are(name: str) -
     """However large a counterweight would be: a half disc of 360 kg against 2 % of the load."""
     found = advice_for(name)
     assert not found.helps and not any(one.helps for one in found.tried)
-    told = " ".join(helps_told(found))
+    told = " ".join(benefit_sentences(found))
     assert re.search("Leave the (masses|machine) as (they are|it is)|No counterweight", told)
 
 
 def test_all_that_is_large_is_named_first() -> None:
-    first, *_ = helps_told(advice_for("hydraulic-loader"))
+    first, *_ = benefit_sentences(advice_for("hydraulic-loader"))
     assert first == (
         "Large here: Force of the cylinder A to B, peak: 25.6 kN at 17.0° of the cycle, 6.4 times "
         "the largest load."
@@ -135,7 +135,10 @@ def test_rows_are_turned_so_that_the_gauges_read_least() -> None:
     by_force = eq.balance(
         RIDING, Balance(phases=Phases(), objectives=(Objective("shaking_force"),))
     )
-    assert any("reading at yaw, peak to peak, by 89 %" in line for line in worse_told(by_force))
+    assert any(
+        "reading at yaw, peak to peak, by 89 %" in line
+        for line in deterioration_sentences(by_force)
+    )
     assert not found.worse
 
 
@@ -183,7 +186,7 @@ def test_all_speeds_at_which_a_machine_runs_are_aims() -> None:
     for one in found.plan.objectives:
         pair = swing(machine, "gauge", one.speeds[0]), swing(found.machine, "gauge", one.speeds[0])
         assert found.objectives[one.name] == pytest.approx(pair, rel=1e-6)
-    assert aims_told(found).endswith("170, 193, 240 rpm")
+    assert objectives_text(found).endswith("170, 193, 240 rpm")
 
 
 def test_what_the_file_wants_and_limits_is_kept() -> None:
@@ -257,7 +260,7 @@ def test_a_plane_of_its_own_is_crossed_by_shafts_and_guided_pins() -> None:
     *_, room = rooms_about(rig, "crank")
     shaft = abs(complex(*rig.frame["D"]) - complex(*rig.frame["A"]))
     assert 0.85 * shaft < room.largest < shaft - room.clearance * (1 - 1e-9)
-    told = " ".join(helps_told(advise(rig)))
+    told = " ".join(benefit_sentences(advise(rig)))
     assert "in a plane of its own beside pin C" in told
 
 
@@ -292,7 +295,7 @@ def test_what_more_room_would_allow_is_said() -> None:
     assert more.assumed < piece["outer_radius"] <= more.wanted
     assert more.remedy.helps and more.remedy.gain > found.gain + LEAST_GAIN
     assert found.to_dict()["with_room"]["gain"] == more.remedy.gain
-    told = " ".join(helps_told(found))
+    told = " ".join(benefit_sentences(found))
     assert f"The space about {more.at} is assumed, from the lengths of the links" in told
     assert advice_for("balance-shafts").with_room is None
 
@@ -364,7 +367,7 @@ def test_the_proof_is_of_every_sector_of_that_plate() -> None:
     """It holds for the shape that is told, and names the room."""
     found = advice_for("balance-shafts")
     assert found.bound <= found.cost and found.gap < 0.1
-    (told,) = proof_told(found)
+    (told,) = proof_sentences(found)
     assert told.startswith("Proof, by cone program: with a sector of ")
     assert "where no headline figure gets worse" in told
 
@@ -377,7 +380,7 @@ def test_what_gains_too_little_for_its_mass_is_not_offered() -> None:
     found = advice_for("drag-link")
     assert not found.helps
     assert all(one.gain < LEAST_GAIN for one in found.tried)
-    assert "that is too little" in " ".join(helps_told(found))
+    assert "that is too little" in " ".join(benefit_sentences(found))
 
 
 # Of a single joint or direction: the test below.
@@ -391,7 +394,7 @@ def test_what_leaves_a_headline_figure_worse_is_not_offered() -> None:
     swings = [float(np.ptp(eq.analyze(one).forces.drive_torque))
               for one in (found.original, found.machine)]  # fmt: skip
     assert was.output == "drive_torque" and new.value == pytest.approx(swings[1], rel=1e-3)
-    told = " ".join(helps_told(found))
+    told = " ".join(benefit_sentences(found))
     assert swings[1] > 1.1 * swings[0]
     grown = f"drive torque, peak to peak, from {swings[0]:.2f} to {swings[1]:.2f} N m"
     assert grown in told and "would grow" in told
@@ -482,7 +485,7 @@ def test_a_couple_larger_than_what_is_saved_is_not_made() -> None:
     assert np.degrees(found.changes[0].values["phases"]) == pytest.approx([0, 180, 180, 0])
     level = eq.analyze(found.machine).summary
     assert level["rows.roll_moment"].rms < 1e-9 > level["rows.yaw_moment"].rms
-    assert "without couples between the rows" in " ".join(proof_told(found))
+    assert "without couples between the rows" in " ".join(proof_sentences(found))
 
 
 # Gains: `test_what_gains_too_little_for_its_mass_is_not_offered`.
@@ -580,7 +583,7 @@ def test_what_falls_besides_is_said() -> None:
     old, new = (eq.analyze(one).summary for one in (found.original, found.machine))
     before, after = (one["shaking_force"].peak for one in (old, new))
     assert after < 0.9 * before
-    text = " ".join(helps_told(found))
+    text = " ".join(benefit_sentences(found))
     assert f"This also reduces shaking force, peak, from {before:.1f} to {after:.1f} N" in text
 
 
@@ -625,7 +628,7 @@ def test_holes_take_off_what_is_too_heavy() -> None:
     assert found.added_mass == pytest.approx(-change.values["mass"])
     x, y = hole.at
     assert x < 0 and abs(y) + radius < 0.04 and x - radius > -0.09
-    assert "drill a hole of" in " ".join(helps_told(found))
+    assert "drill a hole of" in " ".join(benefit_sentences(found))
 
 
 # -- the rest --------------------------------------------------------------------------------------
@@ -734,7 +737,7 @@ def test_evenly_spaced_arms_leave_what_their_sum_leaves(name: str, count: int) -
     if arms.swing_after is not None:
         swings = [np.ptp(one) / abs(np.mean(one)) for one in (torque, summed(torque, count))]
         assert (arms.swing_before, arms.swing_after) == pytest.approx(swings, rel=0.01)
-    told = " ".join(helps_told(found))
+    told = " ".join(benefit_sentences(found))
     first = "A second arm like this one, opposite on carrier"
     assert (first if count == 2 else "4 arms like this one, evenly spaced on reel") in told
 
@@ -772,7 +775,7 @@ def test_two_weights_at_the_ends_take_the_couple_that_turns_with_the_crank() -> 
     left = np.linalg.norm(couple - turned * best[0]) / np.linalg.norm(couple)
     assert ends.gain == pytest.approx(1 - left, abs=1e-9)
     assert abs(best[0]) == pytest.approx(ends.moment)
-    assert "opposite each other and 176 mm apart" in " ".join(helps_told(found))
+    assert "opposite each other and 176 mm apart" in " ".join(benefit_sentences(found))
 
 
 def test_the_rule_of_what_is_offered_says_how_far_small_figures_may_grow() -> None:

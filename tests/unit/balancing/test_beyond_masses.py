@@ -16,7 +16,7 @@ from equipoise.balancing.beyond_masses import Beyond
 from equipoise.balancing.cylinder_sizes import MODULUS
 from equipoise.balancing.first_order import balance_shafts_for
 from equipoise.balancing.flywheels import RequiredFlywheel, flywheel_sentences, flywheels_for
-from equipoise.balancing.outcome import helps_told
+from equipoise.balancing.outcome import benefit_sentences
 from equipoise.balancing.policy import (
     BUCKLING_SAFETY,
     COARSE,
@@ -46,7 +46,7 @@ def beyond(name: str) -> Beyond:
 
 
 def said(name: str) -> str:
-    return " ".join(helps_told(advice_for(name)))
+    return " ".join(benefit_sentences(advice_for(name)))
 
 
 # -- flywheels -------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.balancing.beyond_masses import Counterbalance
-from equipoise.balancing.outcome import helps_told, why_not
+from equipoise.balancing.outcome import benefit_sentences, why_not
 from equipoise.balancing.policy import OVER_SOIL
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.remedies import Comparison, Sector, sectors, with_sectors
@@ -221,7 +221,7 @@ def test_a_mass_of_two_points_names_both() -> None:
     lines = [*in_short(change)]
     assert lines == [*sentences(change)] and len(lines) == 3
     assert [line.split("made as: ")[1].startswith("point mass of 117.6 g") for line in lines[1:]]
-    assert " ".join(helps_told(found)).count("point mass of ") == 2
+    assert " ".join(benefit_sentences(found)).count("point mass of ") == 2
 
 
 def test_a_plate_names_its_material() -> None:

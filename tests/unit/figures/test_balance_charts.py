@@ -92,7 +92,7 @@ def test_crowded_bars_have_fewer_decimals_that_still_tell_them_apart(
     for times, expected in ((1, free), (3, crowded)):
         sizes = factor * np.tile([0.0, 3.11, 2.22, 1.24, 0.61], times)
         read = {role: (np.arange(float(len(sizes))), sizes) for role in ("bar before", "bar after")}
-        panel = order_panel("", "force", read, len(sizes) - 1, most_told=len(sizes))
+        panel = order_panel("", "force", read, len(sizes) - 1, most_with_numbers=len(sizes))
         words = lay_out(Chart("", "", "", (panel,))).words
         numbers = {w.text for w in words if w.color in ("#0060a8", "#595959")}
         assert numbers == {*expected.split()}

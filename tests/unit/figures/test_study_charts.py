@@ -265,7 +265,7 @@ def test_the_least_and_the_model_are_marked_where_they_are() -> None:
     marks = {mark.role: (mark.x, mark.y) for mark in chart.panels[0].marks}
     assert marks == {"least": found.best, "own": found.start}
     assert f"{found.least:.4g} N" in words(chart) and f"{found.before:.4g} N" in words(chart)
-    assert f"least {objective_named(found.objective)}: {found.least:.4g} N" in studies.told_best(
+    assert f"least {objective_named(found.objective)}: {found.least:.4g} N" in studies.optimum_text(
         found
     )
     spline = RectBivariateSpline(found.y, found.x, found.values)
@@ -287,7 +287,7 @@ def test_a_number_has_a_unit_that_suits_its_range(most: float, least: float, wor
         best=best,
         start=None,
     )
-    assert studies.told_best(of_mass).split(" = ")[2].startswith(words_of)
+    assert studies.optimum_text(of_mass).split(" = ")[2].startswith(words_of)
     assert words_of in words(studies.landscape(of_mass))
 
 

@@ -144,7 +144,7 @@ def test_at_which_speed() -> None:
     assert tool_shaft.speed_shown(respond_tool(tool, 200.0)) == 200.0
     assert SPEEDS[0] <= tool_shaft.speed_shown(respond_tool(machine("loose"), SPEEDS)) <= SPEEDS[-1]
     assert "2865 rpm" in words(tool_shaft.response_charts(response, 300.0)["moment"])
-    assert tool_shaft.turns_told(1200.0) == "11459" and tool_shaft.turns_told(3.0) == "28.65"
+    assert tool_shaft.rpm_text(1200.0) == "11459" and tool_shaft.rpm_text(3.0) == "28.65"
 
 
 # -- studies ---------------------------------------------------------------------------------------

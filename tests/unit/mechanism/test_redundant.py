@@ -15,7 +15,7 @@ from equipoise.exchange.formats import Job
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.redundant_reactions import IDLE
 from equipoise.mechanism.dynamics.out_of_plane import exerted_in
-from equipoise.mechanism.dynamics.reactions import idle_told, indeterminate_reactions
+from equipoise.mechanism.dynamics.reactions import idle_teeth_notes, indeterminate_reactions
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Slider, Vector
 from support.chosen import few
@@ -418,7 +418,7 @@ def test_teeth_push_as_their_flanks_lie(kind: str) -> None:
             senses = [tried.get(f"flank({one.name})", 0.0) for one in shared.loops]
             push = shared.solve(tried, poses, senses)[loop][0]
             assert np.all(sense * push[idle] < -least)
-    (told,) = idle_told(linkage, state)
+    (told,) = idle_teeth_notes(linkage, state)
     assert idle_ones and all(name in str(told) for name in idle_ones)
 
 

@@ -34,7 +34,7 @@ from equipoise.present.summary import answers, tiles
 from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import orders_table
 from equipoise.results.blocks import SvgPicture, Table, Text, Value
-from equipoise.results.machine_blocks import angles_told
+from equipoise.results.machine_blocks import crank_angles_text
 from equipoise.results.result import in_own_words
 from support.chosen import EXHAUSTIVE, few, few_together
 from support.findings import findings_of, report_of
@@ -90,7 +90,7 @@ def test_a_turn_is_told_only_where_a_crank_turns(name: str, length: str) -> None
     turns = analysis.motion.turns if length == "in a turn" else 1
     (size,) = re.findall(rf": ([\d.]+) mm {length}", told)
     assert float(size) == pytest.approx(way / turns * 1e3, rel=5e-3)
-    lines = [angles_told(analysis), *(str(one) for one in machine_blocks(analysis.machine))]
+    lines = [crank_angles_text(analysis), *(str(one) for one in machine_blocks(analysis.machine))]
     assert any(" turn" in line for line in lines) == (length == "in a turn")
 
 

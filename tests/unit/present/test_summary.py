@@ -13,8 +13,8 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.balancing.blocks import outcome_blocks
-from equipoise.balancing.outcome import helps_told
-from equipoise.balancing.sentences import worse_told
+from equipoise.balancing.outcome import benefit_sentences
+from equipoise.balancing.sentences import deterioration_sentences
 from equipoise.i18n import Note, speaking
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
@@ -22,7 +22,7 @@ from equipoise.present.cells import grid, noted, printed
 from equipoise.present.composition import balance_blocks, report_page
 from equipoise.present.findings import Findings
 from equipoise.present.pictures import pictures
-from equipoise.present.summary import Shaking, answers, planting_told, tiles
+from equipoise.present.summary import Shaking, answers, planting_sentences, tiles
 from equipoise.present.tool_summary import tool_answers
 from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import shares
@@ -112,13 +112,13 @@ def test_what_helps_most_is_what_balancing_finds():
 def test_what_gets_worse_is_told():
     """A weight on the driving shaft of a knife makes its bearing carry more; it is not offered."""
     heavy = eq.load("yamashita-rig-counterweight").with_balance(None)
-    told = " ".join(helps_told(advise(heavy)))
+    told = " ".join(benefit_sentences(advise(heavy)))
     assert "In exchange these become larger, frame and drive: shaking force y, peak, by " in told
     found = advise(eq.load("knife-drive").with_balance(None))
     tried = (one for one in found.tried if one.changes[0].link == "shaft")
     weight = max(tried, key=lambda one: one.gain)
     assert "In exchange these become larger, joints: force in joint S, peak, by " in " ".join(
-        worse_told(weight)
+        deterioration_sentences(weight)
     )
     assert not found.helps
 
@@ -143,7 +143,7 @@ def test_no_placeholder_is_left(language):
 )
 def test_every_arm_is_told(ahead: float, hills: str):
     figures = eq.plant(two_arms(ahead))
-    first, second, holes, fastest = planting_told(SimpleNamespace(planting=figures))
+    first, second, holes, fastest = planting_sentences(SimpleNamespace(planting=figures))
     for told, arm in ((first, figures.arms[0]), (second, figures.arms[1])):
         entry = np.degrees(arm["entry.crank_angle"])
         assert f"The tip {arm.tip} goes 30.0 mm into the soil" in told

@@ -8,7 +8,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.advice import advise
-from equipoise.balancing.outcome import helps_told
+from equipoise.balancing.outcome import benefit_sentences
 from equipoise.mechanism.parts.balance import Balance, Objective
 from equipoise.results.blocks import Text
 from equipoise.results.rotors import rotor_sentence, unbalances
@@ -70,7 +70,7 @@ def test_an_exciter_is_not_robbed_of_its_unbalance() -> None:
     machine = sieve(14)
     found = advise(machine)
     assert not found.helps
-    words = " ".join(helps_told(found))
+    words = " ".join(benefit_sentences(found))
     assert rotor_sentence(machine) in words
     assert "308" in rotor_sentence(machine)  # 22 kg at 14 mm, in kg mm
     assert "would be added" not in words

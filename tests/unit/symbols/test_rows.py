@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.figures.animation import animated_svg
 from equipoise.figures.linkage import linkage
-from equipoise.figures.stage import rows_told
+from equipoise.figures.stage import row_legend
 from equipoise.mechanism.parts.support import Row
 from equipoise.symbols.pieces import pieces, placed
 from equipoise.symbols.scene import Scene
@@ -36,7 +36,7 @@ def test_a_row_is_where_the_linkage_is_a_phase_later() -> None:
     assert len(shapes) == len(corners)  # rows 2 and 3 cover each other
     for shape, names in zip(shapes, corners, strict=True):
         np.testing.assert_allclose(shape.places, [later[name] for name in names], atol=1e-12)
-    assert rows_told(scene) == ["row 1: as drawn; rows 2, 3: pale, 90° ahead"]
+    assert row_legend(scene) == ["row 1: as drawn; rows 2, 3: pale, 90° ahead"]
 
 
 def test_a_row_beside_the_linkage_is_drawn_there_and_makes_room() -> None:
@@ -45,13 +45,13 @@ def test_a_row_beside_the_linkage_is_drawn_there_and_makes_room() -> None:
     (crank, *_), own = pale(scene, 0), alone.places["A"][0]
     assert crank.places[0] == pytest.approx(own + 0.1 + 0.02j)
     assert scene.box[1].real == pytest.approx(alone.box[1].real + 0.1)
-    assert rows_told(scene) == ["row 1: as drawn; row 2: pale"]
+    assert row_legend(scene) == ["row 1: as drawn; row 2: pale"]
 
 
 def test_a_row_far_away_is_told_and_not_drawn() -> None:
     scene, _ = scene_of(Row(), Row(phase=np.pi, offset=(3.0, 0.0)))
     assert pale(scene, 0) == [] and scene.box == scene_of(Row(), Row())[0].box
-    assert rows_told(scene) == ["row 1: as drawn; row 2: beside the drawing, 180° ahead"]
+    assert row_legend(scene) == ["row 1: as drawn; row 2: beside the drawing, 180° ahead"]
 
 
 def test_pictures_and_animations_tell_rows() -> None:

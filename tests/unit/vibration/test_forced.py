@@ -14,7 +14,7 @@ from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
 from equipoise.mechanism.parts.force_elements import Motor, MotorTable
 from equipoise.mechanism.parts.support import UP
 from equipoise.present.findings import Findings, find
-from equipoise.present.summary import vibration_told
+from equipoise.present.summary import vibration_sentences
 from equipoise.results.blocks import Text
 from equipoise.vibration.blocks import disagreement
 from equipoise.vibration.coupled import StallError
@@ -337,7 +337,7 @@ def test_a_speed_within_a_resonance_says_so(rpm: float) -> None:
     ] == told
     found = find("yamashita-rig", speed=speed)
     assert isinstance(found, Findings)
-    summary = [line for line in vibration_told(found) if "to be avoided" in line]
+    summary = [line for line in vibration_sentences(found) if "to be avoided" in line]
     assert summary == [f"T{line[1:]}." for line in told]
 
 

@@ -37,7 +37,7 @@ def kept(session: Session, **values: Any) -> Reply:
 
 def charts_of(session: Session) -> dict[str, list[str]]:
     """Choices of every chart that a page is told of, by its name."""
-    told = [*session.state_replies(None), *session.tell_more()]
+    told = [*session.state_replies(None), *session.deferred_replies()]
     if isinstance(session.base(), Computed) and session.current().design.machine.run is not None:
         told += ask(session, "run", seq=1)
     charts = [chart for reply in told for chart in reply.content.get("charts", [])]

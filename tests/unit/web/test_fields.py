@@ -85,7 +85,7 @@ def test_what_friction_costs_follows_its_coefficient() -> None:
     session.open(Design("engine", machine))
     for coefficient in (0.08, 0.16, 0.0):
         edit(session, {"set": "joints[1].friction", "value": coefficient})
-        (table,) = [r.content for r in session.tell_more() if r.content["type"] == "strokes"]
+        (table,) = [r.content for r in session.deferred_replies() if r.content["type"] == "strokes"]
         figures = {one["name"]: one for one in table["figures"]}
         losses = eq.analyze(machine.with_number("joints[1].friction", coefficient)).losses
         if losses is None:

@@ -18,7 +18,7 @@ from unit.web.typed import misfits_of_reply
 
 
 def strokes_of(session: Session) -> Reply:
-    (reply,) = (item for item in session.tell_more() if item.content["type"] == "strokes")
+    (reply,) = (item for item in session.deferred_replies() if item.content["type"] == "strokes")
     assert misfits_of_reply(reply.content) == []
     return reply
 

@@ -124,7 +124,7 @@ def test_what_comes_later_holds_to_its_type() -> None:
     kinds = set()
     for name in ("yamashita-rig", "kim-chung-a", "walking-transplanter"):
         session, _ = opened(name)
-        for reply in session.tell_more():
+        for reply in session.deferred_replies():
             content = json.loads(json.dumps(reply.content))
             assert misfits_of_reply(content) == []
             kinds.add(content["type"])

@@ -117,7 +117,7 @@ def test_the_path_over_ground_advances_by_a_hill_a_turn() -> None:
     figures = eq.plant(eq.load("kim-chung-a"))
     assert moved[-1] - moved[0] == pytest.approx(way * figures["hill_spacing"], rel=1e-5)
     assert shown.content["planting"]["surface"] == pytest.approx(figures["surface"])
-    strokes, more = session.tell_more()
+    strokes, more = session.deferred_replies()
     told = {one["name"]: one["value"] for one in more.content["figures"]}
     assert told["soil.depth"] == pytest.approx(1e3 * figures["soil.depth"])
     assert strokes.content["type"] == "strokes"
@@ -132,13 +132,13 @@ def test_links_beside_each_other_are_told() -> None:
     assert peak == pytest.approx(np.max(np.abs(across.rocking_moment.x)))
     sent = shown.vector("rocking_moment")
     np.testing.assert_allclose(sent, across.rocking_moment.value, rtol=0, atol=1e-4)
-    drawn = next(one.content for one in session.tell_more() if one.content["type"] == "side")
+    drawn = next(one.content for one in session.deferred_replies() if one.content["type"] == "side")
     assert "piston-2" in drawn["svg"]
 
 
 def test_figures_of_sliders_and_rockers_are_told_in_the_units_of_tables() -> None:
     session, _ = opened("quick-return")
-    (more,) = session.tell_more()
+    (more,) = session.deferred_replies()
     told = {one["label"]: one for one in more.content["figures"]}
     assert told["ram on frame: stroke"]["text"] == "304.0"
     assert told["ram on frame: stroke"]["unit"] == "mm"
@@ -146,7 +146,9 @@ def test_figures_of_sliders_and_rockers_are_told_in_the_units_of_tables() -> Non
     assert told["lever: dwell"]["unit"] == "°"
     assert "block on lever: least mechanical advantage" not in told
     session, _ = opened("cam-pusher")
-    told = {one["name"]: one for reply in session.tell_more() for one in reply.content["figures"]}
+    told = {
+        one["name"]: one for reply in session.deferred_replies() for one in reply.content["figures"]
+    }
     one = told["cams.crank to pusher.lift_off_speed"]
     assert (one["label"], one["unit"]) == ("crank → pusher: lift-off speed of the crank", "rpm")
     assert one["value"] == pytest.approx(583.6, rel=1e-3)
@@ -154,25 +156,25 @@ def test_figures_of_sliders_and_rockers_are_told_in_the_units_of_tables() -> Non
 
 def test_strokes_and_planting_are_told_before_and_after() -> None:
     session, _ = opened("kim-chung-a")
-    assert not any(one.content["compared"] for one in session.tell_more())
+    assert not any(one.content["compared"] for one in session.deferred_replies())
     edit(session, {"set": "drive.speed", "text": "100 rpm"})
-    strokes, planting = session.tell_more()
+    strokes, planting = session.deferred_replies()
     assert [one["was"] for one in strokes.content["figures"] if one["was"]] == []  # a path has none
     was = {one["name"]: one["was"] for one in planting.content["figures"]}
     assert was["hill_spacing"] == "150.0 · +140.0 %"
     ask(session, "variant", do="pin")
     edit(session, {"set": "links.rocker.lengths.D-C", "text": "82 mm"})
-    for one in session.tell_more():
+    for one in session.deferred_replies():
         assert any(figure["was"] for figure in one.content["figures"])
     ask(session, "variant", do="against", to="nothing")
     assert session.has_more
-    assert not any(one.content["compared"] for one in session.tell_more())
+    assert not any(one.content["compared"] for one in session.deferred_replies())
 
 
 def test_no_more_is_told_of_what_is_unfinished_by_then() -> None:
     session, _ = opened("slider-crank-engine")
     assert session.has_more
-    more = session.tell_more()
+    more = session.deferred_replies()
     ask(session, "make", do="delete", what="link", name="crank")
     assert not [*more]
 
@@ -191,9 +193,9 @@ def test_a_machine_on_a_support_tells_its_response() -> None:
     session, _ = opened("yamashita-rig")
     _, _, reply = ask(session, "ready")
     found = eq.respond(eq.load("yamashita-rig"))
-    told = next(one.content for one in session.tell_more() if one.content["type"] == "gauges")[
-        "figures"
-    ]
+    told = next(
+        one.content for one in session.deferred_replies() if one.content["type"] == "gauges"
+    )["figures"]
     (reading,) = found.gauges.values()
     for one, value in zip(
         told, (reading.displacement.peak_to_peak, reading.displacement.vibration_rms), strict=True

@@ -12,7 +12,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import speaking
 from equipoise.keys import Frozen, Named, Quantity, Tables
 from equipoise.keys.paths import KeyPath
-from equipoise.mechanism.parts.links import TOLD_BY_BODIES
+from equipoise.mechanism.parts.links import SET_BY_BODIES
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import parse, showing
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
@@ -362,7 +362,7 @@ def test_forms_are_refused_in_their_own_words() -> None:
     assert missing.format("centre of mass") in reply.content["what"]
     assert reply.content["what"].startswith("centre of mass and inertia missing; ")
     assert missing.format("center_of_mass") in reply.content["message"]
-    error = ModelError("links.crank.mass", TOLD_BY_BODIES)
+    error = ModelError("links.crank.mass", SET_BY_BODIES)
     content = refused(1, error, "ja").content
     assert "重心" in content["what"] and "center_of_mass" in content["message"]
 

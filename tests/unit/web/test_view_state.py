@@ -41,18 +41,18 @@ def test_a_page_keeps_the_response_over_speed(asked: tuple[str, dict[str, Any]])
             if reply.content["type"] == "response":
                 shown[:] = [one["name"] for one in reply.content["charts"]]
 
-    hear(session.tell_more())
+    hear(session.deferred_replies())
     assert shown == ["response", "sweep"]
     kind, values = asked
     replies = [*session.receive(message_of({"type": kind, "seq": 1, **values}))]
     assert not told(replies, "refused")
     hear(replies)
-    hear(session.tell_more())
+    hear(session.deferred_replies())
     assert shown == ["response", "sweep"]
     moved = [{"set": "links.crank.mass", "value": 0.2}]
     ask(session, "edit", commit=False, edits=moved)  # before the rest of the answer is computed
     hear(session.receive(message_of({"type": "compare", "seq": 2, "on": False})))
-    hear(session.tell_more())
+    hear(session.deferred_replies())
     assert shown == ["response", "sweep"]
 
 

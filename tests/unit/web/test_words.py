@@ -90,7 +90,7 @@ def test_what_a_page_is_told_is_in_its_language(name: str) -> None:
     held = {} if machine.support is None else {**machine.support.mounts, **machine.support.gauges}
     parts = {part for one in (*machine.links, *held) for part in (one, *one.split("_"))}
     names = parts | {part.capitalize() for part in parts}
-    replies = [*session.state_replies(None), *session.tell_more()]
+    replies = [*session.state_replies(None), *session.deferred_replies()]
     contents = [reply.content for reply in replies]
     found = [text for content in contents for text in english(content, names)]
     fields = next(one["fields"] for one in contents if "fields" in one)
@@ -103,7 +103,9 @@ def test_a_page_speaks_of_cycles_where_no_crank_turns(language: str) -> None:
     """As terminal, notebook and report do: a loader has no crank, whatever the page shows of it."""
     session, _ = opened("hydraulic-loader")
     ask(session, "speak", languages=[language])
-    contents = [reply.content for reply in (*session.state_replies(None), *session.tell_more())]
+    contents = [
+        reply.content for reply in (*session.state_replies(None), *session.deferred_replies())
+    ]
     (wording,) = (one["wording"] for one in contents if "wording" in one)
     cycle = {"en": "Any output over the cycle", "ja": "1周期の任意の出力"}
     if language in cycle:

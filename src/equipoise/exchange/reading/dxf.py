@@ -25,7 +25,7 @@ DEEPEST, MOST = 6, 20_000
 """Blocks in blocks, and entities in all."""
 NONE = Note("this is no DXF drawing that can be read; save it anew")
 DAMAGED = "recovered invalid floating"
-"""How ezdxf begins to tell that it has read a number otherwise than it is written."""
+"""How ezdxf begins a warning that it has read a number otherwise than it is written."""
 SKEW = 1e-6
 """How far a line may leave the plane over its distance from the origin: rounding."""
 MATRICES = 3
@@ -36,7 +36,7 @@ CURVES = {"ARC", "ELLIPSE", "SPLINE", "LINE", "LWPOLYLINE", "POLYLINE"}
 def read(data: bytes, marks: Marks, unit: float | None) -> Read:
     """The machine of a drawing.
 
-    unit : m in a unit of it, instead of what it tells.
+    unit : m in a unit of it, instead of the unit that it states.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def read(data: bytes, marks: Marks, unit: float | None) -> Read:
 
 @contextmanager
 def _warnings() -> Iterator[list[str]]:
-    """What ezdxf warns of meanwhile, which nobody else is told."""
+    """Collect warnings of ezdxf, which are not logged."""
     warnings: list[str] = []
     handler = logging.Handler()
     handler.emit = lambda record: warnings.append(record.getMessage())  # type: ignore[method-assign]

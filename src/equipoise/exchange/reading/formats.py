@@ -29,12 +29,12 @@ DRAWING_OPTIONS = ("frame", "guide", "link", "tolerance", "unit")
 
 
 MODELS = ("frame", "pin")
-"""What can be told of a drawing, and of bodies in space."""
+"""Options of models of bodies in space."""
 
 
 @dataclass(frozen=True)
 class ImportOptions:
-    """What is told beside the file.  unit : m in a unit of it; `None` as it tells itself."""
+    """Options of an import.  unit : m in a unit of the file; `None` for the unit that it states."""
 
     marks: Marks
     bodies: Bodies
@@ -134,9 +134,9 @@ def import_machine(
 
     Parameters
     ----------
-    path : of a drawing (DXF, SVG), a model (MJCF, URDF), or a file of Linkage or PMKS+; which it
-        is, its content and its ending tell.
-    crank : name of the driven link; where nobody tells, one that turns fully.
+    path : of a drawing (DXF, SVG), a model (MJCF, URDF), or a file of Linkage or PMKS+; the
+        format is detected from content and extension.
+    crank : name of the driven link; by default the file's, or one that turns fully.
     speed : of the crank, rad/s, or a text such as ``"300 rpm"``; other than 0.
     frame : names of layers, colours or groups of a drawing, or of bodies of a model, that stand
         still.
@@ -145,7 +145,7 @@ def import_machine(
     pin : two bodies or sites each that a pin joins, as ``A = B``, where a model closes no loops.
     tolerance : distance below which ends of lines meet, m, or a text such as ``"0.1 mm"``; 0 for a
         millionth of the drawing.
-    unit : m in a unit of the drawing, or a text such as ``"1 in"``, instead of what it tells.
+    unit : m in a unit of the drawing, or a text such as ``"1 in"``; default: as it states.
 
     Returns
     -------

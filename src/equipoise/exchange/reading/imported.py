@@ -24,9 +24,9 @@ from equipoise.quantities import Dimension, clean, clean_place
 from equipoise.results.blocks import Block, Column, Notes, Table, Text, Value
 
 USUAL_SPEED = 2 * pi
-"""rad/s, where nobody tells one."""
+"""rad/s, by default."""
 CRANKS = ("crank", "drive", "input")
-"""Names of a link that is driven, where the file does not tell."""
+"""Names of a driven link, where the file does not state it."""
 MOST = 20
 """Links that are tried as the crank."""
 
@@ -36,7 +36,7 @@ class Read:
     """What was read.
 
     outline : the machine, as far as it is known, as it is drawn.
-    crank, speed : the driven link and how fast it turns, rad/s, where the file tells.
+    crank, speed : the driven link and its speed, rad/s, where the file states them.
     notes : what was left out or assumed, a sentence each.
     hints : what may help where the mobility is not 1, a sentence each.
     """
@@ -52,7 +52,7 @@ class Read:
 class Imported:
     """A machine from a file of another program.
 
-    machine : `None` where the file, and what was told besides, do not make one that moves.
+    machine : `None` where the file and the options do not make one that moves.
     outline : what there is of it, where it is drawn.
     missing : what stands in the way of an analysis, or of forces; notes : what was assumed or
     left out; a sentence each.
@@ -144,7 +144,7 @@ def _header(name: str) -> str:
 
 
 def finished(read: Read, crank: str = "", speed: float | None = None) -> Imported:
-    """The machine of what was read, with what its user tells besides.
+    """The machine of what was read, with the options of its user.
 
     crank : name of the driven link.  speed : of it, rad/s.
 
@@ -156,7 +156,7 @@ def finished(read: Read, crank: str = "", speed: float | None = None) -> Importe
     missing: list[str] = []
     _check(outline)
     name, why = _crank(outline, crank, read.crank)
-    given = speed or read.speed or None  # a drawing's motor that is switched off tells none
+    given = speed or read.speed or None  # a drawing's motor that is switched off has none
     if name:
         outline = replace(outline, drive=Drive(name, USUAL_SPEED if given is None else given))
         if given is None:
@@ -200,7 +200,7 @@ def _check(outline: MachineDraft) -> None:
 
 
 def _crank(outline: MachineDraft, wanted: str, given: str) -> tuple[str, str]:
-    """The driven link, and how it was found where nobody told."""
+    """The driven link, and how it was chosen where neither user nor file states it."""
     turning = [name for name, link in outline.links.items()
                if sum(point in outline.frame for point in link.points) == 1]  # fmt: skip
     if wanted:

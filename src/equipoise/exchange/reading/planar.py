@@ -258,7 +258,7 @@ def planar(space: Space, options: SpatialOptions) -> Read:
 
 
 def _closed(space: Space, pair: str) -> Loop3:
-    """The pin between two bodies, or points of them, that is told as ``A = B``."""
+    """The pin between two bodies, or points of them, that is given as ``A = B``."""
     known = {point: (name, place) for name, solid in space.solids.items()
              for point, place in {name: solid.axes.origin, **solid.points}.items()}  # fmt: skip
     ends = [part.strip() for part in pair.split("=")]
@@ -402,7 +402,7 @@ class _Flat:
         return item, other
 
     def mass(self, link: str) -> dict[str, Any]:
-        """Masses of a link, where all parts of it tell theirs."""
+        """Masses of a link, where all parts of it have theirs."""
         parts = [solid for name, solid in self.space.solids.items() if self.link_of[name] == link]
         lumps = [part.lump for part in parts if part.lump is not None]
         if len(lumps) < len(parts):

@@ -1,8 +1,8 @@
 """Files of PMKS+ (`.pmks`), and the addresses by which it shares a mechanism: the same text.
 
-It is ``settings.decimals.integers.choices.joints.links.forces.chosen`` with a sign at the end that
-tells its length.  Numbers are digits to the base of 64, behind a 0 where they are negative; those
-with decimals are thousandths.
+It is ``settings.decimals.integers.choices.joints.links.forces.chosen`` with a character at the
+end that encodes its length.  Numbers are digits to the base of 64, behind a 0 where they are
+negative; those with decimals are thousandths.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from equipoise.i18n import Note
 Array = np.ndarray[Any, Any]
 WORLD = "world"
 DOWN = (0.0, 0.0, -9.80665)
-"""m/s2, of files that do not tell."""
+"""m/s2, of files without gravity."""
 
 MOST = 200
 """Bodies; no linkage has so many."""
@@ -26,7 +26,7 @@ MOST = 200
 
 @dataclass(frozen=True)
 class SpatialOptions:
-    """What is told beside a file.
+    """Options of an import of bodies in space.
 
     still : bodies that are held still, whatever joints they have.
     pins : that close loops, each as ``A = B`` of two bodies, or points of them.
@@ -61,7 +61,7 @@ class Lump:
     inertia: Array
 
     def placed(self, at: Frame3) -> Lump:
-        """In the axes around those that it is told in."""
+        """The lump in the axes in which its own axes are at `at`."""
         return Lump(self.mass, at.out(self.center), at.turn @ self.inertia @ at.turn.T)
 
 
@@ -82,7 +82,7 @@ def combined(lumps: list[Lump]) -> Lump:
 class Solid:
     """A body where it is drawn.
 
-    lump : in space; `None` where the file does not tell.  points : places in space by name.
+    lump : in space; `None` where the file has no inertia.  points : places in space by name.
     """
 
     name: str
@@ -144,7 +144,7 @@ class Space:
     loose: list[str] = field(default_factory=list)
 
     def note(self, sentence: str) -> None:
-        """Tell something once."""
+        """Add a note, unless it is there already."""
         if sentence not in self.notes:
             self.notes.append(sentence)
 
@@ -251,7 +251,7 @@ def by_quaternion(where: str, given: tuple[float, ...]) -> Array:
 
 
 WATER = "1000"
-"""kg/m3, where a shape tells neither mass nor density."""
+"""kg/m3, where a shape has neither mass nor density."""
 SIZES = {"sphere": 1, "ellipsoid": 3, "box": 3, "capsule": 2, "cylinder": 2}
 """How many numbers the size of a shape has: radii and half lengths, m."""
 LEAST = 1e-9

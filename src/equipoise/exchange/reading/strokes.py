@@ -19,14 +19,14 @@ from equipoise.mechanism.parts.machine import FRAME, Machine
 MOST = 1000
 """Corners of lines, and circles, beyond which a drawing is none of a skeleton."""
 COINCIDENT = 1e-6
-"""Distance over the size of the drawing below which ends meet, where none is told."""
+"""Distance over the size of the drawing below which ends meet, by default."""
 PIVOT = 0.2
 """Radius over the size of the drawing above which a circle marks no pivot."""
 NEARLY = 0.01
 """Distance over the size of the drawing below which ends that do not meet may be meant to."""
 FRAMES = ("frame", "ground", "fixed", "base")
 GUIDES = ("guide", "slider", "rail")
-"""Names of what stands still, and of lines on which ends slide, where none are told."""
+"""Default names of what stands still, and of lines on which ends slide."""
 IGNORED = ("path", "part", "dimensions", "pitch", "names", *part_kinds(Machine))
 """First words of layers of what `export` draws beside the links."""
 WORDS = "names"
@@ -81,7 +81,7 @@ class Drawing:
     notes: list[str] = field(default_factory=list)
 
     def note(self, sentence: str) -> None:
-        """Tell something once."""
+        """Add a note, unless it is there already."""
         if sentence not in self.notes:
             self.notes.append(sentence)
 
@@ -106,7 +106,7 @@ def skeleton(drawing: Drawing, marks: Marks) -> Read:
 
     Raises
     ------
-    ModelError : there is no line, or a name that is told is in none of them.
+    ModelError : there is no line, or a name that is given is in none of them.
     """
     if not drawing.strokes:
         raise ModelError("", Note("there is no line in it that could be a link"))
@@ -234,7 +234,7 @@ class _Skeleton:
                 )
 
     def _carrier(self, guide: DrawnLine, links: Iterable[str]) -> str:
-        """What has a guide: the link that its name tells behind "on", else the frame."""
+        """Body with a guide: the link that its name has behind "on", else the frame."""
         for name in guide.names:
             _, word, on = name.rpartition(" on ")
             if on in links:

@@ -26,7 +26,7 @@ LONGEST = 200_000
 def read(root: Element, marks: Marks, unit: float | None) -> Read:
     """The machine of a drawing.
 
-    unit : m in a unit of it, instead of what it tells.
+    unit : m in a unit of it, instead of the unit that it states.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def _scale(root: Element, drawing: Drawing) -> float:
 
 
 def _side(root: Element, key: str, units: float) -> float | None:
-    """m in a unit along a side of the drawing; `None` where it tells no length of it."""
+    """m in a unit along a side of the drawing; `None` without a length."""
     size = re.fullmatch(r"\s*([0-9.eE+-]+)\s*([a-z]*)\s*", root.get(key, ""))
     if size is None or size[2] not in METRES:
         return None

@@ -1,8 +1,8 @@
 """Assembly modes of dyads where the file leaves them out, and parallel cranks.
 
 A side fits that brings the links where ``[position]`` has them, or where their own axes have them:
-whoever draws all links in the frame's axes has drawn crank angle 0.  Where neither tells, a side
-without which the crank cannot turn fully does.  All of it becomes one error, with lines that can be
+whoever draws all links in the frame's axes has drawn crank angle 0.  Where neither decides, a side
+does without which the crank cannot turn fully.  All of it becomes one error, with lines that can be
 pasted into the file.
 
 A four-bar of equal opposite sides comes into line twice a turn, where its links may go on parallel
@@ -41,7 +41,7 @@ of the other side's."""
 MOST_TRIED = 4
 """Open sides of which every combination is tried."""
 ANGLES = tuple(np.radians(np.arange(0.0, 360.0, 30.0)).tolist())
-"""Crank angles at which it is tried to join links whose side nothing tells."""
+"""Crank angles at which links are tried whose assembly mode is undetermined."""
 STRETCHED = 1e-6
 """Squared sine of a transmission angle up to which both sides are the same."""
 SMALL = 1e4
@@ -58,7 +58,7 @@ class Choice:
 
     inner : name of the inner joint.  words : of the two sides.  meaning : what they say.
     given : what the file has.
-    side : the number of the word that is taken.  why : what tells, empty where nothing does.
+    side : the number of the word that is taken.  why : what decides it, empty where nothing does.
     gives : what each side leads to, empty where the links cannot be joined.
     group : with the side that is taken.
     """
@@ -89,7 +89,7 @@ class Choice:
         return Note("{joint} got {given!r}", joint=self.joint, given=self.given)
 
     def lines(self, taken: str) -> Iterator[str]:
-        """For the table of sides; both of them where nothing tells which.
+        """Lines for the table of sides; both sides where the assembly mode is undetermined.
 
         taken : entries of earlier joints on which what these sides give depends.
         """
@@ -213,7 +213,7 @@ def decided(
     choices: Sequence[Choice], turns_fully: Callable[[Mapping[str, str]], Any]
 ) -> dict[str, tuple[int, str]]:
     """By inner joint, the sides without which the crank cannot turn fully, where nothing else
-    tells.
+    decides.
 
     turns_fully : raises an `EquipoiseError` where the crank does not with these sides, by joint.
     """
@@ -383,7 +383,7 @@ def _beyond(
 
 
 def pointed(builder: Builder, outers: list[Outer]) -> Group | None:
-    """A link that is pinned to known bodies at two points or more, which tell where it is."""
+    """A link positioned by pins to known bodies at two points or more."""
     link, first = outers[0].link, outers[0].point
     second = max(
         (outer.point for outer in outers), key=lambda pt: abs(builder.arm(link, first, pt))

@@ -148,7 +148,7 @@ def fitted(machine: Machine, joints: Structure, cam: Cam) -> CamFit:
 
 
 def _is(flag: Any) -> bool:
-    """Whether it is so of one machine; of columns of designs `can_be_made` tells."""
+    """Truth of a condition of one machine; columns of designs are left to `can_be_made`."""
     return np.ndim(flag) == 0 and bool(flag)
 
 

@@ -1,4 +1,4 @@
-"""Followers of cams: links whose displacement in the carrier a cam tells that is moved already."""
+"""Followers of cams: links whose displacement in the carrier follows from a cam moved before."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def contact(builder: Builder, joints: Structure, cam: Cam) -> CamPush:
     ModelError : they cannot be joined like this, or the cam cannot be made.
     """
     fit = fitted(builder.machine, joints, cam)
-    if not fit.has_columns:  # else `can_be_made` tells of which designs
+    if not fit.has_columns:  # else `can_be_made` checks design by design
         check_shape(builder.machine, joints, fit)
     return CamPush(fit)
 
@@ -78,7 +78,7 @@ class CamPush:
 
 @dataclass(frozen=True)
 class CamLoop(CouplingLoop):
-    """A follower is where the angle of its cam tells.
+    """Loop of a follower, whose displacement is a function of the angle of its cam.
 
     rider : what is on the cam.  axis : of the cam, and base : of the follower's pin or guide, as
     the carrier has them.

@@ -11,8 +11,8 @@ from equipoise.mechanism.assembly.loops import Contact
 from equipoise.mechanism.parts.couplings import Coupling
 
 WAYS: Mapping[str, Callable[..., Contact]] = {"line": flanks.contact, "surface": cam_groups.contact}
-"""Where the line of action is fixed on the carrier, or goes with a ratio; and where the shape of a
-surface tells it."""
+"""Kind of the line of action -> contact: fixed on the carrier or moving with a ratio, or normal to
+a surface."""
 
 
 def contact_of(builder: Builder, joints: Structure, coupling: Coupling) -> Contact:

@@ -1,6 +1,6 @@
 """One whole cycle of a linkage: after how many turns it closes, and whether the crank can turn.
 
-The steps are run once on a fine grid of crank angles, each group in turn.  That run tells the
+The steps are run once on a fine grid of crank angles, each group in turn.  That run gives the
 running angle of every link, from which any other crank angle is placed in its turn, and each
 dyad's margin, which must stay above zero.
 """

@@ -148,7 +148,7 @@ class Family:
         return state
 
     def _one_by_one(self, theta: Array) -> State:
-        """Some couplings and loops follow their own cycle, which stacked parameters do not tell."""
+        """Solve designs one by one: some couplings and loops need a cycle of their own for each."""
         rows = [k.solve(row) for k, row in zip(self.linkages, theta, strict=True)]
         names = [name for name, value in rows[0].items() if np.ndim(value) < 2]
         return {
@@ -212,8 +212,9 @@ HOLDERS: Mapping[PathPattern, Set[str] | None] = {
     ("bearings", str): {"plane"},
     ("sliders", int): {"direction", "angle"},
 }
-"""What has numbers that may be columns, by its path in the model file (`KeyPath.matches`), and
-their keys; None where these are names.  Couplings tell theirs, and all quantities of elements may.
+"""Pattern of paths in the model file (`KeyPath.matches`) of what has numbers that may be columns ->
+their keys; None where these are names.  Couplings declare theirs, and of elements all quantities
+may be columns.
 """
 
 
@@ -317,7 +318,7 @@ def _filled(parts: Mapping[Part, Array], template: Any) -> Any:
 
 
 def _check_outlines(machine: Machine) -> None:
-    """Whether plates keep their shape, and their holes the places, is only told of numbers."""
+    """Raise if outlines depend on columns: whether plates and holes fit is checked of numbers only."""
     for link in machine.links.values():
         if any(outlined_by_columns(body, link.points) for body in link.bodies):
             raise KeyError

@@ -121,7 +121,7 @@ class Flank:
     def steps(self, ground: Reaction) -> tuple[Step, ...]:
         """Steps that find the push, and what holds the driven body on the carrier: `ground`.
 
-        What the driven body needs tells which flank, or strand, bears.
+        The sign of the moment that the driven body needs selects the flank, or strand, that bears.
         """
         line, name, turn = self.line, self.coupling.name, f"u({self.coupling.carrier})"
         sense, (force, moment) = f"flank({name})", demand_names(self.driven.body)
@@ -199,7 +199,7 @@ class Flank:
         return poses[self.coupling.carrier].place_of(self.arm + self._placed(poses)[0])
 
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
-        """Force and couple on the driven body for a push of 1; `sense` tells which flank bears."""
+        """Wrenches on the driven body for a push of 1 N; `sense` selects the flank that bears."""
         line, turn = self.line, poses[self.coupling.carrier].turn[0]
         if isinstance(line, StrandLine):
             return [(turn * (line.across + sense * line.along), line.radius)]

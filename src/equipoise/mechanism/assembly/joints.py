@@ -282,7 +282,7 @@ def _count(joints: Structure) -> Note | str:
 
 
 def no_motion(joints: Structure) -> Note:
-    """Say that the joints hold the links, as far as counting tells."""
+    """Note on a mobility other than 1, by counting joints."""
     if joints.mobility > 0:
         return Note(
             "joints leave a mobility of {mobility} for {drives} drives ({count})",

@@ -51,7 +51,7 @@ from equipoise.mechanism.assembly.steps import (
     needed_references,
     pin_reaction,
     run,
-    tells_flanks,
+    selects_flank,
 )
 from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.parts.machine import FRAME, LINKAGE, Machine
@@ -78,7 +78,7 @@ class Linkage(Brief):
     anchors : body -> point about which its moments are taken.
     groups : what is solved after the drive, in order.
     reference_cycle : of a machine that differs by little; loops are followed sooner from there.
-    shared : all joints at once, where groups cannot tell their forces one after the other.
+    shared : all joints at once, where forces do not follow group by group.
     memory : what was computed of it elsewhere and takes time, by name, such as its cycle.
     """
 
@@ -116,8 +116,8 @@ class Linkage(Brief):
 
     @remembered
     def forces_on_flanks(self) -> tuple[Step, ...]:
-        """Force steps without those that tell which flanks, or strands, are loaded."""
-        return tuple(step for step in self.forces if not tells_flanks(step))
+        """Force steps without those that select the loaded flanks, or strands."""
+        return tuple(step for step in self.forces if not selects_flank(step))
 
     @remembered
     def reactions(self) -> tuple[Reaction, ...]:
@@ -315,8 +315,8 @@ def sides_at_position(machine: Machine, turning: Any = None) -> dict[str, str]:
     """The side of each dyad that has two, as the machine's rough position has it; what its table
     of sides says is left aside.
 
-    turning : of `Machine`, what tells the angles of links that are pushed; that of their strokes
-        takes sides.
+    turning : of `Machine`, the source of the angles of pushed links; that of their strokes
+        depends on sides.
 
     Raises
     ------

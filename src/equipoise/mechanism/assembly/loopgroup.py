@@ -150,7 +150,7 @@ def loop_group(
 ) -> Group:
     """Make the group of these links, with `builder` knowing them afterwards.
 
-    guess : about where they are at crank angle 0, if not the file but others tell it.
+    guess : approximate positions at crank angle 0, if they are not those of the file.
     """
     maker = Maker(builder, joints, links)
     before, loops = maker.prepare()
@@ -194,7 +194,7 @@ def loop_group(
 class Maker:
     """Loop equations of some links, and what hangs on them.
 
-    anchors : of each link.  holds : link -> number of the joint that tells where it is.
+    anchors : of each link.  holds : link -> number of the joint that positions it.
     free : links of which no joint does.
     """
 
@@ -246,9 +246,9 @@ class Maker:
         return loops
 
     def hang(self, loops: list[Loop]) -> None:
-        """Find for each link the joint that tells where it is, by the shortest way from a body
+        """Find for each link the joint that positions it, by the shortest path from a body
         that is known, and take the point in that joint for the link's anchor.  A rider is placed
-        by its track alone, and places nothing: its parameter is told by no other joint.
+        by its track alone, and places nothing: no other joint determines its parameter.
         """
         placed = set(self.builder.rank)
         while True:
@@ -271,7 +271,7 @@ class Maker:
                 placed.add(free)
 
     def places(self, loop: Loop, end: End) -> bool:
-        """Whether a joint may tell where the body at one of its ends is."""
+        """Whether a joint may position the body at one of its ends."""
         if isinstance(loop, TrackLoop):
             return end is loop.on
         return self.joints.tracked.keys().isdisjoint((loop.on.body, loop.by.body))

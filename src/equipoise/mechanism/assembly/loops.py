@@ -7,8 +7,8 @@ where and as the gap is measured.
 
 All of it is arithmetic on poses, so that it runs on arrays, and can be written out for loops.
 
-One joint of each link only tells where the link is: of a link on a pin the angle is unknown, of one
-on a guide how far along it lies.  These joints make a tree, from the bodies that are known to every
+One joint of each link only positions it: of a link on a pin the angle is unknown, of a link on a
+guide its displacement.  These joints make a tree, from the bodies that are known to every
 link; what they leave open, the others close.  The start alone, from a rough position, takes every
 joint for an equation, with place and angle of each link unknown.
 
@@ -288,7 +288,7 @@ class CouplingLoop:
 
     @property
     def slides(self) -> bool:
-        """Whether what the relation tells is a length."""
+        """Whether the relation gives a length, and not an angle."""
         return self.rides is not None and self.rides.own.body == self.on.body
 
 

@@ -101,7 +101,7 @@ def _agreeing(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Gr
 
 
 def _guided(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Position | None:
-    """Where a single link is at crank angle 0, if a guide on a known body tells its angle."""
+    """Position of a single link at crank angle 0, if a guide on a known body gives its angle."""
     link, outers = links[0], outer_joints(builder, joints, links[0])
     guides = [(outer.body, outer.guide) for outer in outers if outer.guide is not None]
     if len(links) > 1 or not guides:

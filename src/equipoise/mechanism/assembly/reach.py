@@ -123,7 +123,7 @@ class FullTurn:
         return state
 
     def range_error(self, group: Group, margin: Array, dip: float, names: Note | str) -> RangeError:
-        """Tell between which crank angles a dyad can be closed; not at the angle `dip`."""
+        """Error on the crank angles, rad, between which a dyad closes; it does not at `dip`."""
         if not np.any(margin > 0):
             note = self.never_joined(group, names)
             return RangeError(note.about("links-cannot-be-joined-at-any-crank-angle"))
@@ -146,7 +146,7 @@ class FullTurn:
         return RangeError(between, tuple(ranges), lengths=self.lengths(group))
 
     def never_joined(self, group: Group, names: Note | str) -> Note:
-        """Tell that a dyad can be closed at no crank angle, and which lengths would do."""
+        """Note that a dyad closes at no crank angle, and on the lengths with which it would."""
         lengths = self.lengths(group)
         if lengths is None:
             return Note(
@@ -159,8 +159,8 @@ class FullTurn:
         )
 
     def lengths(self, group: Group) -> Note | None:
-        """Tell how far apart the outer pins of a dyad are as the crank turns, and how far they may
-        be; None of a dyad with another joint than pins.
+        """Note on the distance of a dyad's outer pins over the cycle and on the permitted distance;
+        None of a dyad with another joint than pins.
         """
         if [reaction.kind for reaction in group.reactions] != ["pin"] * 3:
             return None
@@ -201,7 +201,7 @@ class FullTurn:
                 yield link, pin.at, float(length)
 
     def beyond(self, dip: float, names: Note | str) -> Note:
-        """Tell that the drive's own motion leads where a dyad cannot be closed."""
+        """Note that the drive's prescribed motion reaches crank angles where a dyad cannot close."""
         link = self.machine.drive.link
         moved, *_ = self.machine.moved(np.array([dip]))[link]
         return Note(
@@ -226,7 +226,7 @@ class FullTurn:
 
 
 def _only_between(ranges: Sequence[tuple[float, float]], names: Note | str) -> Note:
-    """Tell between which crank angles, rad, a dyad can be closed; the first of many."""
+    """Note on the ranges of crank angle, rad, in which a dyad closes; of many, on the first."""
     sentence = all_of(
         [
             Note("from {low} to {high}", low=_in_degrees(a), high=_in_degrees(b))
@@ -279,7 +279,7 @@ def _in_degrees(angle: float) -> str:
 POINTS = 360
 """Crank angles in a turn at which the linkage is looked at."""
 LEAST = 1e-4
-"""rad: range below which ends of a swing are hardly told apart in a file."""
+"""rad: shortest swing; its ends are hardly distinct in a file."""
 FINER, ROUNDS = 16, 6
 """Into how many parts the step is parted in which an end lies, and how often."""
 LOOP_ROUNDS = 3

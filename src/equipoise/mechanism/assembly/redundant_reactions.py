@@ -402,7 +402,7 @@ class RedundantReactions(LoopForces):
             self.check_stiffness(state)
 
     def check_drives(self, state: State) -> None:
-        """Raise a `ModelError` where statics does not tell the torque of each drive."""
+        """Raise a `ModelError` where the torques of several drives are statically indeterminate."""
         _, loose = parts_of(self.unsensed(state))
         share = np.max(np.abs(loose), axis=(0, -1), initial=0.0)[-len(self.drives) :]
         if np.any(share > OPEN):
@@ -505,7 +505,7 @@ def _span_of_joints(machine: Machine, joints: Structure, apart: set[str]) -> flo
 def shared(
     builder: Builder, joints: Structure, pivot: str, groups: tuple[Group, ...]
 ) -> RedundantReactions | None:
-    """The free bodies of a machine whose groups cannot tell the forces one after the other."""
+    """The free bodies of a machine whose forces do not follow group by group; else None."""
     count = no_motion(joints) if joints.surplus else ""
     if not count and not any(group.through for group in groups):
         return None

@@ -55,8 +55,8 @@ class KernelCall:
 class RunningAngle:
     """Angle of a link, counted on through the turns.
 
-    The rotation itself tells the angle only up to whole turns; `reference(link)` in the state
-    tells it to within half a turn.  Without one, neighbouring crank angles are taken to lie close
+    The rotation itself gives the angle only up to whole turns; `reference(link)` in the state
+    gives it to within half a turn.  Without one, neighbouring crank angles are taken to lie close
     together.
     """
 
@@ -185,8 +185,8 @@ def demand_names(link: str) -> tuple[str, str]:
     return f"F({link})", f"M({link})"
 
 
-def tells_flanks(step: Step) -> bool:
-    """Whether a step says which flank, or strand, is loaded, and nothing else."""
+def selects_flank(step: Step) -> bool:
+    """Whether a step selects the loaded flank, or strand, and does nothing else."""
     return isinstance(step, KernelCall) and all(name.startswith("flank(") for name in step.outputs)
 
 

@@ -144,7 +144,7 @@ def soil_force(motion: Motion, tip: str | None = None, crank_speed: Array | None
     Raises
     ------
     ModelError : the machine has no `[planting]`.
-    MotionError : its crank cannot turn fully, so that no lowest point tells where the surface is.
+    MotionError : its crank cannot turn fully, so that no lowest point defines the surface.
     """
     planting = motion.machine.planting
     if planting is None or planting.soil is None:

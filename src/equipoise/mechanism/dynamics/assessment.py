@@ -159,7 +159,7 @@ def _opposite(first: float, other: float, opposite: float) -> float:
 
 
 MOST_JUMPS = 6
-"""Crank angles that are told at which an acceleration jumps."""
+"""Crank angles at most that are listed where an acceleration jumps."""
 POOR_TRANSMISSION = 30.0
 """Degrees from stretched or folded below which force is transmitted badly."""
 

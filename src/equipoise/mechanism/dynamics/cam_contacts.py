@@ -35,8 +35,8 @@ class CamFigures:
 
     least_radius : of curvature of its surface, m; least_radius_at : angle of the cam, rad, of it.
     lift_off_speed : size of the crank's speed, rad/s, from which its springs do not hold the
-        follower; 0 where they do not even at rest, and None where it never lifts off, or where no
-        spring, no masses or no whole cycle are there to tell.
+        follower; 0 where they do not even at rest, and None where it never lifts off, or where
+        springs, masses or a whole cycle are missing.
     lift_off_at : crank angle, rad, at which that happens.
     lost : crank angles, rad, between which contact is lost at the speed analysed.
     """

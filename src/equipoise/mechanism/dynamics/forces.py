@@ -2,8 +2,8 @@
 
 Each link's inertia, weight, loads and springs make a demand, a force and a moment about the link's
 anchor, that its joints must supply; `dynamics.reactions` turns demands into joint forces.  Because
-that pass is linear in the demands, causes, links or parameters are told apart by running it on a
-stack of them.
+that pass is linear in the demands, the shares of causes, links or parameters follow from one run on
+a stack of their demands.
 """
 
 from __future__ import annotations
@@ -202,8 +202,8 @@ class Forces(ForceReadings, Displayed):
 
     @property
     def work_both_ways(self) -> dict[str, float]:
-        """Work of each drive in a cycle, J, what comes back counted like what is put in: beside
-        it a `work` of rounding is told from one of friction.
+        """Integral of the absolute power of each drive over a cycle, J, returned power counted like
+        supplied: relative to it a `work` that is rounding differs from a loss by friction.
         """
         angle = 2 * np.pi * self.motion.turns
         return {

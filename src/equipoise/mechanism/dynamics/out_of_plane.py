@@ -176,7 +176,7 @@ class Statics:
 
     def couples(self, needed: Mapping[str, Array], exerted: Mapping[str, Array]) -> dict[str, Any]:
         """Couple of each joint by name, as a sum of planes times forces, N m; of those that follow
-        from the forces that are told.
+        from the given forces.
         """
         values, planes = {}, {contact.name: contact.plane for contact in self.contacts}
         for number, item in enumerate(self.bearing):

@@ -3,7 +3,7 @@
 The parameters of a link are its mass, its two first moments and its moment of inertia, the last
 three about the origin of the link's axes.  Without loads and springs an output is
 ``values @ regressor``.  Several parameters always act together; the base parameters are the
-combinations that the outputs can tell apart.
+combinations that are identifiable from the outputs.
 
 A spring makes drive and joints bear what is linear in its stiffness and its pull.  With the vector
 d from the link's point to the frame's, it exerts k d + f d / |d|, where k is its stiffness and
@@ -66,7 +66,7 @@ class Regressor(Shares):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BaseParameters(Brief):
-    """The combinations of inertial parameters that the outputs can tell apart.
+    """The combinations of inertial parameters that are identifiable from the outputs.
 
     parameters : P pairs of link and quantity.
     combinations : (B, P); row k is base parameter k, a sum of parameters with these factors.
@@ -209,7 +209,7 @@ def base_parameters(
     outputs: Sequence[str] = ("shaking_force", "shaking_moment", "drive_torque"),
     angles: int = 72,
 ) -> BaseParameters:
-    """Find the combinations of inertial parameters that some outputs can tell apart, in any motion.
+    """Find the combinations of inertial parameters that are identifiable from outputs, in any motion.
 
     Parameters
     ----------

@@ -89,12 +89,12 @@ class IndeterminateReactions:
 
 
 def indeterminate_reactions(linkage: Linkage) -> IndeterminateReactions:
-    """What statics does not tell of the joints of a linkage; kept with it."""
+    """Statically indeterminate reactions of a linkage; computed once and kept with it."""
     return _cached(linkage, _compute)
 
 
-def idle_told(linkage: Linkage, solved: State) -> Iterator[Note]:
-    """A sentence on teeth that bear nothing at some crank angles, as neither flank agrees."""
+def idle_teeth_notes(linkage: Linkage, solved: State) -> Iterator[Note]:
+    """Note on teeth whose force is reported as zero at some crank angles: neither flank agrees."""
     names = [coupling.name for coupling in linkage.joints.couplings]
     idle = [name for name in names if np.any(solved.get(IDLE.format(name), False))]
     if idle:
@@ -337,7 +337,7 @@ class Push:
 class JointReactions:
     """Joint forces of one run over the groups, for one demand or a stack of them.
 
-    state : every value, by the names told in `mechanism.assembly.steps`; shapes (..., N).
+    state : every value, by the names listed in `mechanism.assembly.steps`; shapes (..., N).
     friction : of joints that resist their motion, by name; its arrays are (..., N).
     """
 
@@ -393,7 +393,7 @@ class JointReactions:
     def couplings(self, preload: Callable[[Coupling], Any]) -> CouplingForces:
         """Forces of couplings by list and name.
 
-        preload : what is to be told of that of a coupling.
+        preload : the quantity of a coupling's preload to return.
         """
         kinds = coupling_kinds(type(self.motion.machine))
         coupling_forces: dict[str, dict[str, CouplingForce]] = {
@@ -466,7 +466,7 @@ def reactions(
     """Joint forces that meet the demands of all links.
 
     demands : link -> force and moment about its anchor, of shapes (..., N).
-    like : a pass whose couplings are in contact on the same flanks; without it the demands tell.
+    like : a pass whose couplings are in contact on the same flanks; without it the demands decide.
     """
     if motion.machine.pushers:
         return _pushed(motion, demands, like)

@@ -1,4 +1,4 @@
-"""Outputs told apart: by cause and link, or by what they are linear in."""
+"""Outputs split by cause and link, or by the parameters in which they are linear."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ CAUSES = tuple(dict.fromkeys((*EVERYWHERE, *ELEMENTS, "friction")))
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Shares(HasCouplings, Brief):
-    """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
+    """Shares of outputs: arrays (..., N), whose first axes are the causes, links or parameters.
 
     drives : link -> torque of its drive, N m, of which `drive_torque` is the first.
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.

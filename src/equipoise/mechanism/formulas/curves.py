@@ -175,7 +175,7 @@ class PeriodicCurve:
 class Curves:
     """Curves of the same knots, one for each row of what they are asked at, (..., P, N).
 
-    first : tells the knots.  every : pieces of all, one curve after the other.
+    first : has the knots.  every : pieces of all, one curve after the other.
     begins, rises : (P, 1) first piece of each in `every`, and its rise.
     """
 

@@ -427,7 +427,7 @@ def rpp_forces(p, s, u, force_p, moment_p, force_s, moment_s, along, inner):
 
 
 def flank(moment):
-    """Sign of the moment that a driven body needs: it tells which flank of the teeth is loaded."""
+    """Sign of the moment that a driven body needs: it selects the loaded flank of the teeth."""
     return (moment / (abs(moment) + 1e-300),)
 
 
@@ -459,7 +459,7 @@ def strand_forces(force, moment, u, sense, radius, across, along):
 
 
 def flank_ahead(force, u, guide):
-    """Sign of the force along its guide that a body needs: it tells which flank pushes."""
+    """Sign of the force along its guide that a body needs: it selects the flank that pushes."""
     (sense,) = flank(dot(u * guide, force))
     return (sense,)
 

@@ -4,7 +4,7 @@ A law takes the driver's angle x, counted on through the turns, and returns the 
 angle y with its first and second derivative by x.  The first is the ratio i; the pitch point
 divides the line of centres by it, and both pitch curves roll on each other there.  With the vector
 c from the driven gear's axis to the driver's, that point is at c / (1 - i) from the first and at
-c i / (1 - i) from the second: so the ratio tells both curves, and the driver's curve the ratio.
+c i / (1 - i) from the second: so the ratio gives both curves, and the driver's curve the ratio.
 A ratio is negative of gears that mesh from outside, from 0 to 1 of a ring that a gear in it drives,
 and above 1 of a ring that drives the gear in it.
 

@@ -1,7 +1,7 @@
 """Drives that push: a cylinder between two points, or a driven sliding joint.
 
 The stroke is commanded, a length over the crank angle.  One link that turns about a point of the
-frame tells the pose of the whole machine, so that everything else is computed as if that link were
+frame determines the pose of the machine, so that everything else is computed as if that link were
 driven: its angle is the one at which the length is as commanded, found by Newton's method on the
 length, of which the linkage gives both derivatives.  See `docs/theory.md`, "Drives that push".
 """

@@ -21,7 +21,7 @@ from equipoise.mechanism.parts.machine import FRAME, Slider
 
 STILL = 1e-10
 """rad or lengths of the largest link, by rad of the crank: a joint that moves less is at rest, as
-rounding would tell the sense."""
+rounding would decide the sense."""
 
 
 @dataclass(frozen=True)

@@ -84,7 +84,7 @@ class MachineDraft:
     """A machine that may be unfinished.
 
     poses : of every link.  drive : None where none has been chosen.
-    phase : crank angle at which it is drawn (rad), where the angle of no link tells it.
+    phase : crank angle at which it is drawn (rad), where it is not the angle of a link.
     rest : what a machine has besides, by its field.
     """
 
@@ -278,6 +278,6 @@ def pose_between(start: complex, end: complex) -> LinkPlacement:
 
 
 def length_between(start: complex, end: complex) -> float:
-    """Distance of two places, m, as a file would tell it."""
+    """Distance of two places, m, rounded to the digits of a file."""
     way = end - start
     return clean(hypot(way.real, way.imag), "length")

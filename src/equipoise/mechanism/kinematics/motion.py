@@ -156,7 +156,7 @@ class Motion(Displayed):
     speed, acceleration : of the crank, rad/s and rad/s2.
     whole_cycle : whether the crank angles are equally spaced over the whole cycle, or those of a
         sampling of it, so that `mean` is the mean over time.
-    state : every value of the steps, by the names told in `mechanism.assembly.steps`.
+    state : every value of the steps, by the names listed in `mechanism.assembly.steps`.
     sampling : whose crank angles these are; None where it is an equally spaced grid, or any angles.
     """
 
@@ -412,7 +412,7 @@ class Motion(Displayed):
         return running_angle(self.state, link, cycle.reference(link, self.crank_angle))
 
     def point(self, point: str) -> PointMotion:
-        """Motion of one of the points; of a state that is not whole, of one that it tells of."""
+        """Motion of a point by name; of an incomplete state, of a point that it contains."""
         names = p(point)
         if names[0] not in self.state:
             links = self.machine.links

@@ -2,8 +2,8 @@
 
 Strokes and the angles of the other drives are commanded over the crank angle; the angles of the
 links that are pushed are those at which all lengths are as commanded, by Newton's method, followed
-from where they start.  Their derivatives follow from those of the lengths, of which the linkage
-tells each at any rates of these links.  See `docs/theory.md`, "Drives that push".
+from where they start.  Their derivatives follow from those of the lengths, each of
+which the linkage gives at any rates of these links.  See `docs/theory.md`, "Drives that push".
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ FAR = 0.5
 CLOSED = 1e-9
 """rad: how near a link comes to where it was a cycle before."""
 NO_LEVER = 1e-9
-"""Of the longest, the smallest lever over which strokes are told from one another."""
+"""Smallest independent lever over the longest, above which strokes are independent."""
 
 
 FOLLOWED = Note(

@@ -154,7 +154,7 @@ DIRECTIONS = 64
 HALVINGS = 44
 """Of a step, at one end of a rest."""
 ALIKE = 1e-5
-"""rad: dwells that differ by less are equal, and the first in the cycle is told."""
+"""rad: dwells that differ by less are equal, and the first in the cycle is reported."""
 
 
 @dataclass(frozen=True)

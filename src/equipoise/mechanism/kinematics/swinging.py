@@ -1,7 +1,7 @@
 """Cranks that swing: a linkage followed from crank angle 0 to either side, without a whole cycle.
 
-Without a whole cycle nothing tells the running angles of links that drive gears, except the way
-from crank angle 0, where the start angles of gears hold.
+Without a whole cycle the running angles of links that drive gears follow only from the path since
+crank angle 0, where the start angles of gears hold.
 
 What needs to be known near a crank angle before it is solved there, running angles of links and
 poses of loop groups, is kept along the way.

@@ -1,7 +1,7 @@
 """The tip of a planting finger at every crank angle; and where a signal vanishes or turns.
 
 A signal is a function of crank angles (P, K), rad, that gives values (P, K): K crank angles for
-each of P machines, all solved in one call.  Samples only tell between which crank angles to look.
+each of P machines, all solved in one call.  Samples only bracket the crank angles in question.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def largest(signal: Signal, slope: Signal, theta: Array, samples: Array) -> tupl
     high, low = (f(samples, axis=1, keepdims=True) for f in (np.max, np.min))
     equal = np.where(samples >= high - EQUAL * (high - low), high, samples)
     ranked = np.argsort(np.where(tops, -equal, np.inf), axis=1, kind="stable")[:, :RIVALS]
-    ranked = np.sort(ranked, axis=1)  # in the order of the cycle, of equal tops the first is told
+    ranked = np.sort(ranked, axis=1)  # in the order of the cycle: of equal maxima the first counts
     step = theta[1] - theta[0]
     at = theta[ranked]
     refined = roots(slope, at - step, at + step)

@@ -102,7 +102,7 @@ def advantage(rate: Array) -> Array:
 
 
 def joint_names(machine: Any) -> list[str]:
-    """Names of pins, slots and sliders, as far as the names in the model tell.
+    """Names of pins, slots and sliders, as far as they follow from names in the model.
 
     At a pin of several bodies each moving link has one; which of them carries the others is found
     only when the linkage is put together.
@@ -172,7 +172,7 @@ __all__ = [
 FORCE: tuple[Measure, ...] = ("rms", "peak")
 MOMENT: tuple[Measure, ...] = ("rms", "peak", "area")
 TORQUE: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak")
-"""Measures that are told of an output before and after balancing."""
+"""Measures of an output that are reported before and after balancing."""
 XY, FORCES = (".x", ".y"), (".force_x", ".force_y")
 """Components of vectors, behind their names."""
 
@@ -339,7 +339,7 @@ def _of_drive(name: str, result: Any, link: str) -> Any:
 def _links_of_drives(machine: Any, effort_in: str) -> list[str]:
     """Links of drives that turn or push."""
     kinds = {item.link: item.effort_in for item in machine.driven}
-    return [link for link in machine.told_drives if kinds[link] == effort_in]
+    return [link for link in machine.listed_drives if kinds[link] == effort_in]
 
 
 of_drive = alike("drives.{}.", _of_drive, linear=True, by_friction=True)
@@ -365,7 +365,7 @@ of_drive(
     "power",
     to_say("drive power of {name}"),
     loop=looked_up("drive power"),
-    members=lambda machine: machine.told_drives,
+    members=lambda machine: machine.listed_drives,
 )
 
 # -- joints ----------------------------------------------------------------------------------------
@@ -457,7 +457,7 @@ def _of_friction(name: str, result: Any, joint: str) -> Any:
 
 
 def _named_in_file(machine: Any, wanted: Callable[[Any], bool]) -> list[str]:
-    """Joints of which the file says something that is wanted, as far as names tell."""
+    """Names of joints whose entry in the file meets a condition."""
     given = {joint.joint.removeprefix("joints.") for joint in machine.joints if wanted(joint)}
     names = joint_names(machine) if given else ()
     return [name for name in names if {name, name.partition("/")[0]} & given]
@@ -564,7 +564,7 @@ def of_coupling(table: str) -> Callable[..., None]:
 
 
 def of_contacts(table: str) -> Callable[..., None]:
-    """A way to declare what the motion tells of the contacts of couplings of a list."""
+    """A function that declares outputs of motion at the contacts of couplings of one list."""
     read = lambda name, result, item: getattr(result.motion, name + "s")[item]  # noqa: E731
     return alike(table + ".{}.", read, needs="motion", **_members_of(table))
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 Needs = Literal["motion", "masses", "planes", "rows", "support"]
 Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
-"""What is told of an output as one number; see `mechanism.parts.objectives`."""
+"""Statistic that reduces an output to one number; see `mechanism.parts.objectives`."""
 Yardstick = Literal[
     "", "weight", "span", "bearings", "effort", "acting", "pressure", "transmission", "vibration"
 ]
@@ -77,12 +77,12 @@ class Declared:
     name : by which it is found.
     dimension : of its values, which are in SI units.
     label : in English, for `say`; ``{name}`` stands for the member of a family.
-    read : has it from an analysis, as values or with values as its `value`; None where it is told
-        of a response instead (gauges).
+    read : has it from an analysis, as values or with values as its `value`; None where it belongs
+        to a response instead (gauges).
     part : of the vector that `read` gives, where that is one; its size goes by the vector's name.
     needs : what a machine must have; planes of links go with masses.
     members : from a machine to the members that it may have; ``""`` where it is no family.
-    items : from an analysis to those that it has, where the machine alone does not tell.
+    items : from an analysis to the members that it has, where they depend on more than the machine.
     spoken : a member in words.
     linear : whether it is linear in the masses, as long as the same flanks and strands bear.
     reason : why balancing cannot take it; empty where it can.
@@ -92,8 +92,8 @@ class Declared:
         family those of its member.
     about : whether it depends on the point about which moments are taken.
     array : whether it stands among the arrays.  summed : whether it stands in the summary.
-    ordered : whether it is told by orders.
-    compared : measures that are told before and after balancing.
+    ordered : whether tables of orders include it.
+    compared : measures that are reported before and after balancing.
     with_loads : of frame and drive, whether it holds what loads do, which may be a hundred times
         what shakes: such outputs have a unit of their own.
     unbounded : whether there are crank angles at which it is infinite, which NaN stands for; it is
@@ -149,7 +149,7 @@ class Declared:
 
     @property
     def is_split(self) -> bool:
-        """Whether it can be told by cause and by link: it is linear, and a force of one row."""
+        """Whether it can be split by cause and by link: it is linear, and a force of one row."""
         return self.is_of_row and not self.reason
 
     def linear_in(self, machine: Any) -> bool:
@@ -246,7 +246,7 @@ class OutputSource:
 
 
 DECLARED: dict[str, Declared] = {}
-"""Everything that is declared, by name, in the order in which it is told."""
+"""All declared outputs, by name, in the order of reports."""
 _FORGETTING: list[Callable[[], None]] = []
 
 
@@ -297,7 +297,7 @@ def output(
     linear : whether it is linear in the masses of the links.
     reason : why balancing cannot take it; where it is not linear, that it is not, if not given.
     summed : whether it stands in the summary; of a vector, its size and its components.
-    sized : whether the size of a vector is told.
+    sized : whether the magnitude of a vector is an output too.
     """
     if not (linear or reason):
         reason = KINEMATIC if needs == "motion" else ONLY_READ

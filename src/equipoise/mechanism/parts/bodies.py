@@ -71,7 +71,7 @@ TAKES: Mapping[str, tuple[str, ...]] = {
 }
 """Keys that each may have."""
 MASSES = ("material", "density", "mass", "mass_per_length")
-"""Keys of which one tells how heavy a body is."""
+"""Keys of which one gives the mass of a body."""
 
 
 def material_of(density: float) -> str:
@@ -390,7 +390,7 @@ def outlines(body: Body, points: Points) -> list[Outline]:
 
 
 MOST_AT_ONCE = 12
-"""Corners of a plate that are told of many designs at once not to lie crosswise."""
+"""Corners of a plate, at most, that are checked for crossing in many designs at once."""
 
 
 def is_column(number: Any) -> bool:
@@ -399,8 +399,8 @@ def is_column(number: Any) -> bool:
 
 
 def outlined_by_columns(body: Body, points: Points) -> bool:
-    """Whether its holes, or the shape of a plate with many corners, depend on columns, of which
-    nobody tells whether they fit.
+    """Whether its holes, or the shape of a plate with many corners, depend on columns, for which
+    the fit is not checked.
     """
     many = len(body.corners) > MOST_AT_ONCE
     numbers = [place_of(c, points) for c in body.corners if body.holes or many]
@@ -457,7 +457,7 @@ def _wrong_spots(body: Body, points: Points) -> Wrong:
 
 
 def _wrong_mass(body: Body, _: Points) -> Wrong:
-    """What tells the mass has to be given once, and a density needs the body's measures."""
+    """Errors unless the mass is given exactly once; a density needs the body's measures."""
     given = [name for name in MASSES if getattr(body, name, None) is not None]
     if len(given) > 1:
         yield given[1], Note("given beside {given}; give one of both", given=given[0])

@@ -9,4 +9,4 @@ from collections.abc import Callable
 from typing import Any
 
 finders: list[Callable[[Any], Any]] = []
-"""From a machine to an object whose `moved(crank_angle)` tells angles with two derivatives."""
+"""From a machine to an object whose `moved(crank_angle)` gives angles with two derivatives."""

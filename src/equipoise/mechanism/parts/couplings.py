@@ -1,4 +1,4 @@
-"""Couplings: joints by which the angle of one body tells that of another, both seen from a carrier.
+"""Couplings: joints that relate the angles of two bodies, both relative to a carrier.
 
 A pair of gears is one.  A coupling takes one free motion; it says by which formula the driven
 body's running angle follows the driver's, and a contact says where and along which line one body
@@ -121,10 +121,10 @@ class Coupling(PartKind):
 
     list_name : of its list in the model file, and the `kind` of its `Reaction` too.
     noun : what one is called.  counted : how several are counted, a text with forms by ``{count}``.
-    pushes : whether it is one force at one place, told as a whole and in parts.
+    pushes : whether it is one force at one place, reported as a whole and in components.
     preload : what its sides pull with where no torque is passed on, N.
     touch : what touches where it pushes.
-    contact : how it pushes: along the line that `line` tells, or square to a surface.
+    contact : how it pushes: along the line of `line`, or square to a surface.
     grows : whether its pitch circles are as large as the distance of its pins sets them.
     loses : whether it may lose a share of what it passes on.
     curves : outputs that have a picture of their own, what this shows, and its caption; None where
@@ -199,7 +199,7 @@ class Coupling(PartKind):
     ) -> Iterator[ModelError]:
         """Everything that is wrong with driver, driven link and carrier.
 
-        keys : by which the file tells driver and driven link.
+        keys : of driver and driven link in the file.
         """
         for named, name in zip((*keys, "carrier"), self.bodies, strict=True):
             yield from unknown_body(f"{where}.{named}", name, bodies)

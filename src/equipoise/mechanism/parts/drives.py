@@ -103,7 +103,7 @@ def _free() -> Any:
 
 @declared
 class Drive(Pushing, Frozen):
-    """The link that is driven, or that tells the pose of a machine that is pushed.
+    """The link that is driven, or that determines the pose of a machine that is pushed.
 
     The crank angle is the phase of the cycle, and turns at `speed`.  Without a motion of its own
     the driven link's angle is the crank angle; with one it follows that law.  A stroke is the
@@ -174,12 +174,12 @@ class Drive(Pushing, Frozen):
 
     @property
     def effort(self) -> str:
-        """The output that tells what the drive exerts."""
+        """Name of the output of what the drive exerts: a force or a torque."""
         return "drive_force" if self.pushes else "drive_torque"
 
     @property
     def range(self) -> tuple[float, float] | None:
-        """The slowest and the fastest speed, rad/s, with the sign of `speed`; None if not told."""
+        """The slowest and the fastest speed, rad/s, with the sign of `speed`; None if not given."""
         if not self.speeds:
             return None
         slow, fast = self.speeds
@@ -271,7 +271,7 @@ class Driven:
 
     @remembered
     def turning(self) -> Any:
-        """What tells the angles of links that are pushed; None where none is."""
+        """The source of the angles of links that are pushed; None where none is."""
         return commanded.finders[0](self) if self.pushers else None
 
     def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
@@ -298,8 +298,8 @@ class Driven:
         return (self.drive, *self.drives)
 
     @property
-    def told_drives(self) -> list[str]:
-        """Links of all drives, where there is more to tell than of one crank or stroke."""
+    def listed_drives(self) -> list[str]:
+        """Links of all drives, where there is more than one crank or stroke; else empty."""
         alone = self.has_crank or (self.drive.pushes and not self.drives)
         return [] if alone else [item.link for item in self.driven]
 

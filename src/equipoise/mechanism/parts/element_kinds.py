@@ -112,7 +112,7 @@ class PartKind(Frozen):
     @property
     @abstractmethod
     def label(self) -> Note:
-        """What tells it from others of its kind."""
+        """Label that distinguishes it from others of its kind."""
 
     @abstractmethod
     def sentence(self) -> Note:

@@ -106,7 +106,7 @@ class LoadTable(CsvTable):
 
     @property
     def covers(self) -> bool:
-        """Whether the rows tell the load at every crank angle."""
+        """Whether the rows give the load at every crank angle."""
         return self.span >= 2 * pi * self.turns - NEARLY
 
     @property

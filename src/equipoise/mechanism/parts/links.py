@@ -54,11 +54,11 @@ from equipoise.quantities import Measured
 MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
 FLAT = 1e-12
 """Over the square of a side: that of a height which is rounding."""
-TOLD_BY_BODIES = Note(
+SET_BY_BODIES = Note(
     "the bodies tell it; leave out mass, {center_of_mass} and inertia, or the bodies",
     **key_names("center_of_mass"),
 )
-TOLD_BY_LENGTHS = Note(
+SET_BY_LENGTHS = Note(
     "length or sides tell the places; give the names of the points alone, in a list"
 )
 
@@ -150,21 +150,21 @@ class Link(Frozen):
         if measured:
             points = placed(tuple(self.points), self.length, self.sides)
             if not names and self.points != points:
-                raise ModelError("points", TOLD_BY_LENGTHS)
+                raise ModelError("points", SET_BY_LENGTHS)
             object.__setattr__(self, "points", MappingProxyType(points))
         for problem in wrong_bodies(self.bodies, self.points):
             raise problem
         for name, value in weighed(self.bodies, self.points).items() if self.bodies else ():
             if getattr(self, name) not in (None, value):
-                raise ModelError(name, TOLD_BY_BODIES)
+                raise ModelError(name, SET_BY_BODIES)
             object.__setattr__(self, name, value)
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Link:
         if given.get("bodies") and (value := MASS_FIELDS & given.keys()):
-            raise ModelError(min(value), TOLD_BY_BODIES)
+            raise ModelError(min(value), SET_BY_BODIES)
         if isinstance(given["points"], Mapping) and given.keys() & {"length", "sides"}:
-            raise ModelError("points", TOLD_BY_LENGTHS)
+            raise ModelError("points", SET_BY_LENGTHS)
         return cls(**given)
 
     @classmethod
@@ -236,7 +236,7 @@ class Link(Frozen):
             yield from demands(body, self.points)
 
     def plane_of(self, point: str | None) -> float:
-        """z of one of its points, m; of the link itself where none is told."""
+        """z of one of its points, m; that of the link itself by default."""
         return self.plane if point is None else self.planes.get(point, self.plane)
 
     @property
@@ -254,7 +254,7 @@ def placed(
 ) -> dict[str, tuple[Any, Any]]:
     """Places of two points by their distance, or of three by the sides of their triangle, m.
 
-    Lengths may be columns, of which nothing is checked; `Link.demands` tells which do not close.
+    Lengths may be columns, which are not checked; `Link.demands` finds those that do not close.
 
     Raises
     ------
@@ -489,12 +489,12 @@ def demands_across(machine: Mechanism) -> Iterator[Any]:
     yield from (
         here != there for (on, here), (to, there) in combinations(bearing_planes, 2) if on == to
     )
-    for _, text in _told_of_pins(machine):
+    for _, text in _planes_at_pins(machine):
         yield from (here == there for (_, here), (_, there) in combinations(text, 2))
 
 
-def _told_of_pins(machine: Mechanism) -> Iterator[tuple[str, list[tuple[str, float]]]]:
-    """Every pin with the links that tell its plane, and that plane."""
+def _planes_at_pins(machine: Mechanism) -> Iterator[tuple[str, list[tuple[str, float]]]]:
+    """Every pin with its planes, each with the link that gives it."""
     for point, bodies in bodies_at(machine.bodies).items():
         links = [(name, machine.links[name].planes) for name in bodies if name != FRAME]
         yield point, [(name, planes[point]) for name, planes in links if point in planes]
@@ -505,7 +505,7 @@ def _told_of_pins(machine: Mechanism) -> Iterator[tuple[str, list[tuple[str, flo
 
 def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with planes of pins and with bearings."""
-    for point, text in _told_of_pins(machine):
+    for point, text in _planes_at_pins(machine):
         for (item, here), (other, there) in combinations(text, 2):
             if here != there:
                 yield ModelError(

@@ -343,7 +343,7 @@ class Machine(Driven, Displayed, PartLists):
 
     @property
     def couplings(self) -> tuple[Coupling, ...]:
-        """Joints by which one body's angle tells another's, in the order of the file."""
+        """Joints that relate the angles of two bodies, in the order of the file."""
         return tuple(item for table in coupling_kinds(type(self)) for item in getattr(self, table))
 
     @property
@@ -399,7 +399,7 @@ class Machine(Driven, Displayed, PartLists):
 
     @property
     def has_planes(self) -> bool:
-        """Whether it tells where its parts lie across the plane of its motion."""
+        """Whether the model has planes of links, bodies or bearings, along z."""
         return bool(self.bearings) or any(
             link.plane or link.planes or any(body.plane is not None for body in link.bodies)
             for link in self.links.values()

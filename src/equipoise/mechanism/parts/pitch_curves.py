@@ -84,7 +84,7 @@ def _knots(shape: GearShape) -> Array:
 
 
 def curve_of(shape: GearShape) -> EccentricCircle | Tabled | Waves:
-    """Over an angle: the ratio or the driver's radius, as far as the shape tells it."""
+    """The ratio or the driver's radius over an angle, up to what the mean ratio determines."""
     if shape.kind == "eccentric":
         assert shape.eccentricity is not None
         return EccentricCircle(shape.eccentricity)
@@ -111,7 +111,7 @@ def _extent(shape: GearShape, mean: float) -> tuple[float, float, float]:
     curves lean at most.
     """
     _, first, second = _law(shape, mean)(_fine(shape))
-    with np.errstate(all="ignore"):  # a ratio of 1 is told of
+    with np.errstate(all="ignore"):  # a ratio of 1 is refused by the caller
         leaning = np.abs(kernels.pitch_slope(first, second))
     return float(np.min(first)), float(np.max(first)), float(np.max(leaning))
 

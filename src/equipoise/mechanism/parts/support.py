@@ -74,7 +74,7 @@ def _point_or_axis(**conditions: Any) -> dict[str, Any]:
 def _check_company(given: Mapping[str, Any]) -> None:
     """Refuse keys of a point beside an axis, and the other way round."""
     if ("point" in given) == ("axis" in given):
-        return  # told by the checks of the machine
+        return  # the checks of the machine refuse this
     others, has = (OF_AXIS, Note("a point")) if "point" in given else (OF_POINT, Note("an axis"))
     for item in others:
         if item in given:
@@ -258,8 +258,8 @@ FREEDOMS = (
 )
 """Along x, y, z and about x, y, z: the order of coordinates in `equipoise.vibration`."""
 TIME_IN_PERIOD = "time_in_period"
-"""Column of time in files of signals that are whole periods of a steady state: what reads such a
-file need not be told so."""
+"""Column of time in files of signals that are whole periods of a steady state: its name says so to
+a reader of the file."""
 PIVOT_CONSTRAINED = ("surge", "heave", "sway")
 """What a pivot takes away."""
 MOST = {"mounts": 200, "gauges": 200, "rows": 200}
@@ -366,7 +366,7 @@ class Support(Frozen):
 
     @property
     def reference(self) -> Place:
-        """The point by whose displacement its place is told: the pivot, or the centre of mass."""
+        """The point whose displacement describes the support's: the pivot, or the centre of mass."""
         return self.center_of_mass if self.pivot is None else (*self.pivot, 0.0)
 
 
