@@ -59,8 +59,8 @@ class Session:
     preview : what it is while something is dragged; each one starts from `current_state`.
     before : with which it is compared, if with any.
     scale : of the sliders.
-    more_told : the design of which `deferred_replies` has told, and that which it was told against.
-    response_told : the design whose response the page has, and the record drawn beside it.
+    deferred_sent : the design whose `deferred_replies` the page has, and that it was compared with.
+    response_sent : the design whose response the page has, and the record drawn beside it.
     wanted : outputs that the page draws besides those that it always does.
     language : that its reader speaks.  disk : the file that is open, if it can be saved.
     view_state : what else the page shows.
