@@ -758,7 +758,7 @@ export interface Constant {
   not?: Constant;
 }
 
-/** The part of a JSON Schema that tells which keys go together. */
+/** The part of a JSON Schema that states which keys go together. */
 export interface Rule {
   required?: string[];
   properties?: Record<string, false | Constant>;

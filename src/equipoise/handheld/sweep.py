@@ -268,7 +268,7 @@ class ToolSweep(Result):
 
     transmissions : of a unit force, to what holds the tool; None where nothing does.
     response : under what shakes it; None where nothing does.
-    further : places (m) that are told of besides the stations.
+    further : places (m) that are reported besides the stations.
     """
 
     blocks_in = "handheld.blocks.sweep_blocks"
@@ -400,7 +400,7 @@ class ToolSweep(Result):
 def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolSweep:
     """A tool at speeds (S,) of its engine, rad/s.
 
-    further : places (m) that are told of besides the stations.
+    further : places (m) that are reported besides the stations.
 
     Raises
     ------
