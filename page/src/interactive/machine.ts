@@ -223,7 +223,7 @@ export class Solution {
     const ranges = reaching(values, frames.map((k) => theta[k] as number), this.machine.data.turns);
     const parts = ranges.map(([a, b]) => say("from {low} to {high}", { low: inDegrees(a), high: inDegrees(b) }));
     const where = parts.reduce((first, last) => say("{first} and {last}", { first, last }));
-    return say("the crank cannot turn fully: {names} reach each other only {told} of crank angle", { names: joined, told: where });
+    return say("the crank cannot turn fully: {names} reach each other only {ranges} of crank angle", { names: joined, ranges: where });
   }
 }
 

@@ -529,8 +529,8 @@ class Bounder:
     # -- numbers -----------------------------------------------------------------------------------
 
     def _near_best(self, boxes: Boxes, totals: list[Array]) -> tuple[Boxes, Array]:
-        """Boxes with the numbers that minimize the mean-square cost in their middles, and multipliers
-        (B, I) of the cuts that limit them.
+        """Boxes with the numbers of least mean-square cost in their middles, and multipliers (B, I)
+        of the cuts that limit them.
 
         One step of reweighted least squares: Newton's method within each box's ends.
         """

@@ -49,7 +49,7 @@ REACH = 0.1
 """How far phases move at first, and a top may meanwhile, rad: far less than a wave of the orders
 that count, so that a top stays the same one."""
 GOOD_PREDICTION = 0.1
-"""Share of the gain that was foretold, above which a step is taken, and the region grows."""
+"""Share of the predicted gain, above which a step is taken, and the trust region grows."""
 FINEST, MORE_WAYS, MOST_MOVES, AGAIN = 1e-6, 6, 2000, 1 / 8
 """rad: least step of a search without slopes; ways by chance that it tries; its steps; share of the
 first step with which it begins again, nearer to the minimum."""

@@ -378,9 +378,9 @@ def infeasibility(problem: Problem) -> UsageError:
         which = Note("this limit cannot be met") if alone else Note("these limits clash")
         return LimitsClashError(
             Note(
-                "{which}: {told}; {way_out}",
+                "{which}: {limits}; {way_out}",
                 which=which,
-                told=sentence,
+                limits=sentence,
                 way_out=_way_out(problem, clash),
             ),
             clash,

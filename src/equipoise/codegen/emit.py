@@ -107,8 +107,8 @@ class Signals:
     @cached_property
     def poses(self) -> dict[str, Any]:
         """Signals that are no outputs but give the pose of each link, and the distance of each dyad
-        from its dead positions: ``rotation(crank).x`` of exp(i angle), ``center(crank).x`` of its centre
-        of mass (m), and ``margin 0`` of the first dyad.
+        from its dead positions: ``rotation(crank).x`` of exp(i angle), ``center(crank).x`` of its
+        centre of mass (m), and ``margin 0`` of the first dyad.
         """
         trace = self.trace
         values: dict[str, Any] = {}

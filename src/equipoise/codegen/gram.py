@@ -132,7 +132,7 @@ class MassBatch:
         return figures, reason
 
     def _all_usual(self, columns: Array) -> bool:
-        """Whether numbers (d, P) are all of usual size and sign, so that all designs are machines."""
+        """Whether numbers (d, P) are all of usual size and sign: all designs are machines then."""
         low, high = columns.min(axis=1), columns.max(axis=1)
         usual = (low >= -HUGE) & (high <= HUGE)
         usual &= (low >= TINY) | (high <= -TINY)

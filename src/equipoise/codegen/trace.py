@@ -86,8 +86,8 @@ class Trace:
         coupling follows a link that a dyad moves.
     orders : link -> turns in a turn of the crank, of links that turn in proportion to it.
     apart : number of a dyad with a block -> how far, over the size of the machine and squared, the
-        block is from its guide's pivot.  Near there the number drops too fast to be resolved between
-        crank angles.
+        block is from its guide's pivot.  Near there the number drops too fast to be resolved
+        between crank angles.
     running : link whose angle is taken from that of the base -> cosine of the angle between.
     alone : whether groups of loops start from the base at each crank angle, and nothing is carried.
     groups : of loops that were traced, by their references.

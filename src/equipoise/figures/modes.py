@@ -167,8 +167,8 @@ def mode_chart(free: FreeVibration, number: int) -> Chart:
     shape = ModeShape(free, mode)
     planar = free.linear.body.support.planar
     views: list[View] = ["side"] if planar else [*VIEWS]
-    what = say("Mode {number}: {told}", number=number, told=described(mode))
-    text = say("Shape: {told}, or any multiple", told=", ".join(parts_of(free, mode)))
+    what = say("Mode {number}: {description}", number=number, description=described(mode))
+    text = say("Shape: {amplitudes}, or any multiple", amplitudes=", ".join(parts_of(free, mode)))
     panels = tuple(_panel(shape, view, views) for view in VIEWS if view in views)
     return Chart(
         f"mode-{number}",

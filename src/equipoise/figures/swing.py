@@ -118,7 +118,7 @@ class ModeSwing:
         in_plane = np.zeros_like(values)
         in_plane[planar] = values[planar]
         is_visible = _reach(scene, in_plane) > LEAST * reach
-        texts = [say("Mode {number}: {told}", number=number, told=described(mode))]
+        texts = [say("Mode {number}: {description}", number=number, description=described(mode))]
         if across:
             names = ", ".join(say(ACROSS[name]) for name in across)
             texts.append(say("across the drawing, not shown: {sizes}", sizes=names))

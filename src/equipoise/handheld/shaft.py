@@ -235,7 +235,7 @@ def profile_table(profile: Section | Tube) -> dict[str, Any]:
     if isinstance(profile, Section):
         if profile != profile.section("euler-bernoulli"):
             sentence = Note(
-                "a file cannot tell shear_stiffness and rotary_inertia; give a Tube instead"
+                "a file has no keys for shear_stiffness and rotary_inertia; give a Tube instead"
             )
             raise ModelError("", sentence)
         return {name: getattr(profile, name) for name in ("mass_per_length", "bending_stiffness")}

@@ -297,7 +297,7 @@ def _at_speed(tool: Tool, speed: float | None) -> Tool:
     if speed is None:
         return tool
     if tool.operation is None:
-        raise UsageError(Note("the tool tells no speed of its engine; add the table [operation]"))
+        raise UsageError(Note("the tool has no speed of its engine; add the table [operation]"))
     if not speed > 0:
         raise UsageError(
             Note("got {speed:g} rad/s for the speed of the engine; give more than 0", speed=speed)

@@ -286,7 +286,7 @@ def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
     plain = plain_unit(unit)
     if plain == "Hz" and dimension == "angular speed":
         return Note(
-            'Hz does not tell turns from radians; give "{turns} turn/s" or "{rpm} rpm"',
+            'Hz is ambiguous between turns and radians; give "{turns} turn/s" or "{rpm} rpm"',
             turns=number,
             rpm=_plain(60 * Decimal(number)),
         )

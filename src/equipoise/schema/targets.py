@@ -58,7 +58,7 @@ class GoalTable(Frozen):
 
     extra_keys: ClassVar[Keys] = RequirementKeys("goals", VALUE)
 
-    figure: str = key(TextKind(), "that `equipoise plant` tells", example="curve.height")
+    figure: str = key(TextKind(), "that `equipoise plant` reports", example="curve.height")
     tolerance: Quantity | None = key(VALUE, "of the target", default=None)
     asks: Any = inside(Anything(), factory=dict)
 

@@ -343,7 +343,7 @@ def rows(of: Mapping[str, keys.Key]) -> list[tuple[str, str, str, str]]:
 
 
 def _holds_tables(kind: keys.Kind) -> bool:
-    """Whether a key has tables below it, which the documentation tells for themselves."""
+    """Whether a key has tables below it, which the documentation lists separately."""
     return isinstance(keys.innermost(kind), keys.KeyTable | keys.Tables)
 
 

@@ -70,7 +70,7 @@ def unexpected(error: Exception) -> UsageError:
 
 
 def busy(message: Message, language: str) -> Reply | None:
-    """What a page is told at once of a question that takes long, also while it waits for others;
+    """Immediate reply to a question that takes long, also while it waits for others;
     None of one that takes a moment.
     """
     if message.kind not in BUSY:

@@ -279,7 +279,7 @@ def test_a_rack_needs_a_guide_and_its_pinion_a_pin() -> None:
 
 
 def test_what_drives_tells_its_own_place() -> None:
-    words = "goes with drives = 'rack'; what drives tells its own place"
+    words = "goes with drives = 'rack'; the driving part has its own position"
     refused("racks[1].angle", words, lambda: racked(Rack("rocker", "ram", 0.05, "left", angle=1.0)))
 
 

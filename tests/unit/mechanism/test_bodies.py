@@ -431,7 +431,7 @@ def test_a_cut_out_that_is_reached_from_the_edge() -> None:
 
 def test_masses_beside_bodies() -> None:
     disc = Body("disc", at="A", radius=0.1, mass=2.0)
-    refused("mass", "the bodies tell it", lambda: Link(POINTS, mass=1.0, bodies=[disc]))
+    refused("mass", "it follows from the bodies", lambda: Link(POINTS, mass=1.0, bodies=[disc]))
     assert Link(POINTS, mass=2.0, bodies=[disc]).inertia == pytest.approx(0.01)
 
 
@@ -495,7 +495,7 @@ def test_a_file_keeps_its_bodies_and_lengths() -> None:
         (
             'points = ["B", "C"]\n',
             'points.B = ["0 mm", "0 mm"]\npoints.C = ["1 mm", "0 mm"]\n',
-            "links.coupler.points: length or sides tell the places; give the names",
+            "links.coupler.points: length or sides determine the positions; give the names",
         ),
         (
             "[[links.rocker.bodies.holes]]",

@@ -43,8 +43,8 @@ def read(text: str, unit: float | None) -> Read:
         raise ModelError(
             "",
             Note(
-                "it is not whole: its last sign does not tell its length, as PMKS+ of "
-                "2024 writes it; export it anew"
+                "it is incomplete: its last character does not match its length, as PMKS+ "
+                "of 2024 writes it; export it anew"
             ),
         )
     settings, _, integers, choices, *others = (*body.split("."), "", "", "", "")

@@ -56,7 +56,7 @@ def _scale(root: Element, drawing: Drawing) -> float:
             "svg",
             Note(
                 "it is stretched: width and height over those of its view box are not "
-                "the same; tell its unit by --unit"
+                "the same; give its unit by --unit"
             ),
         )
     return max(across, up) if "slice" in aspect else min(across, up)

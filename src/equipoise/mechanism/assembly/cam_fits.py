@@ -268,12 +268,12 @@ def _with_radius(note: Note, machine: Machine, joints: Structure, cam: Cam) -> N
     if least is None:
         most = LARGEST * cam.base_radius * 1e3
         return Note(
-            "{told}; no {base_radius} up to {most:.4g} mm works",
-            told=note, most=most, **key_names("base_radius"),
+            "{reason}; no {base_radius} up to {most:.4g} mm works",
+            reason=note, most=most, **key_names("base_radius"),
         )  # fmt: skip
     return Note(
-        "{told}; the smallest {base_radius} that works is {least:.4g} mm",
-        told=note,
+        "{reason}; the smallest {base_radius} that works is {least:.4g} mm",
+        reason=note,
         least=least * 1e3,
         **key_names("base_radius"),
     )

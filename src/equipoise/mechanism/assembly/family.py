@@ -318,7 +318,7 @@ def _filled(parts: Mapping[Part, Array], template: Any) -> Any:
 
 
 def _check_outlines(machine: Machine) -> None:
-    """Raise if outlines depend on columns: whether plates and holes fit is checked of numbers only."""
+    """Raise where outlines depend on columns: the fit of plates and holes needs plain numbers."""
     for link in machine.links.values():
         if any(outlined_by_columns(body, link.points) for body in link.bodies):
             raise KeyError

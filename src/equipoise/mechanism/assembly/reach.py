@@ -201,7 +201,7 @@ class FullTurn:
                 yield link, pin.at, float(length)
 
     def beyond(self, dip: float, names: Note | str) -> Note:
-        """Note that the drive's prescribed motion reaches crank angles where a dyad cannot close."""
+        """Note that the drive's prescribed motion reaches angles where a dyad cannot close."""
         link = self.machine.drive.link
         moved, *_ = self.machine.moved(np.array([dip]))[link]
         return Note(
@@ -236,15 +236,15 @@ def _only_between(ranges: Sequence[tuple[float, float]], names: Note | str) -> N
     if len(ranges) > MOST_RANGES:
         return Note(
             "the crank cannot turn fully: {names} reach each other only in {count} ranges of "
-            "crank angle, the first {told}",
+            "crank angle, the first {ranges}",
             names=names,
             count=len(ranges),
-            told=sentence,
+            ranges=sentence,
         )
     return Note(
-        "the crank cannot turn fully: {names} reach each other only {told} of crank angle",
+        "the crank cannot turn fully: {names} reach each other only {ranges} of crank angle",
         names=names,
-        told=sentence,
+        ranges=sentence,
     )
 
 

@@ -395,7 +395,7 @@ class RedundantReactions(LoopForces):
         if not self.count:
             return
         if misfit := self.fit.misfit(state, self.poses(state)):
-            raise MobilityError(Note("{count}: {told}", count=self.count, told=misfit))
+            raise MobilityError(Note("{count}: {reason}", count=self.count, reason=misfit))
         if len(self.drives) > 1:
             self.check_drives(state)
         if self.compliance:

@@ -209,7 +209,7 @@ def base_parameters(
     outputs: Sequence[str] = ("shaking_force", "shaking_moment", "drive_torque"),
     angles: int = 72,
 ) -> BaseParameters:
-    """Find the combinations of inertial parameters that are identifiable from outputs, in any motion.
+    """Find the combinations of inertial parameters that outputs can identify, in any motion.
 
     Parameters
     ----------

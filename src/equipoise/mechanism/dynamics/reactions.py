@@ -393,7 +393,7 @@ class JointReactions:
     def couplings(self, preload: Callable[[Coupling], Any]) -> CouplingForces:
         """Forces of couplings by list and name.
 
-        preload : the quantity of a coupling's preload to return.
+        preload : from a coupling to the preload, N, that counts.
         """
         kinds = coupling_kinds(type(self.motion.machine))
         coupling_forces: dict[str, dict[str, CouplingForce]] = {

@@ -305,10 +305,10 @@ def _chosen(drive: Drive, law: LengthLaw, branches: Sequence[Branch], shift: flo
         raise ModelError(
             "drive.start",
             Note(
-                "the stroke can be had with {link!r} {told}; give its angle at crank angle 0, "
-                "roughly",
+                "the stroke is possible with {link!r} {ranges}; give its approximate angle at "
+                "crank angle 0",
                 link=drive.link,
-                told=all_of(values),
+                ranges=all_of(values),
             ),
         )
     widest = max(branches, key=lambda branch: branch.high - branch.low, default=None)

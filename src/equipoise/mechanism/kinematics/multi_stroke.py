@@ -34,7 +34,7 @@ FAR = 0.5
 CLOSED = 1e-9
 """rad: how near a link comes to where it was a cycle before."""
 NO_LEVER = 1e-9
-"""Smallest independent lever over the longest, above which strokes are independent."""
+"""Smallest lever over the longest, above which strokes are independent."""
 
 
 FOLLOWED = Note(
@@ -227,9 +227,9 @@ def _not_had(of: MultiStrokeInverse, start: Array) -> ModelError:
     return ModelError(
         "drives",
         Note(
-            "no angles were found at which strokes can begin: {told}; give each link its angle "
-            "there, roughly, by start",
-            told=all_of(notes),
+            "no angles were found at which strokes can begin: {reasons}; give each link its "
+            "approximate angle there by start",
+            reasons=all_of(notes),
         ),
     )
 

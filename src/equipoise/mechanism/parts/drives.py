@@ -86,8 +86,8 @@ def _slider() -> Any:
 def _stroke() -> Any:
     return key(
         KeyTable(LengthLaw, headed=True),
-        "length of the cylinder, or travel of the sliding joint, over the cycle; `speed` tells how "
-        "fast the cycle goes on",
+        "length of the cylinder, or travel of the sliding joint, over the cycle, which runs at "
+        "`speed`",
         default=None,
     )
 
@@ -119,7 +119,7 @@ class Drive(Pushing, Frozen):
     link: str = key(
         TextKind(of="link"),
         "the driven link; it shares exactly one point with the frame, about which it turns; of a "
-        "machine that a cylinder drives a link that does so and whose angle tells the pose",
+        "machine that a cylinder drives a link that does so and whose angle determines the pose",
         example="crank",
     )
     speed: float = key("angular speed", "positive is counterclockwise", example="193 rpm")

@@ -70,8 +70,8 @@ class PartKind(Frozen):
     legend : role among its signs, and what a picture's legend calls that; empty where none does.
     sign : ``module:function`` of the room of symbols that draws it, from the part and its
         surroundings to marks; empty where it has no sign of its own.
-    dragged : ``module:function`` of the room of symbols that tells by which circle a number of the
-        part is dragged on a drawing; empty where none is.
+    dragged : ``module:function`` of the room of symbols that gives the circle by which a number of
+        the part is dragged on a drawing; empty where none is.
     tables : ``module:function`` that shows what an analysis says of all parts of the kind, by the
         chapter in which that stands, ``motion`` or ``joints``.
     special : what it is called by formats of other programs, some of which lack it; empty of what

@@ -93,7 +93,7 @@ class Gear(Turning):
     pressure_angle: float = pressure_angle("the radial part of the tooth force")
     shape: GearShape | None = key(
         KeyTable(GearShape, headed=True),
-        "pitch curves, where the ratio varies; `ratio` or `teeth` then tell its mean",
+        "pitch curves, where the ratio varies; `ratio` or `teeth` then give its mean",
         default=None,
     )
 
@@ -103,7 +103,7 @@ class Gear(Turning):
             raise ModelError(
                 "mesh",
                 Note(
-                    "got {given!r} without teeth; leave it out, the sign of ratio tells: "
+                    "got {given!r} without teeth; leave it out: ratio has the sign, "
                     "negative for external",
                     given=given["mesh"],
                 ),

@@ -55,11 +55,11 @@ MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
 FLAT = 1e-12
 """Over the square of a side: that of a height which is rounding."""
 SET_BY_BODIES = Note(
-    "the bodies tell it; leave out mass, {center_of_mass} and inertia, or the bodies",
+    "it follows from the bodies; leave out mass, {center_of_mass} and inertia, or the bodies",
     **key_names("center_of_mass"),
 )
 SET_BY_LENGTHS = Note(
-    "length or sides tell the places; give the names of the points alone, in a list"
+    "length or sides determine the positions; give the names of the points alone, in a list"
 )
 
 

@@ -202,7 +202,7 @@ class Rack(Coupling):
                 yield ModelError(
                     f"{where}.{name}",
                     Note(
-                        "goes with drives = {drives!r}; what drives tells its own place",
+                        "goes with drives = {drives!r}; the driving part has its own position",
                         drives=drives,
                     ),
                 )

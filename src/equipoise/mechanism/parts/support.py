@@ -366,7 +366,7 @@ class Support(Frozen):
 
     @property
     def reference(self) -> Place:
-        """The point whose displacement describes the support's: the pivot, or the centre of mass."""
+        """Point whose displacement describes the support's: the pivot, or the centre of mass."""
         return self.center_of_mass if self.pivot is None else (*self.pivot, 0.0)
 
 

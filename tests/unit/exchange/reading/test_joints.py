@@ -146,7 +146,7 @@ def test_a_piston_of_pmks_slides_on_the_frame(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        (pmks()[:-9], "it is not whole: its last sign does not tell"),
+        (pmks()[:-9], "it is incomplete: its last character does not match"),
         ("0.0.0.0.1.2.3", "it is not whole"),
         (pmks().replace("ku,", "k§,"), "'k§' is no number as PMKS"),
         (pmks().replace("B,ku", "BBku"), "is not written as by PMKS"),
