@@ -310,6 +310,7 @@ end = {point = ["900 mm", "-100 mm"]}
 """Resonances at 308, 507 and 650 rpm: the first moves the middle along, the others the end."""
 
 
+@pytest.mark.exhaustive(but=["300-308-middle"])
 @pytest.mark.parametrize(("speed", "resonance", "gauge"),
                          [(300, 308, "middle"), (500, 507, "end")])  # fmt: skip
 def test_the_resonance_that_moves_the_machine_at_its_speed_is_named(

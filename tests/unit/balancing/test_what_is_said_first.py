@@ -109,7 +109,7 @@ def test_lengths_stand_before_masses_where_a_dyad_is_nearly_dead() -> None:
     assert said("wiper").count("Transmission angle at C") == 1
 
 
-@pytest.mark.exhaustive(but=["wiper", "beam-pump", "frame-saw"])
+@pytest.mark.exhaustive(but=["beam-pump", "frame-saw"])
 @pytest.mark.parametrize("name", ["reciprocating-saw", "frame-saw", "beam-pump", "wiper"])
 def test_who_is_told_what_to_do_is_not_told_to_leave_it(name: str) -> None:
     told = " ".join(first_lines(name))

@@ -100,6 +100,7 @@ def test_only_the_last_round_is_proved(monkeypatch: pytest.MonkeyPatch) -> None:
     )
 
 
+@pytest.mark.exhaustive(but=["machine1"])
 @pytest.mark.parametrize("machine", [PUMP, RUBBING])
 def test_what_can_be_reached_with_friction_is_not_refused(machine: eq.Machine) -> None:
     """Though with the friction of the machine before it could not be reached."""
@@ -118,6 +119,8 @@ def test_what_can_be_reached_with_friction_is_not_refused(machine: eq.Machine) -
     assert f"can become {reached:.4g} N at the least" in str(error.value)
 
 
+# Limits that friction passes: `test_limits_are_kept_with_friction`.
+@pytest.mark.exhaustive
 def test_a_limit_is_kept_though_friction_does_not_settle(monkeypatch: pytest.MonkeyPatch) -> None:
     """And the value by which such results are compared is the cost of their own numbers."""
     limited = Objective("joints.B", "peak")

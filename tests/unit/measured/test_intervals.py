@@ -74,10 +74,14 @@ def test_intervals_hold_the_truth_as_often_as_they_say(case: tuple[float, float,
 
 @pytest.mark.parametrize("case", few(CASES.values(), [CASES["Coulomb only"]]), ids=CASES)
 def test_estimates_do_not_lean_to_one_side(case: tuple[float, float, float]) -> None:
-    """Their mean is within half a standard deviation of the truth, by both methods."""
+    """Their mean is within half a standard deviation of the truth, by both methods; the mean of so
+    few has a fifth of one.
+    """
     truth = dict(zip(NAMES, (OMEGA, *case[:2]), strict=True))
     for method, (name, value) in product(("by_record", "by_line"), truth.items()):
-        values = np.array([getattr(decay, method)[name].value for decay in identified(*case)])
+        values = np.array(
+            [getattr(decay, method)[name].value for decay in identified(*case, runs=FEW)]
+        )
         assert abs(np.mean(values) - value) < 0.5 * np.std(values), (method, name)
 
 

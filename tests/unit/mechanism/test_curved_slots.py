@@ -33,6 +33,7 @@ from equipoise.web.session import Session
 from equipoise.web.structure_edits import straight
 from support import free_bodies, newton
 from support.analyses import ANGLES
+from support.chosen import few_together
 from support.poses import from_motion
 from support.refusals import refused
 from surface.running import equipoise
@@ -394,29 +395,37 @@ def test_points_may_stand_in_a_table(tmp_path: Path) -> None:
         eq.load(path)
 
 
-def test_designs_vary_its_place_and_what_it_holds() -> None:
-    vary = {"open": ["curved_slots[1].direction", "frame.points.D.x"],
-            "baler-pickup": ["links.reel.points.B.x", "links.tine.points.R.y"]}  # fmt: skip
-    for name, paths in vary.items():
-        machine = machine_named(name)
-        slot = machine.curved_slots[0]
-        names = ("drive_torque", f"joints.{slot.name}", "joints.B", "curved_slots.1.speed")
-        batch = Batch(machine, paths, [Figure(one, "rms") for one in names], angles=60)
+@pytest.mark.usefixtures("compiled_loops")
+@pytest.mark.parametrize(
+    ("name", "paths"),
+    few_together(
+        [
+            ("open", ["curved_slots[1].direction", "frame.points.D.x"]),
+            ("baler-pickup", ["links.reel.points.B.x", "links.tine.points.R.y"]),
+        ],
+        [("open", ["curved_slots[1].direction", "frame.points.D.x"])],
+    ),
+)
+def test_designs_vary_its_place_and_what_it_holds(name: str, paths: list[str]) -> None:
+    machine = machine_named(name)
+    slot = machine.curved_slots[0]
+    names = ("drive_torque", f"joints.{slot.name}", "joints.B", "curved_slots.1.speed")
+    batch = Batch(machine, paths, [Figure(one, "rms") for one in names], angles=60)
+    if name == "open":
+        sizes = [(0.0, machine.frame["D"][0]), (0.01, machine.frame["D"][0] + 1e-3), (1.5, 0.0)]
+    else:
+        sizes = [(0.105, -0.055), (0.104, -0.0545), (0.3, -0.055)]
+    figures, reason = batch(np.array(sizes))
+    assert reason.astype(bool).tolist() == [False, False, True]
+    for row, (one, other) in zip(figures, sizes[:2], strict=False):
         if name == "open":
-            sizes = [(0.0, machine.frame["D"][0]), (0.01, machine.frame["D"][0] + 1e-3), (1.5, 0.0)]
+            alone = machine.with_point("frame", "D", (other, machine.frame["D"][1]))
+            alone = replace(alone, curved_slots=(replace(slot, direction=one),))
         else:
-            sizes = [(0.105, -0.055), (0.104, -0.0545), (0.3, -0.055)]
-        figures, reason = batch(np.array(sizes))
-        assert reason.astype(bool).tolist() == [False, False, True]
-        for row, (one, other) in zip(figures, sizes[:2], strict=False):
-            if name == "open":
-                alone = machine.with_point("frame", "D", (other, machine.frame["D"][1]))
-                alone = replace(alone, curved_slots=(replace(slot, direction=one),))
-            else:
-                alone = machine.with_point("reel", "B", (one, 0.0))
-                alone = alone.with_point("tine", "R", (0.0, other))
-            summary = eq.analyze(alone, 60).summary
-            np.testing.assert_allclose(row, [summary[key].rms for key in names], rtol=1e-8)
+            alone = machine.with_point("reel", "B", (one, 0.0))
+            alone = alone.with_point("tine", "R", (0.0, other))
+        summary = eq.analyze(alone, 60).summary
+        np.testing.assert_allclose(row, [summary[key].rms for key in names], rtol=1e-8)
 
 
 def test_drawings_have_slots_with_their_ends() -> None:

@@ -106,7 +106,7 @@ def test_a_run_on_a_support_has_pictures_of_gauges_and_mounts() -> None:
 
 def test_a_report_has_the_run_that_the_file_asks_for() -> None:
     found = of("cutter-bar")
-    run = eq.run(found.machine)
+    run = found.run
     assert isinstance(run, Run)
     assert (run.end.kind, found.notes) == ("standstill", ())
     report = build(found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import itertools
 import json
 import shutil
@@ -19,6 +20,7 @@ from equipoise.present.cells import printed
 from equipoise.results.blocks import Block, Column, Facts, FileText, Notes, Table, Text, Value
 from equipoise.results.charts import Axis, Chart, Curve, Panel
 from equipoise.running.drives_run import DrivesRun
+from equipoise.running.run import Run
 from equipoise.web import result_blocks, runs
 from equipoise.web.block import FloatBlock
 from equipoise.web.messages import message_of
@@ -35,6 +37,21 @@ def run_of(name: str) -> tuple[State, State]:
     (reply,) = ask(session, "run", seq=3)
     assert reply.content["type"] == "run"
     return shown, State(reply.content, np.frombuffer(reply.buffer, "<f4"))
+
+
+@pytest.fixture
+def computed(monkeypatch: pytest.MonkeyPatch) -> list[Run]:
+    """The runs that the page computes, which need not be computed again."""
+    kept: list[Run] = []
+    module = importlib.import_module("equipoise.running.run")
+    compute = module.run
+
+    def keep(*given: Any, **options: Any) -> Run:
+        kept.append(compute(*given, **options))
+        return kept[-1]
+
+    monkeypatch.setattr(module, "run", keep)
+    return kept
 
 
 def test_a_run_on_the_page_is_that_of_the_command() -> None:
@@ -65,17 +82,17 @@ def test_a_run_on_the_page_is_that_of_the_command() -> None:
     assert arrays["run.time"] == arrays["run.speed.0.x"] == arrays["run.speed.1.x"]
 
 
-def test_a_cycle_of_several_turns_is_one_part() -> None:
+def test_a_cycle_of_several_turns_is_one_part(computed: list[Run]) -> None:
     shown, told = run_of("four-stroke-engine")
-    run = eq.run(eq.load("four-stroke-engine"))
+    (run,) = computed
     assert shown.content["turns"] == 2
     assert told.array("run.cycles")[-1] == pytest.approx(run.turned / 2, rel=1e-6)
 
 
-def test_drives_that_go_their_own_ways_bring_their_poses() -> None:
+def test_drives_that_go_their_own_ways_bring_their_poses(computed: list[Run]) -> None:
     """Each a pose of the linkage: links keep their lengths, and cranks their angles of the run."""
     machine, (_, told) = eq.load("two-motor-mixer"), run_of("two-motor-mixer")
-    run = eq.run(machine)
+    (run,) = computed
     count, time = told.content["frames"], told.array("run.time")
     assert len(time) == count == len(told.place("C"))
     assert told.array("run.cycles") == pytest.approx(np.arange(count) / count)

@@ -24,6 +24,7 @@ ROWS = (f"{45 * k},{k % 3}" for k in range(8))
 RECORD = "\n".join(["crank_angle [deg],gauges.gauge [mm]", *ROWS, ""])
 
 
+@pytest.mark.exhaustive(but=["asked0", "asked3"])
 @pytest.mark.parametrize("asked", [
     ("arrows", {"point": "C"}),
     ("variant", {"do": "pin"}),
