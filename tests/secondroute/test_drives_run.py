@@ -201,6 +201,8 @@ JOINTS = tuple(
 )
 
 
+# Two motors, and friction in the pins of a machine of two drives: the tests above and below.
+@pytest.mark.exhaustive
 def test_two_motors_turn_a_five_bar_with_friction_in_its_pins() -> None:
     drive = eq.Drive("left crank", 15.0, motor=LAGGING)
     other = FurtherDrive("right crank", start=pi / 3, motor=QUICK)
@@ -214,6 +216,8 @@ def test_two_motors_turn_a_five_bar_with_friction_in_its_pins() -> None:
     assert min(lost[-1] for lost in found.losses.values()) > 0.001 * total[-1]
 
 
+# As `test_two_motors_turn_a_five_bar`.
+@pytest.mark.exhaustive
 def test_the_bundled_mixer_starts_by_two_motors() -> None:
     machine = eq.load("two-motor-mixer")
     found = against_free_bodies(machine, 0.06, {})

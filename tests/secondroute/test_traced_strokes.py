@@ -71,6 +71,8 @@ def test_scripts_with_other_numbers(name: str, tmp_path: Path) -> None:
     assert not np.allclose(known, arrays(eq.analyze(base, ANGLES), names))
 
 
+# The steps of others, from which their loops are written: `test_scripts`.
+@pytest.mark.exhaustive(but=[LOADER])
 @pytest.mark.parametrize("name", [LOADER, "driven slider_crank:0", "pushed five-bar:0"])
 def test_compiled_loops(name: str) -> None:
     base = machine_of(name)
