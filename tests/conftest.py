@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,16 @@ from support.chosen import DISTINCT
 
 SEEDED = {Path(__file__).parent / room for room in ("laws", "secondroute", "crosscheck")}
 PARAM = type(pytest.param())
+BY_NUMPY = {"unit", "surface"}
+"""Rooms whose tests run loops of designs by NumPy on every change."""
+COMPILED = {"test_backends.py", "test_loops.py", "test_loop_in_c.py", "test_executors.py"} | {
+    "test_sweep.py",
+    "test_killed.py",
+    "test_interrupted.py",
+    "test_memory.py",
+    "test_tolerance.py",
+}
+"""Files of them whose tests compile the loops."""
 MANY = 8
 """Machines of one test, of which every change tries some."""
 FRESH = 20_000
@@ -118,6 +128,34 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     """Make the page of all pictures that tests have kept, once all workers have ended."""
     if not hasattr(session.config, "workerinput"):
         gallery.write_page()
+
+
+@pytest.fixture(scope="module", autouse=True)
+def loops_by_numpy(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Loops of designs are run by NumPy on every change, where no compiler is tested: the same
+    sources, which take seconds to compile and milliseconds to run for a few designs.
+    """
+    room = request.path.relative_to(Path(__file__).parent).parts[0]
+    if (
+        request.config.getoption("--exhaustive")
+        or room not in BY_NUMPY
+        or request.path.name in COMPILED
+    ):
+        yield
+        return
+    from equipoise.codegen import backends
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(backends, "engine", lambda: "numpy")
+        yield
+
+
+@pytest.fixture
+def compiled_loops(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Loops are compiled, for a test that takes many steps in them."""
+    from equipoise.codegen import backends
+
+    monkeypatch.setattr(backends, "engine", lambda: "numba")
 
 
 @pytest.fixture(scope="session")
