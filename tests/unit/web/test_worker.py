@@ -60,8 +60,13 @@ MASS = {"set": "links.crank.mass", "text": "300 g"}
 
 @pytest.fixture
 def page() -> Foreground:
+    return shown("balance-crank")
+
+
+def shown(example: str) -> Foreground:
+    """A page with a machine, of which all is told that follows from it."""
     page = Foreground()
-    asked(page, "open", example="balance-rig")
+    asked(page, "open", example=example)
     page.rest()
     done_beside(page)
     return page
@@ -148,8 +153,9 @@ def test_what_takes_long_can_be_cancelled(page: Foreground, what: str) -> None:
     assert kinds(asked(page, "edit", label="mass", edits=[MASS]))[0] == "state"
 
 
-def test_what_follows_from_a_design_comes_after_a_cancel_all_the_same(page: Foreground) -> None:
+def test_what_follows_from_a_design_comes_after_a_cancel_all_the_same() -> None:
     """Where it was computed in the worker that has been ended."""
+    page = shown("balance-rig")
     asked(page, "edit", label="mass", edits=[MASS])
     page.rest()
     assert len(page.tasks) == 1
