@@ -339,8 +339,12 @@ def test_threads_bear_what_the_whole_machine_asks_of_them() -> None:
     assert size(density=11340.0) is None
 
 
+@pytest.mark.exhaustive(but=["ja"])
+@pytest.mark.parametrize(
+    ("language", "words"), [("ja", "厚さ 25 mm"), ("ko", "두께 25 mm")], ids=["ja", "ko"]
+)
 def test_texts_of_drawings_are_in_the_language_asked_for(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    language: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """English where no font has its letters, and that is said; names of layers stay."""
     found = findings_of("yamashita-1").balanced  # type: ignore[union-attr]
@@ -352,20 +356,19 @@ def test_texts_of_drawings_are_in_the_language_asked_for(
         return sheet(part, lines)
 
     monkeypatch.setattr(workshop_sheet, "_sheet", keep)
-    for language, words in {"ja": "厚さ 25 mm", "ko": "두께 25 mm"}.items():
-        drawing = drawn(found, tmp_path / "x.dxf", language=language)
-        texts = on_layer(drawing, "dimensions crank_ counterweight 1")
-        assert words in {one.dxf.text for one in texts if one.dxftype() == "TEXT"}
-        (font,) = {one.dxf.style for one in texts if one.dxftype() == "TEXT"}
-        assert drawing.styles.get(font).dxf.font == KNOWN[language].drawing_font
-        group = svg(found, tmp_path / "x.svg", language=language).find("{*}g/{*}title")
-        assert group is not None and group.text is not None and not group.text.isascii()
-        for signs, wanted in (("", words), ("厚", "thickness 25 mm")):
-            shown.clear()
-            monkeypatch.setattr(workshop_sheet, "fonts_for", lambda _, signs=signs: ((), signs))
-            notes = eq.export(found, tmp_path / "x.pdf", language=language)  # type: ignore[arg-type]
-            assert wanted in shown and bool(notes) == bool(signs)
-            assert all("for which this computer has no font" in one for one in notes)
+    drawing = drawn(found, tmp_path / "x.dxf", language=language)
+    texts = on_layer(drawing, "dimensions crank_ counterweight 1")
+    assert words in {one.dxf.text for one in texts if one.dxftype() == "TEXT"}
+    (font,) = {one.dxf.style for one in texts if one.dxftype() == "TEXT"}
+    assert drawing.styles.get(font).dxf.font == KNOWN[language].drawing_font
+    group = svg(found, tmp_path / "x.svg", language=language).find("{*}g/{*}title")
+    assert group is not None and group.text is not None and not group.text.isascii()
+    for signs, wanted in (("", words), ("厚", "thickness 25 mm")):
+        shown.clear()
+        monkeypatch.setattr(workshop_sheet, "fonts_for", lambda _, signs=signs: ((), signs))
+        notes = eq.export(found, tmp_path / "x.pdf", language=language)  # type: ignore[arg-type]
+        assert wanted in shown and bool(notes) == bool(signs)
+        assert all("for which this computer has no font" in one for one in notes)
     with refused(UsageError, names="en, de, ja, ko"):
         eq.export(found, tmp_path / "x.pdf", language="fr")  # type: ignore[arg-type]
 

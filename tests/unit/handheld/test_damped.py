@@ -221,6 +221,8 @@ def test_galerkin(name: str) -> None:
     same(found, wanted[np.abs(wanted) > least], GALERKIN)
 
 
+# Which says something of the tests above alone.
+@pytest.mark.exhaustive
 def test_some_of_these_do_not_swing() -> None:
     """Else the test above would not ask for what it is meant for."""
     real = {

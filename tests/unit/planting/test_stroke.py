@@ -239,6 +239,8 @@ def test_every_crossing_of_the_tray(name: str) -> None:
     np.testing.assert_allclose(share.imag, 0, atol=1e-13)
 
 
+# Which says something of the tests above alone.
+@pytest.mark.exhaustive
 def test_some_tray_is_passed_more_than_twice_and_some_once() -> None:
     counts = [len(instants_of(name).tray_crossings) for name in TRAYS]
     assert max(counts) > 2

@@ -162,8 +162,12 @@ def test_what_cannot_be_done_with_variants_is_refused(asked, said) -> None:
     for _ in "AB":
         ask(session, "variant", do="pin")
     assert said in refusal(ask(session, "variant", **asked))
-    for _ in range(10):
-        ask(session, "variant", do="pin")
+
+
+def test_no_more_than_twelve_variants_are_kept() -> None:
+    session, _ = opened("yamashita-1")
+    for _ in range(12):
+        assert not told(ask(session, "variant", do="pin"), "refused")
     assert "12 variants are kept already" in refusal(ask(session, "variant", do="pin"))
 
 
