@@ -188,7 +188,7 @@ def test_every_number_of_tables_is_in_the_json(name: str) -> None:
     assert count > 30
 
 
-@pytest.mark.parametrize("name", MACHINES)
+@pytest.mark.parametrize("name", few(MACHINES, {*MACHINES} - {"riding-transplanter"}))
 def test_every_number_of_respond_and_balance_is_in_the_json(name: str) -> None:
     """Orders of modes, and places of rows across the machine, stand in tables alone."""
     found = findings_of(name)
