@@ -572,7 +572,7 @@ def test_new_that_fails_midway_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_the_reader_may_stop_early() -> None:
-    words = command("analyze", "yamashita-1", "--json", "--angles", "20000")
+    words = command("analyze", "yamashita-1", "--json", "--angles", "4000")
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as child:
         assert child.stdout is not None
         assert child.stderr is not None
