@@ -722,7 +722,11 @@ def test_a_full_disk_leaves_nothing() -> None:
     """Files of more than 4 kB cannot be written; the model would have been a small one."""
     words = command("balance", "balance-crank", "-o", "new.toml", "--plot", "pictures")
     limited = ["sh", "-c", 'ulimit -f 8; exec "$@"', "sh", *words]
-    done = subprocess.run(limited, capture_output=True, encoding="utf-8", timeout=300, check=False)
+    # Python would cut off the bytecode of what it compiles, and fail of it from then on.
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(
+        limited, capture_output=True, encoding="utf-8", timeout=300, check=False, env=environment
+    )
     assert done.returncode == 2
     assert done.stderr.startswith("equipoise: pictures/")
     assert "the file cannot be written (file too large)" in done.stderr
