@@ -55,6 +55,21 @@ def test_a_constant_torque_without_resistance() -> None:
     assert found.work["drive"][-1] == pytest.approx(4.0 * 10 * pi, rel=1e-9)
 
 
+def test_weight_that_does_nothing_is_tabulated_as_nothing() -> None:
+    """Of level strokes only rounding is left, which was halved to thousands of pieces a turn."""
+    guide = eq.Slider("ram", "C", on="frame", through="A", direction=0.0)
+    links = {
+        "crank": eq.Link({"A": (0.0, 0.0), "B": (0.03, 0.0)}, 0.5, (0.0, 0.0), 1e-4),
+        "rod": eq.Link({"B": (0.0, 0.0), "C": (0.11, 0.0)}, 0.2, (0.11, 0.0), 1e-5),
+        "ram": eq.Link({"C": (0.0, 0.0)}, 0.4, (0.07, 0.0), 1e-4),
+    }
+    level = eq.Machine("level", eq.Drive("crank", 80.0, motor=Motor(torque=2.0)),
+                       {"A": (0.0, 0.0)}, links, {"C": "forward"}, (guide,))  # fmt: skip
+    up = replace(level, gravity=(-9.81, 0.0))
+    pieces, others = (len(CrankEquation(machine).table.lows) for machine in (level, up))
+    assert pieces <= others < 100
+
+
 def test_a_motor_of_a_straight_line_starts_exponentially() -> None:
     motor = Motor(300.0, 20.0, ratio=3.0, inertia=0.01)
     found = eq.run(crank(motor, -10.0, 0.0))

@@ -155,11 +155,13 @@ class CrankEquation:
             columns = [inertia, *(c for source in self.sources for c in source.columns(motions))]
             return np.array([np.broadcast_to(column, theta.shape) for column in columns])
 
-        groups = [0]
+        motions = self.motions(self.edges)
+        groups, sizes = [0], [0.0]
         for source, part in zip(self.sources, self.slices, strict=True):
             first = max(groups) + 1
             groups += [first + number for number in source.groups(part.stop - part.start)]
-        return Tabulated(functions, self.edges, np.array(groups))
+            sizes += source.sizes(motions)
+        return Tabulated(functions, self.edges, np.array(groups), np.array(sizes))
 
     @cached_property
     def slices(self) -> tuple[slice, ...]:

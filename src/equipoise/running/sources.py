@@ -28,7 +28,7 @@ from equipoise.mechanism.dynamics.friction import Demands
 from equipoise.mechanism.dynamics.lines import load_axis
 from equipoise.mechanism.dynamics.rated_elements import rated_torque, rated_ways
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
-from equipoise.mechanism.dynamics.reduced import generalized_force
+from equipoise.mechanism.dynamics.reduced import generalized_force, generalized_size
 from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
@@ -68,6 +68,12 @@ class Source(ABC):
         what is rounding in all of it; each is a group of its own where not said otherwise.
         """
         return [*range(count)]
+
+    def sizes(self, motions: Motions) -> list[float]:
+        """Of each column the size of the terms in it, beside whose rounding a smaller column is
+        nothing; 0 where a column is of one term.
+        """
+        return [0.0] * len(self.columns(motions))
 
     @abstractmethod
     def torque(self, columns: Array, speed: Array, factors: Factors) -> Array:
@@ -141,6 +147,9 @@ class ByAngle(AppliedSource):
 
     def columns(self, motions: Motions) -> list[Array]:
         return [np.asarray(sum(generalized_force(motion, self.of(motion)) for motion in motions))]
+
+    def sizes(self, motions: Motions) -> list[float]:
+        return [sum(generalized_size(motion, self.of(motion)) for motion in motions)]
 
     def demands(self, motion: Motion, inputs: SourceInputs) -> Demands:
         return self.of(motion)
@@ -255,6 +264,13 @@ class OfTimedLoads(AppliedSource):
         """Of each row what each load would do with a factor of 1."""
         return [
             generalized_force(motion, demands)
+            for motion in motions
+            for demands in timed_units(motion)
+        ]
+
+    def sizes(self, motions: Motions) -> list[float]:
+        return [
+            generalized_size(motion, demands)
             for motion in motions
             for demands in timed_units(motion)
         ]

@@ -65,15 +65,20 @@ class Tabulated:
     edges : rising from 0 to the period, between which the functions are smooth.
     groups : (C,) of each function, the number of the group whose largest value is its measure of
         rounding; each is measured by itself if None.
+    sizes : (C,) of the terms in each function, which may cancel to rounding; 0 if None.
     """
 
     def __init__(
-        self, functions: Callable[[Array], Array], edges: Array, groups: Array | None = None
+        self,
+        functions: Callable[[Array], Array],
+        edges: Array,
+        groups: Array | None = None,
+        sizes: Array | None = None,
     ) -> None:
         self.period = float(edges[-1])
         lows, highs = edges[:-1], edges[1:]
         pieces: list[tuple[Array, Array, Array]] = []
-        scale = np.zeros(1)
+        scale = np.zeros(1) if sizes is None else sizes
         for left in range(HALVINGS, -1, -1):
             middle, half = (highs + lows) / 2, (highs - lows) / 2
             theta = middle[:, None] + half[:, None] * POINTS

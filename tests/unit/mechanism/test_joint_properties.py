@@ -61,7 +61,7 @@ def test_a_whole_pin_of_several_links_goes_by_its_point() -> None:
 
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({"joint": "joints.c", "radius": 0.01}, "joints[1].joint: no joint is called 'joints.c'; did"),
-    ({"joint": "C", "radius": 0.01}, "joints[1].joint: got 'C'; give a joint as joints.B"),
+    ({"joint": "C", "radius": 0.01}, "joints[1].joint: got 'C'; give a joint as joints.C"),
     ({"joint": "joints.C", "radius": -0.01}, "joints[1].radius: got -0.01 m; give more than 0"),
     ({"joint": "joints.C", "radius": 0.0}, "joints[1].radius: got 0 m; give more than 0"),
     ({"joint": "joints.C"}, "joints[1]: give radius, stiffness, bearing or friction of the joint"),

@@ -42,3 +42,16 @@ def generalized_force(motion: Motion, demands: Mapping[str, Demand]) -> Array:
         anchor_1 = motion.state[p(motion.linkage.anchors[link])[1]]
         total = total - dot(anchor_1, force) - motion.state[u(link)[1]] * moment
     return total
+
+
+def generalized_size(motion: Motion, demands: Mapping[str, Demand]) -> float:
+    """The generalized force, N m, if nothing in it cancelled: its measure of rounding.
+
+    Horizontal strokes against weight, for example, leave nothing of it but rounding.
+    """
+    total: Array = np.zeros(len(motion.crank_angle))
+    for link, (force, moment) in demands.items():
+        anchor_1 = motion.state[p(motion.linkage.anchors[link])[1]]
+        total = total + np.abs(anchor_1) * np.abs(force)
+        total = total + np.abs(motion.state[u(link)[1]] * moment)
+    return float(np.max(total, initial=0.0))

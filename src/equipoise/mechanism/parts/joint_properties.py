@@ -202,7 +202,8 @@ def wrong_joint(
     families : groups of outputs that are forces of joints and couplings.
     """
     if not properties.joint.startswith((*(f"{family}." for family in families),)):
-        note = Note("got {joint!r}; give a joint as joints.B", joint=properties.joint)
+        name = f"joints.{properties.joint or 'B'}"
+        note = Note("got {joint!r}; give a joint as {name}", joint=properties.joint, name=name)
         yield ModelError(f"{where}.joint", note)
     if not properties.says and properties.friction is None:
         yield ModelError(where, Note("give radius, stiffness, bearing or friction of the joint"))
