@@ -22,6 +22,7 @@ from equipoise.symbols.shapes import Array
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
+    from equipoise.signals import Periodic
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Mode, Response
 
@@ -43,7 +44,7 @@ def swinging(scene: Scene, response: Response, factor: float | None = None) -> S
     """
     if response.motion is None or scene.carrier is None:
         return scene
-    values = response.motion.values(scene.crank_angle)
+    values = _over(response.motion, scene.crank_angle)
     values = values - response.motion.amplitudes[:, :1].real
     reach = _reach(scene, values)
     factor, texts = _enlarged(scene, reach, factor)
@@ -51,6 +52,16 @@ def swinging(scene: Scene, response: Response, factor: float | None = None) -> S
     if sizes:
         texts.append(say("across the drawing, not shown: {sizes}", sizes=", ".join(sizes)))
     return _with(scene, factor * values, texts)
+
+
+def _over(motion: Periodic, angles: Array) -> Array:
+    """Values (..., N) of a motion at crank angles (N,), rad; of a whole cycle by a fast transform,
+    as a drag waits for it.
+    """
+    count = len(angles)
+    even = np.arange(count) * (motion.period / count)
+    same = np.allclose(angles, even, rtol=0, atol=1e-12 * motion.period)
+    return motion.samples(count) if same else motion.values(angles)
 
 
 def running(scene: Scene, place: Array) -> Scene:
