@@ -159,13 +159,18 @@ def compiled_loops(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="session")
-def site() -> Path:
-    """The documentation site, which the first worker makes where it is not up to date."""
+def site(request: pytest.FixtureRequest) -> Path:
+    """The documentation site, which the first worker makes where it is not up to date.
+
+    On a change it is a draft, with the interactive file of each machine in one language.
+    """
     top = Path(__file__).parents[1]
     (top / "build").mkdir(exist_ok=True)
     with (top / "build" / "docs.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         make = [sys.executable, str(top / "docs" / "site" / "make.py")]
+        if not request.config.getoption("--exhaustive"):
+            make.append("--draft")
         made = subprocess.run(make, capture_output=True, text=True, check=False)
     assert (made.returncode, made.stderr) == (0, "")
     return top / "build" / "docs"

@@ -139,17 +139,17 @@ def card(
     return "\n\n".join([*heads, *parts, ""])
 
 
-def gallery(pages: Mapping[str, str], live: Collection[str] = ()) -> dict[str, str]:
+def gallery(pages: Mapping[str, str], live: Mapping[str, Collection[str]]) -> dict[str, str]:
     """Put cards in the place of each page's table.
 
-    pages : language -> text.  live : examples that have an interactive file.
+    pages : language -> text.  live : language -> examples that have an interactive file in it.
     """
     contents = {name: tomllib.loads(file.read_text("utf-8")) for name, file in bundled().items()}
     english = lessons(pages["en"])
     done = {}
     for language, text in pages.items():
         cards = [
-            card(language, name, contents[name], told[0], english[name][1], live)
+            card(language, name, contents[name], told[0], english[name][1], live[language])
             for name, told in lessons(text).items()
         ]
         before, after = TABLE.split(text)

@@ -2,6 +2,9 @@
 
     make docs
 
+With ``--draft``, as tests of a change make it, each machine has its interactive file in one
+language.
+
 Pages of `docs` are laid out in `build/docs-source` beside what is made of the product itself: the
 gallery, the commands, the public names, the scripts, the tutorials, the pictures of the theory.
 """
@@ -77,8 +80,8 @@ def linked(page: Path, written: str | None = None) -> str:
     return LINK.sub(to, page.read_text(encoding="utf-8") if written is None else written)
 
 
-def lay_out(source: Path) -> None:
-    """Write every page and picture that Sphinx reads."""
+def lay_out(source: Path, *, draft: bool) -> None:
+    """Write every page and picture that Sphinx reads; draft : as of `write_live`."""
     from commands import commands
     from gallery import gallery
     from glossary import glossary
@@ -107,9 +110,9 @@ def lay_out(source: Path) -> None:
             pages = split(pages, page)
     pages = {name: side_by_side(text) for name, text in pages.items()}
     write_topics(pages, source / EXTRA)
-    live = write_live(source / EXTRA, GALLERY)
+    live = write_live(source / EXTRA, GALLERY, draft=draft)
     shown = gallery({language: pages[page] for language, page in GALLERY.items()}, live)
-    if not live:
+    if not any(live.values()):
         pages["index.md"] = FRAME.sub("", pages["index.md"])
     pages |= {GALLERY[language]: text for language, text in shown.items()}
     draw(pages.values(), source)
@@ -152,17 +155,21 @@ def digest() -> str:
     return sha256(b"".join(map(Path.read_bytes, every))).hexdigest()
 
 
-def main() -> int:
-    """Make the site anew, unless nothing has changed; returns 0 if Sphinx warns of nothing."""
+def main(*, draft: bool) -> int:
+    """Make the site anew, unless nothing has changed; returns 0 if Sphinx warns of nothing.
+
+    draft : as of `write_live`; a whole site that is there will do.
+    """
     from sphinx.cmd.build import main as sphinx
 
     gc.set_threshold(100_000, 50, 50)  # Sphinx keeps what it makes: to look for garbage takes 16 s
 
-    stamp, now = BUILT / "made-of.txt", digest()
-    if not stamp.exists() or stamp.read_text(encoding="utf-8") != now:
+    stamp, whole = BUILT / "made-of.txt", digest()
+    now = f"{whole} draft" if draft else whole
+    if not stamp.exists() or stamp.read_text(encoding="utf-8") not in (now, whole):
         for old in (SOURCE, BUILT):
             shutil.rmtree(old, ignore_errors=True)
-        lay_out(SOURCE)
+        lay_out(SOURCE, draft=draft)
         extra = f"-Dhtml_extra_path={SOURCE / EXTRA}"
         options = ["--quiet", "--fail-on-warning", f"-c{HERE}", f"-d{SOURCE}/.read", extra]
         if status := sphinx([*options, str(SOURCE), str(BUILT)]):
@@ -174,4 +181,4 @@ def main() -> int:
 
 if __name__ == "__main__":
     sys.path[:0] = [str(HERE), str(ROOT / "src")]
-    sys.exit(main())
+    sys.exit(main(draft="--draft" in sys.argv))
