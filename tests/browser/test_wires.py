@@ -13,6 +13,7 @@ from playwright.sync_api import Browser, Page, expect
 import equipoise as eq
 from browser.live import LONGEST, OVER_A_SOCKET, Live
 from equipoise.mechanism.parts.run_plans import MOST_TURNS
+from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.present.cells import printed
 from equipoise.running.drives_run import DrivesRun
 from equipoise.web.figures import CHARTS
@@ -214,7 +215,9 @@ def test_a_machine_moves_on_its_mounts_while_its_run_is_played(wired: Live) -> N
     turned = page.locator("svg g[transform*=rotate]").first.get_attribute("transform")
     angle = re.search(r"rotate\((\S+) ", turned or "")
     assert angle is not None
-    assert float(angle[1]) == pytest.approx(-np.degrees(run.support.place[2, -1]), abs=1e-3)
+    assert float(angle[1]) == pytest.approx(
+        -np.degrees(run.support.place[FREEDOMS.index("pitch"), -1]), abs=1e-3
+    )
     told.get_by_role("button", name="Close").click()
     expect(clock).to_be_hidden()
 

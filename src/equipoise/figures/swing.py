@@ -67,12 +67,10 @@ def _over(motion: Periodic, angles: Array) -> Array:
 def running(scene: Scene, place: Array) -> Scene:
     """A scene of poses in a run whose support moves with them, so much larger that it can be seen.
 
-    place : displacements (3, N) along surge, heave and pitch, m and rad.
+    place : displacements (6, N) along and about x, y and z, m and rad.
     """
-    values = np.zeros((len(FREEDOMS), place.shape[1]))
-    values[[*map(FREEDOMS.index, PLANAR)]] = place
-    factor, texts = _enlarged(scene, _reach(scene, values))
-    return _with(scene, factor * values, texts)
+    factor, texts = _enlarged(scene, _reach(scene, place))
+    return _with(scene, factor * place, texts)
 
 
 def _enlarged(scene: Scene, reach: float, factor: float | None = None) -> tuple[float, list[str]]:
