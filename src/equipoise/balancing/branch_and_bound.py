@@ -2,8 +2,8 @@
 
 Over an interval of y / w a square lies below its chord, so that the program with y^2 / w <= lift <=
 chord bounds the cost from below; with every ratio held where it was found, the program is exact and
-bounds it from above.  Intervals are cut where a square is missed most, until both meet.  Where the
-first solution misses no square, it is the best already.
+bounds it from above.  Intervals are cut at the square of largest excess, until both meet.  Where
+the first solution meets every square, it is the best already.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from equipoise.dataclass import dataclass
 from equipoise.i18n import Note
 from equipoise.signals import Array
 
-MISSED = 1e-8
+MOST_EXCESS = 1e-8
 """Of a square, scaled numbers, that is taken for rounding."""
 CLOSE = 2e-9
 """Between the bounds, over the scale of the cost, at which the search ends."""
@@ -59,8 +59,8 @@ class Square:
         w = 1.0 if self.w is None else float(x[self.w])
         return min(max(float(x[self.y]) / w, self.low), self.high) if w > 0 else 0.0
 
-    def missed(self, x: Array) -> float:
-        """By how much the lift lies above y^2 / w."""
+    def excess(self, x: Array) -> float:
+        """Excess of the lift over y^2 / w; 0 below."""
         w = 1.0 if self.w is None else float(x[self.w])
         return max(0.0, float(x[self.lift]) - (float(x[self.y]) ** 2 / w if w > 0 else 0.0))
 
@@ -158,7 +158,7 @@ class _Search:
         self.nodes += 1
         intervals = tuple((square.low, square.high) for square in self.squares)
         root = _Node(intervals, self._solved(self.program))  # which keeps to the intervals already
-        exact = all(square.missed(root.solved.x) < MISSED for square in self.squares)
+        exact = all(square.excess(root.solved.x) < MOST_EXCESS for square in self.squares)
         if exact or root.solved.bound > above:
             return self._as_best(root.solved, self.program, root.solved.bound)
         if any(not isfinite(s.high - s.low) for s in self.squares):
@@ -258,9 +258,9 @@ class _Search:
             return best.prices
 
     def _halves(self, node: _Node) -> list[tuple[tuple[float, float], ...]]:
-        """The node's intervals, with that cut in two whose square is missed most."""
-        missed = [square.missed(node.solved.x) for square in self.squares]
-        worst = int(np.argmax(missed))
+        """The node's intervals, with that cut in two whose square has the largest excess."""
+        excess = [square.excess(node.solved.x) for square in self.squares]
+        worst = int(np.argmax(excess))
         low, high = node.intervals[worst]
         middle, here = (low + high) / 2, self.squares[worst].ratio(node.solved.x)
         least = SHORTEST * (high - low)

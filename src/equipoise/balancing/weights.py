@@ -44,7 +44,7 @@ CAP = 10.0
 would have an endless mass close to its axis."""
 NOTHING = 1e-6
 """Of a mass, scaled, that is none."""
-MISSED = 3e-9
+MOST_EXCESS = 3e-9
 """Of a sector's moment, scaled, that is taken for rounding."""
 
 RADII = {
@@ -264,12 +264,12 @@ class AddedWeight(DesignVariables):
         """Tangents that cut off a moment which no sector of its mass has."""
         m, sx, sy = (float(value) for value in x[places])
         m = min(max(m, 0.0), self._full)
-        missed = float(np.hypot(sx, sy)) - self._bound(m)[0]
-        if missed <= MISSED:
+        excess = float(np.hypot(sx, sy)) - self._bound(m)[0]
+        if excess <= MOST_EXCESS:
             return []
         cuts, moment = Program(), Affine(np.eye(2), places[1:], np.zeros(2))
         # Tangents a width apart miss by the bend times its square over 8.
-        width = sqrt(8 * missed / max(self._bend(m), self._bend(self._full / 2)))
+        width = sqrt(8 * excess / max(self._bend(m), self._bend(self._full / 2)))
         for mass in np.clip(m + width * np.linspace(-1, 1, AROUND), 0.0, self._full):
             self._add_tangent(cuts, int(places[0]), moment, float(mass))
         return [replace(block, local=f"sector {places[0]}") for block in cuts.blocks]

@@ -1,6 +1,6 @@
 """Outlines of what links are made of and of new counterweights, as they are cut: with holes.
 
-Places are in the link's axes, m.  An edge is straight or an arc, told by its bulge as DXF has it:
+Places are in the link's axes, m.  An edge is straight or an arc, given by its bulge as in DXF:
 the tangent of a quarter of the arc's angle, above 0 counterclockwise, 0 of a straight edge.
 """
 
@@ -265,7 +265,7 @@ class Part:
 
 
 def parts(job: Job) -> list[Part]:
-    """Every part that a machine tells an outline of; others are told to be left out.
+    """Every part of a machine with an outline; notes name the others, which are left out.
 
     Raises
     ------
@@ -384,7 +384,7 @@ def _of_links(job: Job) -> Iterator[Part]:
                 yield Part(
                     name, body.shape, number, body.thickness, edges, body.density, points=points
                 )
-            elif body.shape != "point" or not job.changes:  # those are told with what was changed
+            elif body.shape != "point" or not job.changes:  # those are reported with the changes
                 job.leave_out(
                     Note(
                         "body {number} of {link!r} ({shape}) without an outline",

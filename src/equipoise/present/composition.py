@@ -123,7 +123,7 @@ def build(
     parallel: bool = False,
     by_rows: bool = False,
 ) -> ReportDocument:
-    """Everything that a report tells, in a language.
+    """The contents of a report, in a language.
 
     command : that makes it again.
     parallel : whether a second process may help; see `pictures.drawings`.
@@ -410,7 +410,7 @@ def report(
     language : code of one of `equipoise.i18n.LANGUAGES`, such as ``ja``.
     speed : of the crank, or of the tool's engine, rad/s, or a text such as ``"300 rpm"``; the
         model's where not given.
-    command : that makes the report again, told at its end.
+    command : that makes the report again, printed at its end.
 
     Raises
     ------
@@ -433,7 +433,7 @@ def report_page(findings: Findings | ToolFindings, language: str = "en", command
     ----------
     findings : from `find`.
     language : code of one of `equipoise.i18n.LANGUAGES`, such as ``ja``.
-    command : that makes it again, told at its end.
+    command : that makes the report again, printed at its end.
 
     Raises
     ------
@@ -443,7 +443,7 @@ def report_page(findings: Findings | ToolFindings, language: str = "en", command
 
 
 def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:
-    """Tell what is wrong with these names, or missing, before anything is computed."""
+    """Raise if names of files are wrong or fonts missing, before anything is computed."""
     if language not in LANGUAGES:
         raise UsageError(
             at_place(

@@ -36,11 +36,11 @@ from equipoise.vibration.linear import resonance_note, within
 SMALL = 0.005
 """Share of a link or cause below which it is not named."""
 LEADING = 0.5
-"""Share of the mean square from which one order is told as the whole."""
+"""Share of the mean square from which an order is named as the only cause."""
 
 
 def answers(findings: Findings, stated: str = "") -> Iterator[SummaryAnswer]:
-    """The summary, a question at a time; what the file does not tell is left out.
+    """Questions of the summary with their answers; those without data in the file are omitted.
 
     stated : output of the figure that is stated above it, as the verdict.
     """

@@ -187,8 +187,8 @@ def _residuals(system: System, orbit: Orbit) -> Array:
     worst = np.zeros(len(steps))
     for share in (RULE.nodes[0] / 2, 0.5, 1 - RULE.nodes[0] / 2):
         s = orbit.points[:-1] + share * steps
-        missed = np.abs(orbit.slopes_at(share) - system.rates(s)(orbit.at(s))) / scale[:, None]
-        worst = np.maximum(worst, np.max(missed, axis=0, initial=0.0))
+        residual = np.abs(orbit.slopes_at(share) - system.rates(s)(orbit.at(s))) / scale[:, None]
+        worst = np.maximum(worst, np.max(residual, axis=0, initial=0.0))
     return np.asarray(worst * steps / (orbit.points[-1] - orbit.points[0]))
 
 

@@ -99,13 +99,13 @@ def test_tangent_near_a_ratio(w: float | None) -> None:
 def test_ratio_and_what_is_missed() -> None:
     square = Square(0, 1, 2, -1.0, 3.0)
     assert square.ratio(np.array([9.0, 4.0, 2.0])) == 2.0
-    assert square.missed(np.array([9.0, 4.0, 2.0])) == 1.0
-    assert square.missed(np.array([7.0, 4.0, 2.0])) == 0.0
+    assert square.excess(np.array([9.0, 4.0, 2.0])) == 1.0
+    assert square.excess(np.array([7.0, 4.0, 2.0])) == 0.0
     assert square.ratio(np.array([9.0, -40.0, 2.0])) == -1.0
     assert square.ratio(np.array([0.0, 0.0, 0.0])) == 0.0
     alone = Square(0, 1, None, -1.0, 3.0)
     assert alone.ratio(np.array([9.0, 2.5, 0.0])) == 2.5
-    assert alone.missed(np.array([9.0, 2.5, 0.0])) == 2.75
+    assert alone.excess(np.array([9.0, 2.5, 0.0])) == 2.75
 
 
 def test_parameters_given_and_read_back() -> None:

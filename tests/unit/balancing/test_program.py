@@ -334,7 +334,7 @@ def test_against_a_grid(seed: int) -> None:
     assert found.value <= least + 1e-8
     assert found.value > least - 0.02  # the grid's own step
     assert proved(found)
-    assert all(square.missed(found.x) < 1e-7 for square in (first, second))
+    assert all(square.excess(found.x) < 1e-7 for square in (first, second))
 
 
 def test_square_over_a_mass() -> None:

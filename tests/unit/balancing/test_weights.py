@@ -182,11 +182,11 @@ def test_squares_lie_on_or_above_their_parabolas(shape: Shape) -> None:
     assert len(squares) == {"point": 2, "disc": 3, "ring": 1}[shape]
     program.cost = {square.lift: -1.0 for square in squares} | {int(places[0]): 0.5}
     x = program.solve().x
-    assert all(square.missed(x) >= -1e-8 for square in squares)
+    assert all(square.excess(x) >= -1e-8 for square in squares)
     tight = part.project_feasible(x[places], np.ones(part.count, bool))
     full = np.zeros(program.count)
     full[places] = tight
-    assert [square.missed(full) for square in squares] == pytest.approx([0] * len(squares))
+    assert [square.excess(full) for square in squares] == pytest.approx([0] * len(squares))
 
 
 def test_inertia_that_does_not_matter_is_least() -> None:

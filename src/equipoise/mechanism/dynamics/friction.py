@@ -150,19 +150,19 @@ class FrictionLaw:
         """Friction (J, N) of what presses with some friction (J, N)."""
         return np.asarray(-(self.grip * self.pressing(press.parts(efforts)) + self.given))
 
-    def missed(self, efforts: Array, share: Array, press: Press) -> tuple[Array, Array]:
-        """By how much efforts (J, N) miss the law, and its derivatives (J, J, N) by them.
+    def residual(self, efforts: Array, share: Array, press: Press) -> tuple[Array, Array]:
+        """Residual (J, N) of the law at efforts (J, N), and its derivatives (J, J, N) by them.
 
         share : (N,) of the coefficients.
         """
         parts, grip = press.parts(efforts), share * self.grip
-        missed = efforts + grip * self.pressing(parts) + self.given
+        residual = efforts + grip * self.pressing(parts) + self.given
         slopes = grip[:, None] * self.slopes(parts)
         slope = slopes[:, 0, None] * press.response[:, 0]
         slope += slopes[:, 1, None] * press.response[:, 1]
         own = np.arange(len(self.joints))
         slope[own, own] += 1.0
-        return missed, slope
+        return residual, slope
 
     def contraction(self, press: Press) -> Array:
         """By which share of itself (N,), at most, friction changes friction, whatever presses.
@@ -270,21 +270,21 @@ def _newton(
     """
     step_of = _eliminated if contracts else _step
     for _ in range(MOST_ROUNDS):
-        missed, slopes = law.missed(efforts, share, press)
+        residual, slopes = law.residual(efforts, share, press)
         size = np.max(np.abs(efforts), axis=0, initial=0.0) + np.max(np.abs(law.given), axis=0)
-        good = np.max(np.abs(missed), axis=0) <= CLOSE * size
+        good = np.max(np.abs(residual), axis=0) <= CLOSE * size
         if np.all(good):
             break
-        step = step_of(slopes, missed)
+        step = step_of(slopes, residual)
         efforts = efforts - np.where(np.isfinite(step), step, 0.0)
     return efforts, good if contracts else good & _grows_from_none(slopes)
 
 
-def _eliminated(slopes: Array, missed: Array) -> Array:
+def _eliminated(slopes: Array, residual: Array) -> Array:
     """A step (J, N) of Newton's method by elimination of all crank angles at once, without a
     search for pivots, of which rows with more on the diagonal than beside it have no need.
     """
-    left, right = slopes.copy(), missed.copy()
+    left, right = slopes.copy(), residual.copy()
     count = len(right)
     for k in range(count - 1):
         share = left[k + 1 :, k] / left[k, k]
@@ -296,16 +296,16 @@ def _eliminated(slopes: Array, missed: Array) -> Array:
     return np.asarray(right)
 
 
-def _step(slopes: Array, missed: Array) -> Array:
+def _step(slopes: Array, residual: Array) -> Array:
     """A step (J, N) of Newton's method; NaN where its matrix (J, J, N) is singular."""
     slopes = np.moveaxis(slopes, -1, 0)
     with np.errstate(all="ignore"):
         try:
-            return np.asarray(np.linalg.solve(slopes, missed.T[..., None])[..., 0].T)
+            return np.asarray(np.linalg.solve(slopes, residual.T[..., None])[..., 0].T)
         except np.linalg.LinAlgError:
             singular = ~(np.abs(np.linalg.det(slopes)) > 0)
             slopes = np.where(singular[:, None, None], np.nan, slopes)
-            return np.asarray(np.linalg.solve(slopes, missed.T[..., None])[..., 0].T)
+            return np.asarray(np.linalg.solve(slopes, residual.T[..., None])[..., 0].T)
 
 
 def _grows_from_none(slopes: Array) -> Array:
@@ -527,7 +527,7 @@ def _locked(
     """That a machine locks itself: where with the least friction, and in which joints."""
     worst = int(np.argmin(share))
     at = np.array([worst])
-    _, slopes = law.at(at).missed(efforts[:, at], share[at], press.at(at))
+    _, slopes = law.at(at).residual(efforts[:, at], share[at], press.at(at))
     _, _, ways = svd(slopes[..., 0])
     power = np.abs(ways[-1] * law.rates[:, worst])
     leading = power >= LEADING * np.max(power)

@@ -52,15 +52,15 @@ class ConstraintEquations:
         return max(float(np.hypot(*(self.places[b] - self.places[a]))) for a, b in lines)
 
     def residuals(self, places: Mapping[Point, Array]) -> Array:
-        """By how much each equation is missed."""
+        """Residual of each equation at places (2,), m, of the points."""
         rows = []
         for miss, ((a, b), (c, d)) in zip(self.kinds, self.lines, strict=True):
             rows += miss((places[a], places[b]), (places[c], places[d]))
         return np.array(rows)
 
     @property
-    def missed(self) -> float:
-        """The largest miss; infinite of a line of no length."""
+    def residual(self) -> float:
+        """The largest residual in size; infinite where a line has no length."""
         with np.errstate(all="ignore"):
             worst = float(np.max(np.abs(self.residuals(self.places))))
         return worst if np.isfinite(worst) else np.inf
@@ -74,16 +74,16 @@ class ConstraintEquations:
         start = np.array([self.places[point] for point in movers]).ravel()
         way = np.zeros_like(start)
         for _ in range(MOST_STEPS if movers else 0):
-            missed, slopes = self.residuals(self.places), self._slopes(movers)
-            if not (np.isfinite(missed).all() and np.isfinite(slopes).all()):
+            residuals, slopes = self.residuals(self.places), self._slopes(movers)
+            if not (np.isfinite(residuals).all() and np.isfinite(slopes).all()):
                 return False
-            before, way = way, lstsq(slopes, slopes @ way - missed, RANK)[0]
+            before, way = way, lstsq(slopes, slopes @ way - residuals, RANK)[0]
             for point, place in zip(movers, (start + way).reshape(-1, 2), strict=True):
                 self.places[point] = place
             at_rest = float(np.abs(way - before).max()) <= SOLVED * self.size
-            if at_rest and self.missed <= SOLVED:
+            if at_rest and self.residual <= SOLVED:
                 return True
-        return self.missed <= HOLDS
+        return self.residual <= HOLDS
 
     def _slopes(self, movers: Sequence[Point]) -> Array:
         """Derivatives of the equations by the coordinates of movers, by complex steps."""
@@ -126,15 +126,15 @@ def constrained(
     if not constraints:
         return {}
     start = ConstraintEquations(constraints, bodies)
-    if start.missed <= SOLVED:
+    if start.residual <= SOLVED:
         return {}
     for staying in dict.fromkeys((changed, frozenset[Point]())):
         ends = [_ends(constraint.kind, lines, staying, given)
                 for constraint, lines in zip(constraints, start.lines, strict=True)]  # fmt: skip
-        missed = [end for end, constraint in zip(ends, constraints, strict=True)
+        violated = [end for end, constraint in zip(ends, constraints, strict=True)
                   if constraint.misses(bodies) > SOLVED]  # fmt: skip
         everything = start.places.keys() - staying
-        for moving in ({*chain(*missed)}, {*chain(*ends)}, everything):
+        for moving in ({*chain(*violated)}, {*chain(*ends)}, everything):
             problem = ConstraintEquations(constraints, bodies)
             if problem.solve(sorted(moving)):
                 return _moved(start.places, problem.places, problem.size)
