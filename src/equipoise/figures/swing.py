@@ -46,12 +46,7 @@ def swinging(scene: Scene, response: Response, factor: float | None = None) -> S
         return scene
     values = _over(response.motion, scene.crank_angle)
     values = values - response.motion.amplitudes[:, :1].real
-    reach = _reach(scene, values)
-    factor, texts = _enlarged(scene, reach, factor)
-    sizes = [f"{say(ACROSS[name])} {size}" for name, size in _across(scene, values, reach)]
-    if sizes:
-        texts.append(say("across the drawing, not shown: {sizes}", sizes=", ".join(sizes)))
-    return _with(scene, factor * values, texts)
+    return _enlarged_motion(scene, values, factor)
 
 
 def _over(motion: Periodic, angles: Array) -> Array:
@@ -67,10 +62,19 @@ def _over(motion: Periodic, angles: Array) -> Array:
 def running(scene: Scene, place: Array) -> Scene:
     """A scene of poses in a run whose support moves with them, so much larger that it can be seen.
 
-    place : displacements (6, N) along and about x, y and z, m and rad.
+    place : displacements (6, N) in the order of `FREEDOMS`, m and rad.
     """
-    factor, texts = _enlarged(scene, _reach(scene, place))
-    return _with(scene, factor * place, texts)
+    return _enlarged_motion(scene, place)
+
+
+def _enlarged_motion(scene: Scene, values: Array, factor: float | None = None) -> Scene:
+    """A scene whose support moves by displacements (6, N), larger by a factor as of `swinging`."""
+    reach = _reach(scene, values)
+    factor, texts = _enlarged(scene, reach, factor)
+    sizes = [f"{say(ACROSS[name])} {size}" for name, size in _across(scene, values, reach)]
+    if sizes:
+        texts.append(say("across the drawing, not shown: {sizes}", sizes=", ".join(sizes)))
+    return _with(scene, factor * values, texts)
 
 
 def _enlarged(scene: Scene, reach: float, factor: float | None = None) -> tuple[float, list[str]]:
