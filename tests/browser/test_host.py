@@ -137,6 +137,7 @@ def size_of(got: Response) -> int:
     return int(got.headers.get("content-length", 0))
 
 
+@pytest.mark.exhaustive
 def test_a_machine_is_changed_and_balanced_without_a_server(
     context: BrowserContext, host: str
 ) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable
-from itertools import product
 from pathlib import Path
 from typing import Literal
 
@@ -40,11 +39,12 @@ def brightness(seen: Page | Locator) -> float:
     return float(np.mean(Image.open(io.BytesIO(seen.screenshot())).convert("L")))
 
 
-def test_the_page(live: Live) -> None:
+@pytest.mark.parametrize("schemes", few([SCHEMES, SCHEMES[::-1]], {SCHEMES}), ids="-".join)
+def test_the_page(live: Live, schemes: tuple[Literal["light", "dark"], ...]) -> None:
     live.page.get_by_role("combobox", name="Example").select_option("balance-crank")
     live.button("Balance").click()
     expect(live.button("Take back")).to_be_visible()
-    for width, scheme in product(WIDTHS, SCHEMES):
+    for width, scheme in zip(WIDTHS, schemes, strict=True):
         live.page.set_viewport_size({"width": width, "height": 900})
         live.settled()
         live.page.emulate_media(color_scheme=scheme)

@@ -269,12 +269,17 @@ KINDS = (
 )
 
 
-def test_a_page_of_each_kind(page: Page, site: Path) -> None:
-    """Nothing serious is found by axe, and nothing has to be moved from side to side."""
-    for name in KINDS:
-        for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
-            page.set_viewport_size({"width": width, "height": 900})
-            page.emulate_media(color_scheme=scheme)
-            page.goto(f"{site.as_uri()}/{name}")
-            assert page.evaluate(FITS), name
-            assert Live(page).findings() == [], name
+@pytest.mark.parametrize("turn", few([0, 1], {0}))
+def test_a_page_of_each_kind(page: Page, site: Path, turn: int) -> None:
+    """Nothing serious is found by axe, and nothing has to be moved from side to side.
+
+    turn : pages are wide and light, or narrow and dark, by turns; which of them begins.
+    """
+    looks = [*zip(WIDTHS, SCHEMES, strict=True)]
+    for number, name in enumerate(KINDS, turn):
+        width, scheme = looks[number % len(looks)]
+        page.set_viewport_size({"width": width, "height": 900})
+        page.emulate_media(color_scheme=scheme)
+        page.goto(f"{site.as_uri()}/{name}")
+        assert page.evaluate(FITS), name
+        assert Live(page).findings() == [], name
