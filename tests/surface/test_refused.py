@@ -59,7 +59,7 @@ REFUSED = {
         "--angles '0 deg,,1 deg'": "--angles: got ''",
         "--speed 5": "--speed: got '5'; the unit is missing",
         "--speed '5 m'": "--speed: got '5 m'; m is the unit of a length",
-        "--speed '50 Hz'": "--speed: got '50 Hz'; Hz does not tell",
+        "--speed '50 Hz'": "--speed: got '50 Hz'; Hz is ambiguous",
         "--speed 'nan rpm'": "--speed: got 'nan rpm'; give a finite number",
         "--speed '250,5 rpm'": '"250.5 rpm"',
         "--speed": "--speed requires an argument",
