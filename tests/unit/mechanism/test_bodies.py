@@ -490,7 +490,7 @@ def test_a_file_keeps_its_bodies_and_lengths() -> None:
         (
             "[[links.coupler.b",
             'mass = "1 g"\n[[links.coupler.b',
-            "links.coupler.mass: the bodies tell",
+            "links.coupler.mass: it follows from the bodies",
         ),
         (
             'points = ["B", "C"]\n',

@@ -147,10 +147,10 @@ def test_a_piston_of_pmks_slides_on_the_frame(tmp_path: Path) -> None:
     ("text", "sentence"),
     [
         (pmks()[:-9], "it is incomplete: its last character does not match"),
-        ("0.0.0.0.1.2.3", "it is not whole"),
+        ("0.0.0.0.1.2.3", "it is incomplete"),
         (pmks().replace("ku,", "k§,"), "'k§' is no number as PMKS"),
         (pmks().replace("B,ku", "BBku"), "is not written as by PMKS"),
-        ("", "it is not whole"),
+        ("", "it is incomplete"),
     ],
 )
 def test_a_damaged_file_of_pmks_is_refused(text: str, sentence: str, tmp_path: Path) -> None:
