@@ -55,7 +55,8 @@ and of 31 bundled linkages of dyads 35 to 87: `balance-rig` 87, `hydraulic-loade
 outputs are listed once for a build, and the swing of a support comes from a fast transform: a move
 takes 11.5 ms of a server's processor, and no longer 27, for `balance-rig`, and 6.5 for the six-bar,
 after 7.2. In alternation in a browser the worker took 14.5 ms a frame for the six-bar, after 17.2,
-and 21.5 for `balance-rig`, after 22. A first visit took Chromium 6.4 s of the processor's time until a joint was dragged.
+and 21.5 for `balance-rig`, after 22. A first visit took Chromium 6.4 s of the processor's time
+until a joint was dragged.
 
 A key costs as much as a move of a drag: keys that follow one another are moves of one drag, which
 is finished once they have paused.  But keys come whether or not the page keeps up, while a browser
