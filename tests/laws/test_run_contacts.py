@@ -11,6 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.mechanism import Machine, Stop
 from equipoise.mechanism.parts.machine import FurtherDrive
+from equipoise.mechanism.parts.support import Row
 
 INERTIA, RADIUS, STIFFNESS, SPEED, GAP = 0.5, 0.2, 4e5, 3.0, 0.6
 """kg m2, m, N/m, rad/s and rad."""
@@ -55,17 +56,35 @@ def test_a_run_that_ends_on_a_stop_does_not_leave_it() -> None:
     assert later.crank_speed[-1] == pytest.approx(-0.6 * SPEED, rel=1e-2)
 
 
-def test_a_run_of_several_drives_has_them() -> None:
-    one = wheel()
+def beside_another(one: Machine) -> Machine:
+    """The wheel, with another that turns on its own."""
     other = eq.Link({"C": (0.0, 0.0)}, 1.0, (0.0, 0.0), 1.0)
-    machine = replace(
+    return replace(
         one,
         frame={**one.frame, "C": (1.0, 0.0)},
         links={**one.links, "other": other},
         drives=(FurtherDrive("other", 5.0),),
         drive=replace(one.drive, free=True),
     )
-    run = eq.run(machine, "0.4 s", speed=SPEED)
+
+
+@pytest.mark.parametrize("several", [False, True])
+def test_a_contact_is_that_of_the_row_that_meets_its_stop(several: bool) -> None:
+    """The second of two wheels on a shaft, which is ahead of the other, throws both back."""
+    ahead = 0.3
+    machine = replace(wheel(), rows=(Row(), Row(phase=ahead)))
+    run = eq.run(beside_another(machine) if several else machine, "0.25 s", speed=SPEED)
+    (contact,) = run.contacts
+    assert contact.row == 2
+    assert contact.begin == pytest.approx((GAP - ahead) / SPEED, rel=1e-7)
+    mass = 2 * INERTIA / RADIUS**2
+    assert contact.force == pytest.approx(SPEED * RADIUS * sqrt(mass * STIFFNESS), rel=1e-3)
+    assert "B to S, row 2" in "\n".join(map(str, run.blocks()))
+
+
+def test_a_run_of_several_drives_has_them() -> None:
+    one = wheel()
+    run = eq.run(beside_another(one), "0.4 s", speed=SPEED)
     (contact,) = run.contacts
     alone = eq.run(one, "0.4 s", speed=SPEED).contacts[0]
     assert contact.begin == pytest.approx(alone.begin, rel=1e-7)

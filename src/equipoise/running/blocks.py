@@ -263,7 +263,7 @@ def contacts_table(contacts: Sequence[StopContact]) -> Iterator[Table]:
     )
     rows = [
         (
-            contact.points.said(),
+            _contact_named(contact),
             Value(contact.begin),
             None if contact.end is None else Value(contact.end),
             Value(contact.approach),
@@ -272,6 +272,12 @@ def contacts_table(contacts: Sequence[StopContact]) -> Iterator[Table]:
         for contact in contacts[-MOST_EVENTS:]
     ]
     yield Table.of(title, heads, rows)
+
+
+def _contact_named(contact: StopContact) -> str:
+    """Points that meet, and in which row."""
+    points = contact.points.said()
+    return points if contact.row is None else f"{points}, {say('row {number}', number=contact.row)}"
 
 
 def event_named(event: Event) -> str:

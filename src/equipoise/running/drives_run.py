@@ -149,25 +149,27 @@ class DrivesRun(Result):
         )
         return energy_error(self.kinetic_energy, self.work.values(), circuits)
 
-    def motion_at(self, places: Array) -> Motion:
-        """Poses of the first row in the frame's axes at some of the M instants, by their places
-        (K,), where derivatives by the crank angle are those by time.
+    def motion_at(self, places: Array, row: int = 0) -> Motion:
+        """Poses of a row, from 0, in the axes of its frame at some of the M instants, by their
+        places (K,), where derivatives by the crank angle are those by time.
         """
-        count = len(self.drives)
-        references = {name: values[..., 0, places] for name, values in self.references.items()}
-        where = self.where
+        count, rows, where = len(self.drives), self.equation.rows, self.where
+        references = {name: values[..., row, places] for name, values in self.references.items()}
         crank, angles, speeds = (
-            part[..., places] for part in (where.crank_angle, where.angles, where.speeds)
+            rows.apart(part)[..., row, places]
+            for part in (where.crank_angle, where.angles, where.speeds)
         )
         linkage = self.equation.linkage
         return pose_of(linkage, crank, angles[:count], speeds[:count], references).moving
 
     @cached_property
     def contacts(self) -> tuple[StopContact, ...]:
-        """Contacts of stops of the first row, in the order in which they begin."""
+        """Contacts of stops in all rows, in the order in which they begin."""
         if not self.machine.stops:
             return ()
-        return stop_contacts(self.motion_at(np.arange(len(self.time))), self.time, 1.0)
+        places = np.arange(len(self.time))
+        motions = [self.motion_at(places, row) for row in range(self.equation.rows.count)]
+        return stop_contacts(motions, self.time, 1.0)
 
     @property
     def last_cycle(self) -> Array | None:

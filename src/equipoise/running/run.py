@@ -33,6 +33,7 @@ from equipoise.running.sources import LOADS
 from equipoise.running.stop_contacts import StopContact, stop_contacts
 from equipoise.running.support_equation import SupportedEquation
 from equipoise.signals import Array
+from equipoise.vibration.linkages import rows_of
 
 TURNS = 300
 """Turns after which a run ends where nothing else ends it."""
@@ -133,10 +134,12 @@ class Run(Result):
 
     @cached_property
     def contacts(self) -> tuple[StopContact, ...]:
-        """Contacts of stops, in the order in which they begin."""
+        """Contacts of stops in all rows, in the order in which they begin."""
         if not self.machine.stops:
             return ()
-        return stop_contacts(move(self.machine, self.crank_angle), self.time, self.crank_speed)
+        angles = (self.crank_angle + row.phase for row in rows_of(self.machine))
+        motions = [move(self.machine, angle) for angle in angles]
+        return stop_contacts(motions, self.time, self.crank_speed)
 
     @cached_property
     def last_cycle(self) -> LastCycle | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,6 +14,7 @@ from equipoise.signals import Array
 
 if TYPE_CHECKING:
     from equipoise.mechanism.kinematics.motion import Motion
+    from equipoise.mechanism.parts.stops import Stop
 
 HALVINGS = 50
 """Of the time between two instants, in which a gap of 0 is looked for."""
@@ -22,13 +24,15 @@ HALVINGS = 50
 class StopContact:
     """A contact of a stop.
 
-    stop : its name in outputs.  points : those that meet.
+    stop : its name in outputs.  row : number of its row, from 1; None of a machine without rows.
+    points : those that meet.
     begin : s, at which it is met, or the start of the run.
     end : s, at which it is left; None where the run ends first.
     approach : speed with which the gap closes at the begin, m/s.  force : the largest, N.
     """
 
     stop: str
+    row: int | None
     points: Note
     begin: float
     end: float | None
@@ -40,28 +44,40 @@ class StopContact:
         return {name: value for name, value in vars(self).items() if name != "points"}
 
 
-def stop_contacts(motion: Motion, time: Array, rate: Array | float) -> tuple[StopContact, ...]:
+def stop_contacts(
+    motions: Sequence[Motion], time: Array, rate: Array | float
+) -> tuple[StopContact, ...]:
     """Contacts of all stops of a machine, in the order in which they begin.
 
-    motion : at M instants of time (M,), s, rising.
+    motions : of each row, at M instants of time (M,), s, rising.
     rate : by which derivatives of the motion become those by time, such as the speed of the crank
         (M,), rad/s.
     """
-    result: list[StopContact] = []
-    for number, stop in enumerate(motion.machine.stops):
-        gap, slope = rated_ways(motion, [("stops", number, stop)])
-        opening = slope * rate
-        force = np.asarray(stop.force(gap, opening))
-        pressed = np.concatenate([[False], gap < 0, [False]])
-        edges = np.flatnonzero(pressed[1:] != pressed[:-1])
-        for first, behind in zip(edges[::2], edges[1::2], strict=True):
-            begin = _zero(time, gap, opening, int(first))
-            end = _zero(time, gap, opening, int(behind)) if behind < len(time) else None
-            approach = -float(np.interp(begin, time, opening))
-            largest = float(np.max(force[first:behind]))
-            own = f"stops.{number + 1}", stop.label
-            result.append(StopContact(*own, begin, end, approach, largest))
+    machine, result = motions[0].machine, list[StopContact]()
+    for row, motion in enumerate(motions, 1):
+        for number, stop in enumerate(machine.stops):
+            gap, slope = rated_ways(motion, [("stops", number, stop)])
+            own = f"stops.{number + 1}", row if machine.rows else None, stop.label
+            contacts = _contacts(gap, slope * rate, stop, time)
+            result += [StopContact(*own, *contact) for contact in contacts]
     return tuple(sorted(result, key=lambda contact: contact.begin))
+
+
+def _contacts(
+    gap: Array, opening: Array, stop: Stop, time: Array
+) -> Iterator[tuple[float, float | None, float, float]]:
+    """Begin, end, approach and force of each contact of a stop, as of `StopContact`.
+
+    gap, opening : (M,) m and m/s.
+    """
+    force = np.asarray(stop.force(gap, opening))
+    pressed = np.concatenate([[False], gap < 0, [False]])
+    edges = np.flatnonzero(pressed[1:] != pressed[:-1])
+    for first, behind in zip(edges[::2], edges[1::2], strict=True):
+        begin = _zero(time, gap, opening, int(first))
+        end = _zero(time, gap, opening, int(behind)) if behind < len(time) else None
+        approach = -float(np.interp(begin, time, opening))
+        yield begin, end, approach, float(np.max(force[first:behind]))
 
 
 def _zero(time: Array, gap: Array, opening: Array, k: int) -> float:
