@@ -135,6 +135,8 @@ def test_drawings_have_its_line() -> None:
         ("reaction", {"reaction": None}),
         ("axes", {"axes": "link"}),
         ("toward", {"point": None, "force": None, "torque": 2.0}),
+        ("force", {"force": (PULL, 1.0)}),
+        ("table", {"force": None, "table": LoadTable((0.0, 1.0), ((PULL, PULL), (0.0, 1.0)))}),
     ],
 )
 def test_what_is_wrong_is_said(place: str, changes: dict[str, Any]) -> None:

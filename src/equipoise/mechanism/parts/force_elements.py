@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from math import ceil, degrees, pi
-from typing import ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal, Protocol
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
@@ -273,6 +273,16 @@ class Load(AlongLine, Frozen):
         return LoadTable(self.gas.crank_angle, (along, (0.0,) * len(along)), self.gas.file)
 
     @property
+    def force_key(self) -> str:
+        return "force" if self.table is None else "table"
+
+    @property
+    def forces_across(self) -> tuple[Any, ...]:
+        if self.table is None or len(self.table.values) < 2:
+            return super().forces_across
+        return self.table.values[1]
+
+    @property
     def reaction_link(self) -> str | None:
         """The link that bears its opposite, if one does."""
         return None if self.reaction == FRAME else self.reaction
@@ -514,7 +524,10 @@ def _wrong_gas(where: str, load: Load) -> Iterator[ModelError]:
         yield from wrong_diagram(f"{where}.indicator", load.indicator)
     if load.bore is None:
         yield ModelError(f"{where}.bore", Note("missing; pressure acts on the area of a bore"))
-    if load.axes != "slider":
+    if load.toward is not None:
+        wrong = Note("pressure pushes a piston along its slider; leave it out")
+        yield ModelError(f"{where}.toward", wrong)
+    elif load.axes != "slider":
         wrong = Note('pressure pushes a piston along its slider; give axes = "slider"')
         yield ModelError(f"{where}.axes", wrong)
     if load.gas is not None and len(load.gas.pressure) != len(load.gas.crank_angle):

@@ -25,11 +25,17 @@ class AlongLine:
     point: str | None
     axes: str | None
     toward: str | None
+    force: Any
 
     @property
-    def turns_axes(self) -> bool:
-        """Whether the axes in which its force is given turn in the frame."""
-        return self.axes is not None or self.toward is not None
+    def force_key(self) -> str:
+        """Key that gives its force."""
+        return "force"
+
+    @property
+    def forces_across(self) -> tuple[Any, ...]:
+        """Components of its force, N, across the line in which it may act."""
+        return () if self.force is None else (self.force[1],)
 
 
 def wrong_line(where: str, load: Any, body: str | None, bodies: Bodies) -> Iterator[ModelError]:
@@ -57,3 +63,7 @@ def wrong_line(where: str, load: Any, body: str | None, bodies: Bodies) -> Itera
         wrong = Note("{link!r} and {on!r} are pinned there; give other points",
                      link=load.link, on=body)  # fmt: skip
         yield ModelError(at, wrong)
+    elif any(load.forces_across):  # its opposite, at the other end, would leave a moment
+        wrong = Note("a force in the line between two points has no component across it; "
+                     "give 0 N as its y component")  # fmt: skip
+        yield ModelError(f"{where}.{load.force_key}", wrong)
