@@ -58,8 +58,8 @@ def stop_contacts(
         for number, stop in enumerate(machine.stops):
             gap, slope = rated_ways(motion, [("stops", number, stop)])
             own = f"stops.{number + 1}", row if machine.rows else None, stop.label
-            contacts = _contacts(gap, slope * rate, stop, time)
-            result += [StopContact(*own, *contact) for contact in contacts]
+            for begin, end, approach, force in _contacts(gap, slope * rate, stop, time):
+                result.append(StopContact(*own, begin, end, approach, force))
     return tuple(sorted(result, key=lambda contact: contact.begin))
 
 
