@@ -148,7 +148,7 @@ def test_rest_is_that_of_the_exact_model() -> None:
     run = on_support(machine, "0.05 s")
     assert isinstance(run.equation, SupportedEquation)
     preloads = eq.modes(machine).preloads
-    contacts = (item.contact for item in run.equation.contacts)
+    contacts = run.equation.mounted.contacts
     assert {item.name: item.preload for item in contacts} == dict(preloads)
 
 

@@ -33,7 +33,7 @@ from equipoise.running.sources import AppliedSource, SourceInputs, plus, sources
 from equipoise.running.strokes import Strokes
 from equipoise.signals import Array
 from equipoise.vibration.support_motion import SupportMotion
-from equipoise.vibration.support_place import SupportPlace
+from equipoise.vibration.support_place import NO_MOUNTS, SupportPlace
 
 NO_FREE_DRIVE = Note(
     "every drive follows a given motion, so that there is nothing to integrate; give one of them a "
@@ -120,7 +120,7 @@ class DrivesEquation:
     @cached_property
     def mounts(self) -> MountContacts:
         """Mounts of the support: none on a fixed frame."""
-        return MountContacts((), 1.0, SupportPlace)
+        return MountContacts(NO_MOUNTS, 1.0, SupportPlace)
 
     @cached_property
     def strokes(self) -> Strokes | None:
@@ -322,7 +322,7 @@ class DrivesEquation:
         ------
         MotionError, ModelError : the machine cannot be there.
         """
-        rows, mounts = self.rows, self.mount_forces(where)
+        rows = self.rows
         where = self.in_rows(time, where, near)
         pose = self.pose(where, self._of_rows(near))
         crank_speed = self._crank_speed(rows.repeated(time), where.speeds[self.free])
@@ -332,15 +332,15 @@ class DrivesEquation:
         forces = np.zeros((len(self.acting), self.coordinates, pose.count))
         for k, (source, demands) in enumerate(zip(self.sources, acting, strict=True)):
             forces[k] = pose.exerted(source, inputs, demands)
-        forces[len(acting) :] = rows.repeated(mounts) / rows.count
+        forces[len(acting) :] = self.mount_forces(pose)
         rubbing = None
         if self.friction is not None:
             rubbing = self.friction.of(pose, plus(pose.turning, *acting))
         return DriveState(pose, where, self.with_rotors(pose.inertia), forces, rubbing)
 
-    def mount_forces(self, where: DriveAngles) -> Array:
-        """Generalized forces (0, N, K) of mounts of the support: none on a fixed frame."""
-        return np.zeros((0, *where.angles.shape))
+    def mount_forces(self, pose: DrivesPose) -> Array:
+        """Generalized forces (0, N, R K) of mounts of the support: none on a fixed frame."""
+        return np.zeros((0, self.coordinates, pose.count))
 
     def pose(self, where: DriveAngles, near: References) -> DrivesPose:
         """The linkages of all rows, at coordinates as of `in_rows`, near references (..., R K)."""

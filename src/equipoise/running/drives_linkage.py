@@ -106,11 +106,7 @@ class DrivesPose:
     @cached_property
     def _inertial(self) -> dict[str, tuple[float, complex, float]]:
         """Mass, first moment and inertia about their anchors of the links that have any."""
-        linkage, each = self.linkage, {}
-        for name, link in linkage.machine.links.items():
-            mass, moment, inertia = inertia_about(link, linkage.anchors[name])
-            each[name] = mass, moment, inertia + self.share * flywheel_on(linkage.machine, name)
-        return {link: own for link, own in each.items() if any(own)}
+        return inertial_of(self.linkage, self.share)
 
     @cached_property
     def _numbers(self) -> list[Array]:
@@ -190,6 +186,17 @@ class DrivesPose:
     def margins(self, names: Sequence[str]) -> Array:
         """Values (D, K) of the state."""
         return self._stacked(names)[:, -1] if names else np.zeros((0, self.count))
+
+
+def inertial_of(linkage: Linkage, share: float) -> dict[str, tuple[float, complex, float]]:
+    """Mass, first moment and inertia about their anchors of the links that have any; `share` as of
+    `DrivesPose`.
+    """
+    each = {}
+    for name, link in linkage.machine.links.items():
+        mass, moment, inertia = inertia_about(link, linkage.anchors[name])
+        each[name] = mass, moment, inertia + share * flywheel_on(linkage.machine, name)
+    return {link: own for link, own in each.items() if any(own)}
 
 
 def pose_of(

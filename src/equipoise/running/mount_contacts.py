@@ -6,13 +6,13 @@ its force changes its sign at an instant that is sought, and goes on smoothly in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from equipoise.signals import Array
-from equipoise.vibration.support_place import SpatialMount, SupportPlace
+from equipoise.vibration.support_place import SpatialMounts, SupportPlace
 
 Read = Callable[[Array, Array], SupportPlace]
 """Where the support is, by coordinates (C, K) of a machine and their rates."""
@@ -26,31 +26,26 @@ class MountContacts:
     one_sided : names of mounts that push only, and their places.
     """
 
-    def __init__(self, mounts: Sequence[SpatialMount], size: float, read: Read) -> None:
+    def __init__(self, mounts: SpatialMounts, size: float, read: Read) -> None:
         """size : of usual displacements, m.  read : where the support is."""
         self.read = read
-        contacts = [mount.contact for mount in mounts]
+        contacts = mounts.contacts
         self.one_sided = {item.name: k for k, item in enumerate(contacts) if item.one_sided}
-        self._smooth = [
-            replace(mount, contact=replace(mount.contact, one_sided=False)) for mount in mounts
-        ]
+        smooth = [replace(contact, one_sided=False) for contact in contacts]
+        self._smooth = SpatialMounts(smooth, mounts.at)
         self._sizes = [abs(item.preload) + item.stiffness * size or 1.0 for item in contacts]
         self._touches = [True] * len(contacts)
 
     def wrench(self, at: SupportPlace) -> Array:
         """Generalized forces (6, K) on a support."""
-        total = np.zeros_like(at.place)
-        for mount, touches in zip(self._smooth, self._touches, strict=True):
-            if touches:
-                total += mount.at.wrench(mount.force(at), at)
-        return total
+        return self._smooth.wrench(at, self._touches)
 
     def left(self, name: str, coordinates: Array, rates: Array) -> Array:
         """How far (K,) a one-sided mount is from letting go, or from touching, as a share of its
         usual force, with coordinates (C, K) and their rates.
         """
         mount = self.one_sided[name]
-        share = self._smooth[mount].force(self.read(coordinates, rates)) / self._sizes[mount]
+        share = self._smooth.forces(self.read(coordinates, rates))[mount] / self._sizes[mount]
         return np.asarray(share if self._touches[mount] else -share)
 
     def observe(self, coordinates: Array, rates: Array) -> None:

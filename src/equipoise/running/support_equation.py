@@ -16,14 +16,15 @@ from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.running.drive_angles import DriveAngles
 from equipoise.running.drives_equation import DrivesEquation
-from equipoise.running.drives_linkage import References, pose_of
+from equipoise.running.drives_linkage import DrivesPose, References, pose_of
 from equipoise.running.mount_contacts import MountContacts
 from equipoise.running.support_pose import SupportedPose
+from equipoise.running.supported_bodies import SupportedBodies
 from equipoise.signals import Array
 from equipoise.vibration.body import Rest, SupportBody, contacts_of
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.support_motion import SupportMotion
-from equipoise.vibration.support_place import SpatialMount, SupportPlace, spatial_mounts
+from equipoise.vibration.support_place import SpatialMounts, SupportPlace
 
 MOUNTS = "mounts"
 """In the works of a run: springs and dampers between support and ground."""
@@ -76,18 +77,18 @@ class SupportedEquation(DrivesEquation):
         return (*super().acting, MOUNTS)
 
     @cached_property
-    def contacts(self) -> tuple[SpatialMount, ...]:
+    def mounted(self) -> SpatialMounts:
         """The mounts."""
-        return spatial_mounts(self.body, contacts_of(self.body, self.rest))
+        return SpatialMounts.of(self.body, contacts_of(self.body, self.rest))
 
     @cached_property
     def mounts(self) -> MountContacts:
         """The mounts, with what is known of them at the time."""
-        return MountContacts(self.contacts, float(self.usual_sizes[0]), self.support_place)
+        return MountContacts(self.mounted, float(self.usual_sizes[0]), self.support_place)
 
     def support_motion(self, coordinates: Array, rates: Array) -> SupportMotion:
         """How the support moves, by coordinates (N + D, K) and their rates."""
-        return SupportMotion(self.body, self.support_place(coordinates, rates), self.contacts)
+        return SupportMotion(self.body, self.support_place(coordinates, rates), self.mounted)
 
     @cached_property
     def usual_sizes(self) -> Array:
@@ -112,12 +113,18 @@ class SupportedEquation(DrivesEquation):
         """Linkages and support with coordinates (N + D, R K) and their rates."""
         drives, count = len(self.drives), where.angles.shape[1] // self.rows.count
         angles, speeds = where.angles[:drives], where.speeds[:drives]
-        own = pose_of(self.linkage, where.crank_angle, angles, speeds, near)
+        share = 1 / self.rows.count
+        own = pose_of(self.linkage, where.crank_angle, angles, speeds, near, share)
         at = self.support_place(where.angles, where.speeds)
         return SupportedPose(
-            self.linkage, own.along, 1 / self.rows.count, self.body, at,
+            self.linkage, own.along, own.share, self.bodies, at,
             self.rows.of_each(self._origins, count), speeds, self._rotors_on_support,
         )  # fmt: skip
+
+    @cached_property
+    def bodies(self) -> SupportedBodies:
+        """Links and support, as of one row."""
+        return SupportedBodies(self.linkage, self.body, 1 / self.rows.count)
 
     @cached_property
     def _origins(self) -> Array:
@@ -139,9 +146,9 @@ class SupportedEquation(DrivesEquation):
         first, *others = super().rotors
         return first + self.machine.drive.flywheel, *others
 
-    def mount_forces(self, where: DriveAngles) -> Array:
-        """Generalized force (1, N + D, K) of all mounts."""
-        forces = np.zeros((1, *where.angles.shape))
-        wrench = self.mounts.wrench(self.support_place(where.angles, where.speeds))
-        forces[0, len(self.drives) :] = wrench[self.body.free]
-        return forces
+    def mount_forces(self, pose: DrivesPose) -> Array:
+        """Generalized force (1, N + D, R K) of all mounts, of which each row has its share."""
+        assert isinstance(pose, SupportedPose)
+        forces = np.zeros((1, self.coordinates, pose.count))
+        forces[0, len(self.drives) :] = self.mounts.wrench(pose.at)[self.body.free]
+        return forces / self.rows.count

@@ -27,7 +27,7 @@ from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.response import Mode, members_of
 from equipoise.vibration.steady import equations, motor_setting
 from equipoise.vibration.support_motion import SupportMotion
-from equipoise.vibration.support_place import in_plane, spatial_mounts
+from equipoise.vibration.support_place import SpatialMounts, in_plane
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,7 +179,7 @@ class Transient(Result):
             return None
         body = SupportBody(self.machine)
         at = in_plane(*self.system.place_and_rate(self.states))
-        return SupportMotion(body, at, spatial_mounts(body, self.system.contacts))
+        return SupportMotion(body, at, SpatialMounts.of(body, self.system.contacts))
 
     @property
     def gauges(self) -> Mapping[str, Array]:

@@ -13,7 +13,7 @@ from equipoise.signals import Array
 from equipoise.vibration.body import SupportBody
 from equipoise.vibration.linear import gauges_of
 from equipoise.vibration.response import of_support
-from equipoise.vibration.support_place import SpatialMount, SpatialReading, SupportPlace
+from equipoise.vibration.support_place import SpatialMounts, SpatialReadings, SupportPlace
 
 
 def _signal(name: str, dimension: Dimension, turned: Dimension) -> ResultOutput:
@@ -25,12 +25,12 @@ def _signal(name: str, dimension: Dimension, turned: Dimension) -> ResultOutput:
 class SupportMotion:
     """How a support moves, at M instants.
 
-    at : where it is, and how it moves there.  contacts : its mounts.
+    at : where it is, and how it moves there.  mounted : its mounts.
     """
 
     body: SupportBody
     at: SupportPlace
-    contacts: tuple[SpatialMount, ...]
+    mounted: SpatialMounts
 
     @property
     def place(self) -> Array:
@@ -45,15 +45,15 @@ class SupportMotion:
     @cached_property
     def gauges(self) -> Mapping[str, Array]:
         """Displacement (M,) at each gauge, m or rad."""
-        return {
-            name: SpatialReading.of(self.body, gauge).displacement(self.at)
-            for name, gauge in gauges_of(self.body).items()
-        }
+        gauges = gauges_of(self.body)
+        moved, _ = SpatialReadings.of(self.body, [*gauges.values()]).read(self.at)
+        return dict(zip(gauges, moved, strict=True))
 
     @cached_property
     def mounts(self) -> Mapping[str, Array]:
         """Force (M,) of each mount, N or N m."""
-        return {mount.contact.name: mount.force(self.at) for mount in self.contacts}
+        names = (contact.name for contact in self.mounted.contacts)
+        return dict(zip(names, self.mounted.forces(self.at), strict=True))
 
     declared: ClassVar[Declarations] = {
         "gauges": of_support(
