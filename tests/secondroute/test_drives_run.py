@@ -163,8 +163,8 @@ def two_motors(**changes: Any) -> eq.Machine:
 
 
 def test_two_motors_turn_two_rows() -> None:
-    run = against_free_bodies(two_motors(rows=ROWS), 0.1, {})
-    alone = eq.run(two_motors(), 0.1)
+    run = against_free_bodies(two_motors(rows=ROWS), 0.04, {})
+    alone = eq.run(two_motors(), 0.04)
     shares = [run.drives[link].turns / course.turns for link, course in alone.drives.items()]
     assert max(abs(share - 1) for share in shares) > 0.05
 
@@ -307,7 +307,7 @@ def test_a_cylinder_between_the_cranks_of_a_five_bar() -> None:
     """The first drive is free beside a cycle that goes on evenly."""
     drive = eq.Drive("left crank", 15.0, free=True, motion=AngleLaw(between=(0.0, 0.5)))
     machine, pushing = pushed_five_bar(drive), (("left crank", "P"), ("right crank", "D"))
-    found = against_free_bodies(machine, 0.2, {}, [(*pushing, stroke_by_time)])
+    found = against_free_bodies(machine, 0.08, {}, [(*pushing, stroke_by_time)])
     course = found.drives["right crank"]
     wanted = [stroke_by_time(time)[0] for time in found.time]
     np.testing.assert_allclose(course.length, wanted, atol=1e-12)
