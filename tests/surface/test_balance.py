@@ -17,10 +17,12 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.advice import advise
+from equipoise.balancing.blocks import balanced_headline
 from equipoise.balancing.objectives import measured
 from equipoise.balancing.outcome import reasons_to_leave
 from equipoise.cli.plan import read_objective
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
+from equipoise.results.blocks import Text
 from support.chosen import EXHAUSTIVE, few
 from surface.running import (
     cells,
@@ -195,8 +197,11 @@ def test_an_objective_alone_is_reduced_within_the_assumed_room() -> None:
 def test_where_no_mass_acts_on_the_objective_it_is_named() -> None:
     """The largest figure was named, which may be another."""
     plan = Balance(objectives=(Objective("drive_torque"),))
-    [sentence] = reasons_to_leave(advise(eq.load("scotch-yoke").with_balance(plan)))
+    result = advise(eq.load("scotch-yoke").with_balance(plan))
+    [sentence] = reasons_to_leave(result)
     assert "drive torque, RMS" in sentence
+    *_, after = balanced_headline(result, alone=True)  # which proposes no objective again
+    assert isinstance(after, Text) and "balance --counterweight LINK; " in after.text
 
 
 def test_another_speed() -> None:

@@ -106,7 +106,8 @@ def balanced_headline(
             yield Text(driven(balanced.original, balanced.original.drive.speed))
             yield _large(balanced)
             yield from _bending(balanced)
-            yield look_at_next("balance --objective OUTPUT", "balance --full")
+            further = "--counterweight LINK" if balanced.advice.requested else "--objective OUTPUT"
+            yield look_at_next(f"balance {further}", "balance --full")
         return
     first = [*first_sentences(balanced)]
     yield from map(Text, first)
