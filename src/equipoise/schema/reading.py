@@ -204,7 +204,8 @@ def _own_names(
     bodies: Mapping[str, Any],
 ) -> list[str]:
     """Names in the file that a key can have which names a link, or a point of a body that is given
-    or the default beside it; empty where that is not clear.
+    or the default beside it: of a link those first that are not in the frame, as little can be done
+    to these.  Empty where that is not clear.
     """
     if not isinstance(kind, keys.TextKind):
         return []
@@ -214,8 +215,16 @@ def _own_names(
         return []
     beside = known.get(kind.on)
     body = kind.on if beside is None else given.get(kind.on, beside.default)
+    fixed = [] if body == FRAME else _points_in(bodies, FRAME)
+    return sorted(_points_in(bodies, body), key=fixed.__contains__)
+
+
+def _points_in(bodies: Mapping[str, Any], body: Any) -> list[str]:
+    """Names of the points of a body in the file, whether with places or alone."""
     points = bodies.get(body, {}).get("points") if isinstance(body, str) else None
-    return [*points] if isinstance(points, dict) else []
+    if not isinstance(points, dict | list):
+        return []
+    return [name for name in points if isinstance(name, str)]
 
 
 def _example(key: keys.Key, names: list[str]) -> str:

@@ -255,8 +255,26 @@ def test_formats_without_them_refuse_them(file_format: str, tmp_path: Path) -> N
 def test_an_example_of_what_is_missing_names_a_point_of_the_file() -> None:
     text = example_text("spring-balanced-crank")
     missing = '[[resistances]]\nlink = "rocker"\npoint = "C"\non = "crank"\nforce = "2 N"\n'
-    with refused(ModelError, "resistances[1].to", example='to = "A"'):
+    with refused(ModelError, "resistances[1].to", example='to = "B"'):
         eq.loads(text + missing)
+
+
+@pytest.mark.parametrize(
+    "points", ['points.A = ["0 mm", "0 mm"]\npoints.U = ["9 mm", "0 mm"]', 'points = ["U", "V"]']
+)
+def test_an_example_of_a_point_is_one_that_moves(points: str) -> None:
+    text = f"""
+schema = 1
+title = "arm"
+drive = {{ link = "arm", speed = "1 rpm" }}
+frame.points.A = ["0 mm", "0 mm"]
+[links.arm]
+{points}
+[[springs]]
+link = "arm"
+"""
+    with refused(ModelError, "springs[1].point", example='point = "U"'):
+        eq.loads(text)
 
 
 WRONG: list[tuple[dict[str, Any], str]] = [
