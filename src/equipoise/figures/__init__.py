@@ -76,20 +76,21 @@ class StandaloneSvg(NamedTuple):
 def standalone_svg(picture: Chart, by_rows: bool = False) -> StandaloneSvg:
     """A picture without its heading.
 
-    by_rows : whether a high one that runs across a page is drawn by rows of its panels, too; those
-        of drawings are seen beside each other, and are not parted.
+    by_rows : whether a high one is drawn by rows of its panels, too; those of drawings are seen
+        beside each other, and are not parted.
     """
     from equipoise.figures.layout import HALF, WIDE, lay_out, lay_out_rows, on_telephone
     from equipoise.figures.vector import svg_of
 
-    wide, panels = is_wide(picture), picture.panels
-    sheet = lay_out(picture, WIDE if wide else HALF, headed=False)
-    several = wide and len(panels) >= 2 * picture.columns and sheet.height > LOW
+    wide = is_wide(picture)
+    room = WIDE if wide else HALF
+    sheet = lay_out(picture, room, headed=False)
     narrow = svg_of(on_telephone(picture)) if wide else ""
-    if not by_rows or not several or any(panel.equal and panel.y.label for panel in panels):
+    drawings = any(panel.equal and panel.y.label for panel in picture.panels)
+    if not by_rows or drawings or sheet.height <= LOW:
         return StandaloneSvg(svg_of(sheet), wide, narrow=narrow)
-    rows = tuple(map(svg_of, lay_out_rows(picture, WIDE)))
-    return StandaloneSvg(svg_of(sheet), wide, rows, narrow)
+    rows = tuple(map(svg_of, lay_out_rows(picture, room)))
+    return StandaloneSvg(svg_of(sheet), wide, rows if len(rows) > 1 else (), narrow)
 
 
 def plot(result: Any, name: str = "", ax: Axes | None = None) -> Figure:

@@ -325,6 +325,8 @@ LEAST, MOST, ROOM, SMALL_ROOM = 110.0, 345.0, 26.0, 0.13
 or, in small ones, a share."""
 MOST_OF_HALF, ONE_OF_HALF, LEAST_OF_HALF = 300.0, 150.0, 90.0
 """Height of all such panels in half of a page, of one, and of one of more than have room so."""
+MOST_OF_ROWS = 220.0
+"""Height of all rows of drawings in a picture, so that a page has room for two such pictures."""
 MOST_ALONE = 4
 """Small panels below each other on a telephone; of more two stand side by side."""
 
@@ -332,9 +334,11 @@ MOST_ALONE = 4
 def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Canvas:
     """A chart on a sheet.
 
-    wide : of the sheet, points.  headed : whether the chart's heading stands on it.
+    wide : of the sheet, points.
+    headed : whether the chart's heading stands on it; without, it is lower where it has rows of
+        drawings, as a page of a report has others beside it.
     """
-    return _sheet(chart, _cells(chart, wide), wide, headed)
+    return _sheet(chart, _cells(chart, wide, low=not headed), wide, headed)
 
 
 def on_telephone(chart: Chart) -> Canvas:
@@ -401,10 +405,11 @@ def _inner(wide: float, columns: int) -> float:
     return (wide - 2 * EDGE - (columns - 1) * GAP) / columns
 
 
-def _cells(chart: Chart, wide: float, parted: bool = False) -> list[Cell]:
+def _cells(chart: Chart, wide: float, parted: bool = False, low: bool = False) -> list[Cell]:
     """Panels with their axes, in one scale.
 
     parted : whether each row stands alone, so that all axes have numbers.
+    low : whether rows of drawings have `MOST_OF_ROWS` at most.
     """
     columns = _columns(chart, wide)
     rows = -(-len(chart.panels) // columns)
@@ -426,6 +431,10 @@ def _cells(chart: Chart, wide: float, parted: bool = False) -> list[Cell]:
     _widths(cells, columns, inner, most)
     if cells[0].panel.equal:  # names beside the axes are as long as these are high then
         _widths(cells, columns, inner, most)
+    if low and wide == WIDE and rows > 1 and cells[0].panel.always_shown is not None:
+        heights = [cell.height for cell in cells]
+        total = sum(max(heights[k : k + columns]) for k in range(0, len(cells), columns))
+        _widths(cells, columns, inner, max(heights) * min(1.0, MOST_OF_ROWS / total))
     for cell in cells:
         _above(cell, inner - cell.left - cell.right)
     return cells

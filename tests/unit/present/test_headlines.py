@@ -308,13 +308,25 @@ def test_a_high_picture_that_has_no_room_goes_on_by_rows() -> None:
     assert [*pages_of(alone, f"#flow(({high}, {low}))").values()] == [[1], [], [1]]
 
 
+def test_a_pair_that_has_no_room_is_parted_and_a_high_one_goes_on_by_rows() -> None:
+    """Rows stand below each other, then in the next column; not under another picture."""
+    rows = "".join(f"rect(height: 150pt)[#[] <row-{number}>], " for number in range(3))
+    low = "([#rect(height: 200pt) <low>], ())"
+    pair = f'("pair", ([#rect(height: 450pt) <both>], ({low}, (rect(height: 450pt), ({rows})))))'
+    labels = {"both": 0, "low": 1, "row-0": 1, "row-1": 1, "row-2": 1}
+    pages = pages_of(labels, f'#flow((("whole", rect(height: 350pt)), {pair}))')
+    assert [*pages.values()] == [[], [1], [1], [1], [2]]
+    labels = {"both": 1, "low": 0, "row-0": 0}
+    assert [*pages_of(labels, f"#flow(({pair},))").values()] == [[1], [], []]
+
+
 def test_rows_of_a_high_picture_are_drawn_like_the_whole() -> None:
     """With all panels once, each as large as in the whole; drawings are not parted."""
     parted = {b.name: b for b in drawn_of(document("twin-engine")).values() if b.rows}
     assert {"joints", "joint-polars"} <= {*parted} and "modes" not in parted
     for block in parted.values():
         titles = re.findall(r">([^<>]+: [^<>]+ on [^<>]+)</text>", block.svg)
-        assert titles and len(block.rows) > 1, block.name
+        assert len(block.rows) > 1 and bool(titles) == block.name.startswith("joint"), block.name
         each_row = [title for svg in block.rows for title in titles if f">{title}</text>" in svg]
         assert sorted(each_row) == sorted(titles), block.name
         # in the scale of the whole, beside which some are drawn larger
@@ -365,7 +377,7 @@ def test_no_remark_on_the_appendix_begins_a_page(name: str) -> None:
 def test_pictures_of_half_the_width_fill_both_columns_of_a_page() -> None:
     """One that is too high for what is left waits for the next page, and a lower one does not."""
     heights = {"a": 300, "b": 500, "c": 350, "d": 300, "e": 200}
-    drawn = "".join(f"[#rect(height: {high}pt) <{name}>], " for name, high in heights.items())
+    drawn = "".join(f"([#rect(height: {high}pt) <{name}>], ()), " for name, high in heights.items())
     pages = pages_of(dict.fromkeys(heights, 1), f'#flow((("halves", ({drawn})),))')
     assert pages == {"a": [1], "b": [1], "c": [1], "d": [2], "e": [1]}
 
