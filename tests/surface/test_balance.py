@@ -8,6 +8,7 @@ import math
 import re
 import subprocess
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -202,6 +203,16 @@ def test_where_no_mass_acts_on_the_objective_it_is_named() -> None:
     assert "drive torque, RMS" in sentence
     *_, after = balanced_headline(result, alone=True)  # which proposes no objective again
     assert isinstance(after, Text) and "balance --counterweight LINK; " in after.text
+
+
+def test_an_objective_is_named_also_where_no_figure_is_large() -> None:
+    """It was said of the machine that no figure is large, and nothing of the objective."""
+    base, plan = eq.load("scotch-yoke"), Balance(objectives=(Objective("drive_torque"),))
+    slow = replace(base, gravity=(0.0, 0.0), drive=replace(base.drive, speed=0.01))
+    result = advise(slow.with_balance(plan))
+    assert result.advice is not None and not any(item.is_large for item in result.advice.before)
+    [sentence] = reasons_to_leave(result)
+    assert "drive torque, RMS" in sentence
 
 
 def test_another_speed() -> None:

@@ -188,7 +188,7 @@ def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
     if not requested and (words := rotor_sentence(balanced.original)):
         yield words
         return
-    if (largest is None or not largest.is_large) and not (requested and balanced.changes):
+    if (largest is None or not largest.is_large) and not requested:
         yield say("Leave the machine as it is: no figure is large relative to its reference value.")
     elif balanced.changes:
         yield say(
