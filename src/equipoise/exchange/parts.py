@@ -10,7 +10,8 @@ from cmath import phase, rect
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import cache, partial
-from math import atan, ceil, degrees, log10, sin, tan
+from itertools import chain
+from math import atan, ceil, degrees, log10, pi, sin, tan
 from typing import Any
 
 import numpy as np
@@ -233,15 +234,11 @@ class Part:
 
     @property
     def joints(self) -> tuple[tuple[str, complex], ...]:
-        """Points of the link that lie on the part or at its edge."""
+        """Points of the link that lie within the outline of the part or at its edge."""
         low, high = self.box
         slack = ON_EDGE * abs(high - low)
-        return tuple(
-            (name, at)
-            for name, at in self.points
-            if low.real - slack <= at.real <= high.real + slack
-            and low.imag - slack <= at.imag <= high.imag + slack
-        )
+        outline = np.concatenate([*_places(self.edges[0])])
+        return tuple((name, at) for name, at in self.points if _within(outline, at, slack))
 
     @property
     def title(self) -> str:
@@ -254,14 +251,9 @@ class Part:
     @property
     def box(self) -> tuple[complex, complex]:
         """Lower left and upper right corner, m."""
-        every = np.concatenate([*self._reach()])
+        every = np.concatenate([*chain(*map(_places, self.edges))])
         low = complex(every.real.min(), every.imag.min())
         return low, complex(every.real.max(), every.imag.max())
-
-    def _reach(self) -> Iterator[Any]:
-        for edges in self.edges:
-            for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
-                yield along(item, other, bulge, 181 if bulge else 2)
 
 
 def parts(job: Job) -> list[Part]:
@@ -364,6 +356,23 @@ def along(point: complex, other: complex, bulge: float, count: int) -> Any:
     half = 2 * np.arctan(bulge)  # of the arc's angle
     center = (point + other) / 2 + 1j * (other - point) / 2 / np.tan(half)
     return center + (point - center) * np.exp(2j * half * share)
+
+
+def _places(edges: tuple[Edge, ...]) -> Iterator[Any]:
+    """Places along each edge in turn, m."""
+    for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+        yield along(item, other, bulge, 181 if bulge else 2)
+
+
+def _within(outline: Any, at: complex, slack: float) -> bool:
+    """Whether a point lies within a closed outline (n,), or not farther than a slack from it, m."""
+    start = outline - at
+    step = np.roll(start, -1) - start
+    start, step = start[step != 0], step[step != 0]
+    share = np.clip(-(start * step.conj()).real / np.abs(step) ** 2, 0.0, 1.0)
+    if np.min(np.abs(start + share * step)) <= slack:
+        return True
+    return bool(abs(np.sum(np.angle(1 + step / start))) > pi)  # once round, or not at all
 
 
 def _of_links(job: Job) -> Iterator[Part]:

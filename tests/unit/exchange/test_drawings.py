@@ -478,6 +478,26 @@ def test_links_made_of_bodies_and_their_holes(tmp_path: Path) -> None:
     assert len(svg(machine, tmp_path / "x.svg").findall("{*}g")) == 1
 
 
+@pytest.mark.parametrize(
+    "body",
+    [
+        eq.mechanism.Body("disc", at="B", radius=0.08, thickness=0.005, density=STEEL),
+        eq.mechanism.Body("bar", between=("B", "D"), overhang=0.01, width=0.02, thickness=0.005,
+                          density=STEEL),
+    ],
+)  # fmt: skip
+def test_a_point_beside_a_part_is_no_joint_of_it(body: eq.mechanism.Body) -> None:
+    """In the corner of the box around a disc, or of that around a slanted bar."""
+    points = {"B": (0.0, 0.0), "D": (0.04, 0.04), "E": (0.07, -0.07)}
+    if body.shape == "bar":
+        points["E"] = (0.04, 0.0)
+    machine = eq.load("yamashita-1")
+    own = {**machine.links["coupler"].points, **points}
+    (part,) = parts(Job(machine.with_link("coupler", points=own, bodies=(body,)), 0.0, None))
+    names = [name for name, _ in part.joints]
+    assert {"B", "D"} <= set(names) and "E" not in names
+
+
 def test_joints_of_a_part_are_on_its_sheet() -> None:
     """In the axes of the link, each by a cross; those of the link that lie elsewhere are not."""
     machine = eq.load("yamashita-1")
