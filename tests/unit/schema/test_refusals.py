@@ -50,7 +50,7 @@ OF_LINKAGES: Refusals = {
     "two problems of a point": (
         HERE, '{ distance = 3, direction = "1 m" }', f"{PIN}.distance",
         'got the bare number 3; give number and unit in quotes, such as "33.5 mm" (and 1 more)'),
-    "speed in hertz": ('"193 rpm"', '"50 Hz"', "drive.speed", "got '50 Hz'; Hz does not tell"),
+    "speed in hertz": ('"193 rpm"', '"50 Hz"', "drive.speed", "got '50 Hz'; Hz is ambiguous"),
     "side": ('"left"', '"lft"', "assembly.C", "got 'lft'; did you mean 'left'?"),
     "title as a number": (TITLE, "title = 1", "title", "got the number 1; give text in quotes"),
     "title of no language": (TITLE, "title = {}", "title",
