@@ -487,3 +487,30 @@ def test_what_links_exert_on_a_support_in_space_is_as_of_orders() -> None:
     wanted = excitation.samples(crank, machine.drive.speed)
     found = -equation.rows.total(state.pose.bias)[1:]
     np.testing.assert_allclose(found, wanted, atol=1e-9 * np.max(np.abs(wanted)))
+
+
+# What links exert on a support at rest, and rigid bodies in space: the tests above.
+@pytest.mark.exhaustive
+def test_the_riding_transplanter_comes_to_its_linear_response() -> None:
+    """In heave, roll and yaw, each with its main order, by a motor that keeps the speed to 3e-4."""
+    machine = eq.load("riding-transplanter")
+    speed, support = machine.drive.speed, machine.support
+    assert support is not None
+    yaw = replace(support.mounts["hitch_yaw"], torsional_damping=600.0)  # else it takes 60 turns
+    machine = replace(
+        machine, support=replace(support, mounts={**support.mounts, "hitch_yaw": yaw})
+    )
+    response = eq.respond(machine)
+    motor = Motor(speed * 1.0005, 2e4, mean_speed="free")
+    driven = replace(machine, drive=replace(machine.drive, motor=motor))
+    run = eq.run(driven, turns=20, support=True, speed=speed)
+    assert isinstance(run, DrivesRun) and run.support is not None
+    assert run.energy_error < BALANCE
+    crank, places = np.unique(run.crank_angle, return_index=True)
+    grid = crank[-1] - np.linspace(0, 2 * pi, 64, endpoint=False)
+    waves = np.exp(-1j * np.outer([1, 2, 3], grid)) / 32
+    for name, gauge in response.gauges.items():
+        found = waves @ np.interp(grid, crank, run.support.gauges[name][places])
+        wanted = gauge.displacement.amplitudes[1:4]
+        # tilts of 6e-3 rad and changes of speed are not in the linear model
+        np.testing.assert_allclose(found, wanted, atol=2e-3 * np.max(np.abs(wanted)))
