@@ -60,8 +60,9 @@ at N samples in a turn has (2 pi n / N)^4; a kink or a jump has 3 and more, wher
 NEWTON_STEPS = 3
 """From a parabola's top to that of a polynomial."""
 LIFT = 1 / 16
-"""Share of a signal's range by which a smooth top is above its highest sample at most: a quarter of
-this for one order at the roughest that counts as smooth."""
+"""Share of a signal's range, or of a panel's, by which a smooth top is above its highest sample at
+most: a quarter of this for one order at the roughest that counts as smooth, half of it in a panel.
+"""
 DENSE, TAIL = 33, 1e-7
 """Places in a panel among which its top is looked for; share of its last three Legendre
 coefficients in the largest, up to which the signal is smooth in it."""
@@ -432,7 +433,10 @@ class JumpSampling:
         with np.errstate(invalid="ignore"):
             highest = np.max(panels, axis=-1)
             span = np.maximum(sampled, np.max(highest, axis=-1)) - np.min(values, axis=-1)
-            row, k = np.nonzero(highest >= (sampled - LIFT * span)[:, None])
+            slack = np.maximum(EQUAL * span, ROUNDING * np.abs(sampled))
+            # a smooth curve, ends too, exceeds Gauss points by a thirtieth of their range at most
+            lift = LIFT * (highest - np.min(panels, axis=-1))
+            row, k = np.nonzero(highest + lift >= (sampled - slack)[:, None])
             top, x = tops_of_panels(panels[row, k])
             best = np.array(sampled)
             np.maximum.at(best, row, top)

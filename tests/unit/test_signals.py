@@ -12,14 +12,17 @@ import equipoise as eq
 from equipoise import signals
 from equipoise.errors import UsageError
 from equipoise.signals import (
+    LIFT,
     Figures,
     JumpSampling,
     Periodic,
     figures,
     harmonics,
     highest_at,
+    panel_series,
     present,
     synthesis,
+    tops_of_panels,
     within_period,
 )
 from support.refusals import refused
@@ -152,6 +155,24 @@ def test_extremes_between_jumps() -> None:
     assert found.min == pytest.approx(-1, abs=1e-9)
     assert found.min_at == pytest.approx(2.3456 - pi / 3, abs=1e-6)
     assert cut.max == pytest.approx(1.5, rel=1e-12)
+
+
+def test_a_smooth_panel_exceeds_its_samples_by_little() -> None:
+    """`LIFT` of a panel's range, within which its top is looked for, is twice what curves need."""
+    _, nodes, *_ = panel_series()
+    phase = np.linspace(0, 2 * pi, 100)[:, None]
+    excesses = []
+    for pace in np.linspace(0.05, 4, 40):
+        for curve in (
+            lambda x, pace=pace: np.cos(pace * x + phase),
+            lambda x, pace=pace: np.exp(-pace * x**2) * np.cos(phase + x),
+            lambda x, pace=pace: np.sqrt(1.02 + np.cos(pace * x / 2 + phase)),
+        ):
+            values = curve(nodes)
+            highest = np.max(values, axis=1)
+            top, _ = tops_of_panels(values)
+            excesses.append((top - highest) / (highest - np.min(values, axis=1)))
+    assert 0.02 < np.max(excesses) < LIFT / 2
 
 
 def test_figures_are_plain_numbers() -> None:
