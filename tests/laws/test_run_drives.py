@@ -22,6 +22,7 @@ from equipoise.mechanism.parts.machine import FurtherDrive
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
+from equipoise.results.blocks import Facts
 from equipoise.running.drives_blocks import run_blocks, run_headline, verdict
 from support.machines import make
 from support.machines_redundant import planet_train
@@ -359,3 +360,14 @@ def test_friction_in_meshes_that_share_their_force_is_refused() -> None:
     lossy = replace(machine, drive=drive, joints=(joint,), support=None, rows=())
     with pytest.raises(UsageError, match="redundant"):
         eq.run(beside(lossy), 0.5)
+
+
+def test_a_run_without_a_whole_cycle_has_no_last_one() -> None:
+    """What friction had taken until then stood below that heading."""
+    machine = cranks(eq.Drive("left", 30.0, free=True), FurtherDrive("right", free=True))
+    machine = replace(machine, joints=(JointProperties("joints.A", drag_torque=0.1),))
+    for turns, cycles in ((0.2, 0), (1.2, 1)):
+        run = eq.run(machine, turns=turns, speed=30.0)
+        assert run.losses["A"][-1] > 0
+        heads = [block for block in run_headline(run, alone=True) if isinstance(block, Facts)]
+        assert len(heads) == cycles

@@ -58,7 +58,7 @@ def run_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
     yield Text(verdict(run), broken_if(run.end.kind in ("stall", "dead", "lever")))
     if run.machine.has_crank and run.machine.drive.motor is None:
         yield Text(say(NO_MOTOR))
-    if alone and (lines := (*_speeds(run), *lossiest(run))):
+    if alone and run.last_cycle is not None and (lines := (*_speeds(run), *lossiest(run))):
         yield Facts(say("Last cycle"), lines)
     if alone and run.support is not None:
         yield from readings_in_time(run.support)
