@@ -495,9 +495,11 @@ def _tops_of_panels(values: Array) -> tuple[Array, Array, Array]:
     some = np.nonzero(rough <= 1)
     around = places[np.maximum(k[some] - 1, 0)], places[np.minimum(k[some] + 1, DENSE - 1)]
     powers, at = series[some].T, x[some]
-    slope, bend = legendre.legder(powers), legendre.legder(powers, 2)
+    slope = legendre.legder(powers)
+    slopes = np.stack([slope, np.zeros_like(slope)], axis=1)
+    slopes[:-1, 1] = legendre.legder(slope)
     for _ in range(NEWTON_STEPS):
-        down, curve = (legendre.legval(at, each, False) for each in (slope, bend))
+        down, curve = legendre.legval(at, slopes, False)
         at = np.clip(at - np.where(curve < 0, down / curve, 0.0), *around)
     value = legendre.legval(at, powers, False)
     higher = value > top[some] + rounding[some]
