@@ -22,6 +22,7 @@ from equipoise.mechanism.parts.constraint_solver import constrained
 from equipoise.mechanism.parts.constraints import changed_points
 from equipoise.mechanism.parts.couplings import Coupling, Turning, coupling_kinds, name_of
 from equipoise.mechanism.parts.element_kinds import Element, PartKind
+from equipoise.mechanism.parts.lines import AlongLine
 from equipoise.mechanism.parts.machine import FRAME, Machine, Slider
 from equipoise.mechanism.parts.objectives import JOINTS
 from equipoise.quantities import DIGITS, clean, clean_place
@@ -432,6 +433,10 @@ def _refers_to_existing(key: str, entry: Any, bodies: Bodies) -> bool:
     points = [(entry.link, entry.point)] if entry.point is not None else []
     if key == "sliders":
         points.append((entry.on, entry.through))
+    if isinstance(entry, AlongLine):
+        if entry.bearer is not None and entry.bearer not in bodies:
+            return False
+        points += [(entry.bearer, entry.toward)] if entry.toward is not None else []
     return entry.link in bodies and all(name in bodies.get(body, ()) for body, name in points)
 
 

@@ -636,3 +636,28 @@ def test_numbers_are_typed_as_sums_and_products() -> None:
     assert "has no unit" in refusal(
         ask(page.session, "edit", commit=True, label="mass", edits=edits)
     )
+
+
+@pytest.mark.parametrize("gone", [("point", "S"), ("point", "R"), ("link", "crank")])
+def test_loads_go_with_what_bears_their_opposite(gone: tuple[str, str]) -> None:
+    """One in the line to a point of the frame, of the crank; one whose opposite the crank bears."""
+    machine = eq.load("yamashita-1")
+    crank = machine.links["crank"]
+    loads = (
+        eq.mechanism.Load("coupler", "P", (1.0, 0.0), toward="S", reaction="frame"),
+        eq.mechanism.Load("coupler", "P", (1.0, 0.0), toward="R", reaction="crank"),
+        eq.mechanism.Load("coupler", "P", (1.0, 0.0), reaction="crank"),
+    )
+    machine = replace(
+        machine.with_link("crank", points={**crank.points, "R": (0.01, 0.02)}),
+        frame={**machine.frame, "S": (0.1, 0.6)},
+        loads=loads,
+    )
+    maker = Maker()
+    state(ask(maker.session, "open", name="loaded.toml", text=eq.dumps(machine))[0])
+    what, name = gone
+    maker.do("delete", what=what, name=name)
+    design = maker.session.base().design
+    left = design.rest["loads"] if what == "link" else design.machine.loads
+    kept = {"S": loads[1:], "R": (loads[0], loads[2]), "crank": loads[:1]}[name]
+    assert tuple(left) == kept

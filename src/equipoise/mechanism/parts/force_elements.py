@@ -273,6 +273,10 @@ class Load(AlongLine, Frozen):
         return LoadTable(self.gas.crank_angle, (along, (0.0,) * len(along)), self.gas.file)
 
     @property
+    def bearer(self) -> str | None:
+        return self.reaction
+
+    @property
     def force_key(self) -> str:
         return "force" if self.table is None else "table"
 
@@ -491,7 +495,7 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
         yield ModelError(
             where, Note("from and to must differ, by one turn at most; leave both out for always")
         )
-    yield from wrong_line(where, load, load.reaction, bodies)
+    yield from wrong_line(where, load, bodies)
     yield from _wrong_table(where, load, forces)
 
 

@@ -28,6 +28,11 @@ class AlongLine:
     force: Any
 
     @property
+    def bearer(self) -> str | None:
+        """The body that bears its opposite; None if none does."""
+        raise NotImplementedError
+
+    @property
     def force_key(self) -> str:
         """Key that gives its force."""
         return "force"
@@ -38,11 +43,9 @@ class AlongLine:
         return () if self.force is None else (self.force[1],)
 
 
-def wrong_line(where: str, load: Any, body: str | None, bodies: Bodies) -> Iterator[ModelError]:
-    """What is wrong with the point towards which a load points.
-
-    body : that bears the opposite of the load, None if none does.
-    """
+def wrong_line(where: str, load: AlongLine, bodies: Bodies) -> Iterator[ModelError]:
+    """What is wrong with the point towards which a load points."""
+    body = load.bearer
     if load.toward is None or (body is not None and body not in bodies):
         return
     at = f"{where}.toward"

@@ -91,6 +91,10 @@ class TimedLoad(AlongLine, Frozen):
         example="S",
     )
 
+    @property
+    def bearer(self) -> str:
+        return self.on
+
     def axes_angle(self, sliders: Any) -> float:
         """From the x axis of its link to the one along which its force is given, rad."""
         return 0.0
@@ -125,7 +129,7 @@ def wrong_timed_load(where: str, load: TimedLoad, bodies: Bodies) -> Iterator[Mo
         yield ModelError(f"{where}.axes", Note("goes with a force; leave it out"))
     if load.point is not None:
         yield from unknown_point(f"{where}.point", load.point, load.link, bodies)
-    yield from wrong_line(where, load, load.on, bodies)
+    yield from wrong_line(where, load, bodies)
     yield from wrong_rows(f"{where}.times", ("times", "factors"), load.times, load.factors)
     if load.times and load.times[0] < 0:
         yield ModelError(f"{where}.times", Note("a run begins at 0 s; give times of 0 or more"))
