@@ -42,7 +42,6 @@ from equipoise.keys import (
 from equipoise.quantities import KINDS
 from equipoise.schema.documents import dumps, loads
 from equipoise.schema.open_files import bundled, document_of, examples
-from support.chosen import drawn
 
 Tables_ = Iterator[tuple[type[Frozen], dict[str, Any]]]
 FILES = {kind: sorted(examples(kind)) for kind in ("linkage", "tool", "study")}
@@ -136,7 +135,7 @@ def test_what_is_read_is_written_and_read_again(kind: str) -> None:
     folder = str(files("equipoise") / "examples")
     kept = 0
 
-    @settings(max_examples=drawn(100), suppress_health_check=[*HealthCheck])
+    @settings(max_examples=100, suppress_health_check=[*HealthCheck])
     @given(changed(kind))
     def holds(text: str) -> None:
         nonlocal kept
