@@ -132,7 +132,7 @@ def test_drawings_have_its_line() -> None:
     [
         ("toward", {"toward": "SS"}),
         ("toward", {"toward": "A", "reaction": "crank", "point": "B"}),
-        ("reaction", {"reaction": None}),
+        ("toward", {"toward": "SS", "reaction": None}),
         ("axes", {"axes": "link"}),
         ("toward", {"point": None, "force": None, "torque": 2.0}),
         ("force", {"force": (PULL, 1.0)}),
@@ -142,6 +142,11 @@ def test_drawings_have_its_line() -> None:
 def test_what_is_wrong_is_said(place: str, changes: dict[str, Any]) -> None:
     with refused(ModelError, f"loads[1].{place}"):
         loaded(replace(TO_FRAME, **changes))
+
+
+def test_the_body_that_bears_the_opposite_is_proposed() -> None:
+    with refused(ModelError, "loads[1].reaction", example='reaction = "frame"'):
+        loaded(replace(TO_FRAME, reaction=None))
 
 
 def test_points_that_meet_have_no_line() -> None:

@@ -56,9 +56,7 @@ def wrong_line(where: str, load: AlongLine, bodies: Bodies) -> Iterator[ModelErr
                      **key_names("toward"))  # fmt: skip
         yield ModelError(f"{where}.axes", wrong)
     elif body is None:
-        wrong = Note("missing; the body with the point {toward!r} bears the opposite",
-                     toward=load.toward)  # fmt: skip
-        yield ModelError(f"{where}.reaction", wrong)
+        yield _without_bearer(where, load, bodies)
     elif load.toward not in bodies[body]:
         kind = Note("point of {body}", body=body) if body != FRAME else "point of the frame"
         yield ModelError(at, unknown(load.toward, bodies[body], kind))
@@ -70,3 +68,19 @@ def wrong_line(where: str, load: AlongLine, bodies: Bodies) -> Iterator[ModelErr
         wrong = Note("a force in the line between two points has no component across it; "
                      "give 0 N as its y component")  # fmt: skip
         yield ModelError(f"{where}.{load.force_key}", wrong)
+
+
+def _without_bearer(where: str, load: AlongLine, bodies: Bodies) -> ModelError:
+    """That no body is named that bears the opposite, with one that has the point."""
+    names = [name for name, points in bodies.items()
+             if load.toward in points and name != load.link]  # fmt: skip
+    if not names:
+        points = dict.fromkeys(point for each in bodies.values() for point in each)
+        return ModelError(f"{where}.toward", unknown(load.toward, points, "point"))
+    name = FRAME if FRAME in names else names[0]
+    wrong = Note(
+        "missing; add {example}, the body with the point {toward!r}, which bears the opposite",
+        example=f'reaction = "{name}"',
+        toward=load.toward,
+    )
+    return ModelError(f"{where}.reaction", wrong)
