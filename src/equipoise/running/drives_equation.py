@@ -344,9 +344,9 @@ class DrivesEquation:
 
     def pose(self, where: DriveAngles, near: References) -> DrivesPose:
         """The linkages of all rows, at coordinates as of `in_rows`, near references (..., R K)."""
-        return pose_of(
-            self.linkage, where.crank_angle, where.angles, where.speeds, near, 1 / self.rows.count
-        )
+        drives = slice(len(self.drives))
+        angles, speeds = where.angles[drives], where.speeds[drives]
+        return pose_of(self.linkage, where.crank_angle, angles, speeds, near, 1 / self.rows.count)
 
     def with_rotors(self, inertia: Array) -> Array:
         """Inertia (C, C, R K), kg m2, of links with that of motors."""

@@ -78,11 +78,7 @@ class DrivesFriction:
     def slow(self) -> Array:
         """Rates (J R,), rad/s or m/s, below which the sense of a joint's motion changes."""
         sizes = np.array([joint.still / STILL for joint in self.joints])
-        return NEAR_REST * self.usual * self.of_rows(sizes)
-
-    def of_rows(self, values: Array) -> Array:
-        """Of joints in all rows (J R,), of joints (J,)."""
-        return np.repeat(values, self.rows.count)
+        return NEAR_REST * self.usual * np.repeat(sizes, self.rows.count)
 
     def senses(self, rates: Array, settled: Array) -> Array:
         """Of joints at rates (J R, K): from -1 to 1 between both of their `slow` rates.

@@ -38,8 +38,8 @@ SHORTEST = 1e-12
 """rad at the usual speed: a span in which nothing moves, over what changes suddenly."""
 MOST_SPANS = 5_000
 """Of a run: a minute or two; a turn takes some ten to fifty."""
-ROWS = np.linspace(-1.0, 1.0, 33)[1:]
-"""Places of a span at which the track has its rows, from -1 to 1: lines between them with the right
+TRACK_PLACES = np.linspace(-1.0, 1.0, 33)[1:]
+"""Places of a span that the track records, from -1 to 1: lines between them with the right
 angles and speeds at both ends are off by less than the integration is."""
 LOOKED = 48
 """Parts of a span, in each of which it is seen whether something happens."""
@@ -174,7 +174,7 @@ class DrivesIntegration:
             span = self._span((time, until), (state, gained), before)
             place, watch = self._first_in(span)
             at = np.array([place])
-            self._record(span, np.append(ROWS[place > ROWS], place))
+            self._record(span, np.append(TRACK_PLACES[place > TRACK_PLACES], place))
             self._note_reversals(span, place)
             ended = place == 1.0 and until - span.time(1.0) <= ROUNDING * span.time(1.0)
             time = until if ended else float(span.time(place))
@@ -393,18 +393,18 @@ class DrivesIntegration:
 
     def _times(self) -> Iterator[tuple[str, float]]:
         """Moments, s, at which something is to happen."""
-        limits, pace = self.limits, abs(self.equation.machine.drive.speed)
+        limits, crank_speed = self.limits, abs(self.equation.machine.drive.speed)
         yield "time", limits.time
         since = self.rates.since
         yield "corner", next((time for time in self.corners if time > since), inf)
         on = any(driver.on for driver in self.drivers)
         yield "off", limits.off_time if on else inf
-        if self.equation.by_crank or not pace:
+        if self.equation.by_crank or not crank_speed:
             return
-        yield "turns", 2 * pi * limits.turns / pace
-        yield "off", 2 * pi * limits.off_turns / pace if on else inf
+        yield "turns", 2 * pi * limits.turns / crank_speed
+        yield "off", 2 * pi * limits.off_turns / crank_speed if on else inf
         if self.equation.given:
-            yield "mark", (abs(self.mark - self.start) + self._mark_span) / pace
+            yield "mark", (abs(self.mark - self.start) + self._mark_span) / crank_speed
 
     def _watched(self) -> Iterator[DriveWatch]:
         """What may happen on the way."""

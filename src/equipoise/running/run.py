@@ -430,12 +430,12 @@ def _limits_of_drives(machine: Machine, limits: Limits) -> Limits:
     """Where a run of several drives ends, which may never be steady: after `TURNS_OF_DRIVES` turns
     of the crank, or the time of these, where nothing is given.
     """
-    pace = abs(machine.drive.speed)
+    crank_speed = abs(machine.drive.speed)
     if limits.steady:
-        time = 2 * pi * TURNS_OF_DRIVES / (pace or 1.0)
+        time = 2 * pi * TURNS_OF_DRIVES / (crank_speed or 1.0)
         return replace(limits, time=time, turns=TURNS_OF_DRIVES)
     counted = limits.turns < inf or limits.off_turns < inf
-    if counted and not (pace or machine.drive.moves_freely or machine.has_crank):
+    if counted and not (crank_speed or machine.drive.moves_freely or machine.has_crank):
         raise UsageError(
             Note("turns are those of the crank, which has the speed 0; give times instead")
         )

@@ -16,7 +16,7 @@ from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.running.drive_angles import DriveAngles
 from equipoise.running.drives_equation import DrivesEquation
-from equipoise.running.drives_linkage import DrivesPose, References, pose_of
+from equipoise.running.drives_linkage import DrivesPose, References
 from equipoise.running.mount_contacts import MountContacts
 from equipoise.running.support_pose import SupportedPose
 from equipoise.running.supported_bodies import SupportedBodies
@@ -42,7 +42,6 @@ class SupportedEquation(DrivesEquation):
     ------
     MassError : a link has no mass given.
     ModelError : there is no support, or its mounts do not hold the machine.
-    UsageError : something acts, or moves, that such a run lacks.
     """
 
     def __post_init__(self) -> None:
@@ -111,14 +110,12 @@ class SupportedEquation(DrivesEquation):
 
     def pose(self, where: DriveAngles, near: References) -> SupportedPose:
         """Linkages and support with coordinates (N + D, R K) and their rates."""
-        drives, count = len(self.drives), where.angles.shape[1] // self.rows.count
-        angles, speeds = where.angles[:drives], where.speeds[:drives]
-        share = 1 / self.rows.count
-        own = pose_of(self.linkage, where.crank_angle, angles, speeds, near, share)
+        own = super().pose(where, near)
         at = self.support_place(where.angles, where.speeds)
+        origins = self.rows.of_each(self._origins, own.count // self.rows.count)
         return SupportedPose(
-            self.linkage, own.along, own.share, self.bodies, at,
-            self.rows.of_each(self._origins, count), speeds, self._rotors_on_support,
+            self.linkage, own.along, own.share, self.bodies, at, origins,
+            where.speeds[: len(self.drives)], self._rotors_on_support,
         )  # fmt: skip
 
     @cached_property

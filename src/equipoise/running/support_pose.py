@@ -62,7 +62,8 @@ class SupportedPose(DrivesPose):
     @cached_property
     def _free(self) -> list[int]:
         """Coordinates of the support that it has, among all six."""
-        return [*map(int, self.bodies.body.free)]
+        coordinates: list[int] = self.bodies.body.free.tolist()
+        return coordinates
 
     # -- bodies: the links, and at last the support ------------------------------------------------
 
