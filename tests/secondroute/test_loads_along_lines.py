@@ -152,5 +152,5 @@ def test_the_body_that_bears_the_opposite_is_proposed() -> None:
 def test_points_that_meet_have_no_line() -> None:
     start = complex(eq.move(BASE, [0.0]).point("Q").place[0])
     frame = {**BASE.frame, "S": (start.real, start.imag)}
-    with refused(ModelError, "loads"):
+    with refused(ModelError, "loads[1]"):
         eq.analyze(replace(loaded(TO_FRAME), frame=frame), 90)

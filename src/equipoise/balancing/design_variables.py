@@ -221,8 +221,9 @@ class FreeSpring(DesignVariables):
 
     count = 2
 
-    def __init__(self, machine: Machine, choice: SpringChoice) -> None:
-        self.link, self.choice = choice.link, choice
+    def __init__(self, machine: Machine, choice: SpringChoice, where: str) -> None:
+        """where : place of the choice in the file."""
+        self.link, self.choice, self.where = choice.link, choice, where
         place = complex(*machine.frame[choice.to])
         sizes = [abs(complex(*p) - place) for p in machine.frame.values()]
         sizes += [abs(complex(*p)) for p in machine.links[choice.link].points.values()]
@@ -269,7 +270,7 @@ class FreeSpring(DesignVariables):
         """Force (2, N) on the link's point, of a unit of each number."""
         choice = self.choice
         units = self._units * np.array([1.0, -1.0])
-        values = spring_units(motion, choice.link, choice.point, choice.to)
+        values = spring_units(motion, choice.link, choice.point, choice.to, self.where)
         return np.asarray(values * units[:, None])
 
     def spring(self, numbers: Array) -> Spring | None:

@@ -29,6 +29,7 @@ from equipoise.balancing.weights import AddedWeight
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
+from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Balance, Objective
 from equipoise.mechanism.parts.machine import Machine
@@ -77,7 +78,8 @@ class Problem:
         base = machine if with_shafts is None else with_shafts
         parts: list[DesignVariables] = [MovedCenter(base, move) for move in plan.moves]
         parts += [AddedWeight(base, m.link, m.at, m.weight) for m in plan.masses]
-        parts += [*shaft_variables, *(FreeSpring(base, choice) for choice in plan.springs)]
+        springs = numbered("balance.springs", plan.springs)
+        parts += [*shaft_variables, *(FreeSpring(base, spring, where) for where, spring in springs)]
         _name_apart(parts)
         start = base
         for move in plan.moves:

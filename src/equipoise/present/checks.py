@@ -15,6 +15,7 @@ from equipoise.handheld.shaft import Section
 from equipoise.i18n import Note, all_of, coordinates, listed, said, say, series, to_say
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.mechanism.kinematics.indicators import loads_of
@@ -293,8 +294,8 @@ MOST_SHOWN = 12
 
 def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
     """Every load: where it acts, from which crank angle to which, its size and its work."""
-    for load in loads_of(assemble(machine)):
-        work = work_in_cycle(machine, load)
+    for where, load in numbered("loads", loads_of(assemble(machine))):
+        work = work_in_cycle(machine, load, where)
         kind: Dimension = "torque" if load.point is None else "force"
         place = load.link
         if load.point is not None:
@@ -315,8 +316,8 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
         elif load.reaction is not None:
             what = listed(what, say("borne by the frame"))
         shown = [Value(end, after=1) for end in ends if end is not None]
-        where: tuple[Cell, ...] = (*shown, beyond) if shown else (say("always"), None, None)
-        yield place, what, *where, Value(work.largest, dimension=kind), Value(work.net, work.both)
+        acting: tuple[Cell, ...] = (*shown, beyond) if shown else (say("always"), None, None)
+        yield place, what, *acting, Value(work.largest, dimension=kind), Value(work.net, work.both)
 
 
 def _elements(motion: Motion) -> Iterator[str]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
-from equipoise.mechanism.checks import FRAME
+from equipoise.mechanism.checks import FRAME, numbered
 from equipoise.mechanism.dynamics.applied_loads import (
     against_soil,
     given_loads,
@@ -290,15 +290,16 @@ class OfTimedLoads(AppliedSource):
 
 def timed_units(motion: Motion) -> list[dict[str, Demand]]:
     """What holds each load over time, with a factor of 1."""
-    return [demands_of(motion, _ends(motion, load)) for load in motion.machine.timed_loads]
+    loads = numbered("timed_loads", motion.machine.timed_loads)
+    return [demands_of(motion, _ends(motion, where, load)) for where, load in loads]
 
 
-def _ends(motion: Motion, load: TimedLoad) -> Iterator[Acting]:
+def _ends(motion: Motion, where: str, load: TimedLoad) -> Iterator[Acting]:
     """What a load over time exerts on its link, and on the body that bears its opposite."""
     none = np.zeros(len(motion.crank_angle))
     place, force = None, none + 0j
     if load.force is not None and load.point is not None:
-        force = (none + complex(*load.force)) * load_axis(motion, "timed_loads", load)
+        force = (none + complex(*load.force)) * load_axis(motion, where, load)
         place = motion.point(load.point).place
     torque = load.torque or 0.0
     yield load.link, place, force, torque

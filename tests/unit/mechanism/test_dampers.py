@@ -273,5 +273,5 @@ def test_ends_that_meet_are_refused() -> None:
     machine = damped()
     machine = replace(machine, frame={**machine.frame, "M": (0.035, 0.0)},
                       dampers=(Damper("crank", "B", "M", 5.0),))  # fmt: skip
-    with refused(ModelError, "dampers", point="B", link="crank", to="M", angle=0.0):
+    with refused(ModelError, "dampers[1]", point="B", link="crank", to="M", angle=0.0):
         eq.analyze(machine, 60)

@@ -252,7 +252,7 @@ def test_ends_that_meet_are_refused_where_they_would_pull() -> None:
     machine = sprung()
     machine = replace(machine, frame={**machine.frame, "M": (0.035, 0.0)})
     pulls = replace(machine, springs=(Spring("crank", "B", "M", 50.0, preload=3.0),))
-    with refused(ModelError, "springs", point="B", link="crank", to="M"):
+    with refused(ModelError, "springs[1]", point="B", link="crank", to="M"):
         eq.analyze(pulls, 60)
     slack = Spring("crank", "B", "M", lengths=(0.0, 0.1), forces=(0.0, 5.0))
     assert np.isfinite(eq.analyze(replace(machine, springs=(slack,)), 60).forces.drive_torque).all()

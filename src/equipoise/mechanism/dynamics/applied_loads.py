@@ -10,6 +10,7 @@ import numpy as np
 
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.dynamics.lines import check_apart
 from equipoise.mechanism.dynamics.loads import acting_load
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
@@ -59,10 +60,11 @@ def acting_elements(
     for table, number, element in motion.machine.force_elements:
         if (rated is not None and element.rated != rated) or cause not in (None, element.cause):
             continue
+        where = f"{table}[{number + 1}]"
         if sentence := element.meeting:
             (link, point), (_, to) = element.points
-            check_apart(motion, table, (link, point, to), sentence)
-        yield from element.on_links(PlacedBodies(motion, f"{table}[{number + 1}]"))
+            check_apart(motion, where, (link, point, to), sentence)
+        yield from element.on_links(PlacedBodies(motion, where))
 
 
 def acting_preloads(motion: Motion) -> Iterator[tuple[str, list[Acting]]]:
@@ -127,8 +129,10 @@ def soil_loads(motion: Motion, crank_speed: Array | None = None) -> Iterator[Act
 
 
 def _acting(motion: Motion, counts: Callable[[Load], bool]) -> Iterator[Acting]:
-    for load in filter(counts, loads_of(motion.linkage)):
-        force, torque = acting_load(motion, load)
+    for where, load in numbered("loads", loads_of(motion.linkage)):
+        if not counts(load):
+            continue
+        force, torque = acting_load(motion, where, load)
         yield load.link, load.point, force, torque
         if load.reaction_link is not None:  # in the same line, so at the same place where no other
             yield load.reaction_link, load.toward or load.point, -force, -torque

@@ -54,7 +54,7 @@ def load_axis(motion: Motion, where: str, load: Load | TimedLoad) -> Any:
     """Unit vector of the x axis along which the force of a load is given, in the frame (N,),
     complex; 1 of a load in the axes of the frame.
 
-    where : its list in the file.
+    where : its place in the file.
 
     Raises
     ------

@@ -46,15 +46,17 @@ def load_at(load: Load, crank_angle: Array) -> tuple[Array, Array]:
     return zero + 0j, columns[0]
 
 
-def acting_load(motion: Motion, load: Load) -> tuple[Array, Array]:
+def acting_load(motion: Motion, where: str, load: Load) -> tuple[Array, Array]:
     """Force (complex, N) in the axes of the frame, and torque (N m) of a load in a motion.
+
+    where : its place in the file.
 
     Raises
     ------
     ModelError : the points between which it acts meet.
     """
     force, torque = load_at(load, motion.crank_angle)
-    return force * load_axis(motion, "loads", load), torque
+    return force * load_axis(motion, where, load), torque
 
 
 PIECE, NODES = pi / 12, 4
@@ -73,8 +75,10 @@ class LoadWork(NamedTuple):
     largest: float
 
 
-def work_in_cycle(machine: Machine, load: Load) -> LoadWork:
+def work_in_cycle(machine: Machine, load: Load, where: str = "loads") -> LoadWork:
     """What a load does in a whole cycle.
+
+    where : its place in the file.
 
     Gauss's quadrature between its rows, its ends and the angles of a grid, so that what sets in or
     ends suddenly is no trouble; from the motion alone, without masses.  What the mean of a load
@@ -91,7 +95,7 @@ def work_in_cycle(machine: Machine, load: Load) -> LoadWork:
     half = 0.5 * np.diff(edges)
     theta = (edges[:-1] + half + half * nodes[:, None]).ravel()
     motion = move(machine, theta)
-    force, torque = acting_load(motion, load)
+    force, torque = acting_load(motion, where, load)
     turning, way = _ways(motion, load)
     share = (half * weights[:, None]).ravel()
     parts = share * (torque * turning + kernels.dot(force, way))

@@ -26,7 +26,7 @@ from equipoise.dataclass import dataclass
 from equipoise.decompositions import pinv
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import p, u
-from equipoise.mechanism.checks import FRAME, NamedItems
+from equipoise.mechanism.checks import FRAME, NamedItems, numbered
 from equipoise.mechanism.dynamics.applied_loads import acting_elements, acting_preloads, outer_loads
 from equipoise.mechanism.dynamics.loads import acting_load
 from equipoise.mechanism.dynamics.reactions import (
@@ -394,9 +394,10 @@ def pushes_across(motion: Motion, acting: Iterable[Acting]) -> dict[str, Any]:
 def loads_across(motion: Motion) -> dict[str, Any]:
     """What holds loads and the soil: both ends of a load between links in its own plane."""
     values = pushes_across(motion, outer_loads(motion))
-    between = [load for load in loads_of(motion.linkage) if load.reaction is not None]
-    for load in between:
-        plane, (force, _) = load_plane(motion.machine, load), acting_load(motion, load)
+    for where, load in numbered("loads", loads_of(motion.linkage)):
+        if load.reaction is None:
+            continue
+        plane, (force, _) = load_plane(motion.machine, load), acting_load(motion, where, load)
         values[load.link] = values.get(load.link, 0.0) - plane * force
         if load.reaction_link is not None:
             other = load.reaction_link

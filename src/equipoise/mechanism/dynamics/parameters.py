@@ -282,13 +282,15 @@ def independent_columns(matrix: Array, tolerance: float = 1e-9) -> tuple[list[in
     return independent, factors
 
 
-def spring_units(motion: Motion, link: str, point: str, to: str) -> Array:
+def spring_units(motion: Motion, link: str, point: str, to: str, where: str = "springs") -> Array:
     """Force (2, N) on a link's point, N, complex: of a spring of 1 N/m without a free length, and
     of a pull of 1 N towards the frame's point, each alone.
+
+    where : place of the spring in the file.
 
     Raises
     ------
     ModelError : the ends meet, so that a pull has no direction.
     """
-    along = direction_between(motion, "springs", (link, point, to), MEETING)
+    along = direction_between(motion, where, (link, point, to), MEETING)
     return np.stack([vector_between(motion, point, to), along])
