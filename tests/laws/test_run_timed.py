@@ -166,7 +166,10 @@ def test_analyses_leave_it_out_and_files_keep_it() -> None:
         ({"torque": 1.0, "on": "rod"}, "timed_loads[1].on: 'rod' cannot push itself"),
         ({"torque": 1.0, "point": "C"}, "timed_loads[1].point: a torque acts on a link"),
         ({"torque": 1.0, "axes": "link"}, "timed_loads[1].axes: goes with a force"),
-        ({"torque": 1.0, "times": (1.0,)}, "timed_loads[1].times: got 1 times and 2 factors"),
+        (
+            {"torque": 1.0, "times": (1.0,)},
+            "timed_loads[1].times: got 1 value in times and 2 in factors",
+        ),
         ({"torque": 1.0, "times": (1.0, 1.0)}, "timed_loads[1].times: the times must rise"),
         ({"torque": 1.0, "times": (-1.0, 1.0)}, "timed_loads[1].times: a run begins at 0 s"),
     ],

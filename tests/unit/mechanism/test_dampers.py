@@ -247,11 +247,11 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"damping": -1.0}, "[1].damping: got -1 N s/m; give 0 or more"),
     ({"damping": None}, "[1]: give exactly one of damping, speeds with forces, and table"),
     ({"speeds": (0.0, 1.0)}, "[1]: give exactly one of damping, speeds with forces, and table"),
-    ({"damping": None, "speeds": (0.0, 1.0), "forces": (0.0,)}, "[1].speeds: got 2 speeds and 1 f"),
+    ({"damping": None, "speeds": (0.0, 1.0), "forces": (0.0,)}, "[1].speeds: got 2 values in"),
     ({"damping": None, "speeds": (0.0, 0.0), "forces": (0.0, 1.0)}, "[1].speeds: the speeds must"),
     ({"damping": None, "speeds": (0.0, 1.0), "forces": (2.0, 3.0)}, "[1].speeds: a damper exerts"),
     ({"damping": None, "speeds": (-1.0, 0.0, 1.0), "forces": (1.0, 0.0, 1.0)},
-     "[1].speeds: a damper resists faster motion no less"),
+     "[1].speeds: a damper resists faster motion no less; the forces must not fall"),
 ]  # fmt: skip
 
 

@@ -286,7 +286,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"direction": None}, "[1].direction: missing; what acts by the way"),
     ({"positions": (), "forces": (), "damping": None}, "[1]: give at least one of force, damping"),
     ({"table": ResistanceTable((0.0, 0.1), (1.0, 2.0))}, "[1].table: give positions with forces"),
-    ({"forces": (1.0, 2.0)}, "[1].positions: got 3 positions and 2 forces"),
+    ({"forces": (1.0, 2.0)}, "[1].positions: got 3 values in positions and 2 in forces"),
     ({"positions": (0.0, -0.1, 0.2)}, "[1].positions: the positions must rise"),
     ({"forces": (0.0, -5.0, 1.0)}, "[1].forces: a resistance does not push"),
 ]

@@ -236,7 +236,7 @@ def test_what_is_wrong_is_said(changes: dict[str, Any], sentence: str) -> None:
 @pytest.mark.parametrize(
     ("lengths", "forces", "sentence"),
     [
-        ((0.0, 1.0), (1.0,), "got 2 lengths and 1 forces; give as many of both"),
+        ((0.0, 1.0), (1.0,), "got 2 values in lengths and 1 in forces; give as many of both"),
         ((0.0,), (1.0,), "got 1 row; give 2 to 200"),
         ((0.0, 0.0), (1.0, 2.0), "the lengths must rise from row to row"),
         ((-0.1, 0.2), (1.0, 2.0), "a length cannot be negative, give 0 or more"),

@@ -167,7 +167,7 @@ def test_what_is_wrong_is_told(changes: dict[str, Any], sentence: str) -> None:
 @pytest.mark.parametrize(
     ("angles", "torques", "sentence"),
     [
-        ((0.0, 1.0), (1.0,), "got 2 angles and 1 torques; give as many of both"),
+        ((0.0, 1.0), (1.0,), "got 2 values in angles and 1 in torques; give as many of both"),
         ((0.0,), (1.0,), "got 1 row; give 2 to 200"),
         ((0.0, 0.0), (1.0, 2.0), "the angles must rise from row to row"),
     ],

@@ -53,7 +53,10 @@ class Damping(RowLaw, RatedElement):
             wrong = Note("a damper exerts nothing at standstill; give a row of speed 0 with 0")
             yield ModelError(where, wrong)
         elif any(after < before for before, after in pairwise(efforts)):
-            wrong = Note("a damper resists faster motion no less; let the second column not fall")
+            wrong = Note(
+                "a damper resists faster motion no less; the {what} must not fall from row to row",
+                what=self.lists[1],
+            )
             yield ModelError(where, wrong)
 
     def demands(self) -> Iterator[Any]:

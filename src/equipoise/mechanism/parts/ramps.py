@@ -57,7 +57,7 @@ def wrong_rows(
     """What is wrong with the rows of a table; keys : of both lists, as the file has them."""
     if len(places) != len(values):
         wrong = Note(
-            "got {count} {places} and {others} {values}; give as many of both",
+            "got {count} values in {places} and {others} in {values}; give as many of both",
             count=len(places),
             places=keys[0],
             others=len(values),
