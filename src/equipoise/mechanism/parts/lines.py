@@ -56,7 +56,7 @@ def wrong_line(where: str, load: AlongLine, bodies: Bodies) -> Iterator[ModelErr
                      **key_names("toward"))  # fmt: skip
         yield ModelError(f"{where}.axes", wrong)
     elif body is None:
-        yield _without_bearer(where, load, bodies)
+        yield _without_bearer(where, load.link, load.toward, bodies)
     elif load.toward not in bodies[body]:
         kind = Note("point of {body}", body=body) if body != FRAME else "point of the frame"
         yield ModelError(at, unknown(load.toward, bodies[body], kind))
@@ -70,17 +70,17 @@ def wrong_line(where: str, load: AlongLine, bodies: Bodies) -> Iterator[ModelErr
         yield ModelError(f"{where}.{load.force_key}", wrong)
 
 
-def _without_bearer(where: str, load: AlongLine, bodies: Bodies) -> ModelError:
+def _without_bearer(where: str, link: str, toward: str, bodies: Bodies) -> ModelError:
     """That no body is named that bears the opposite, with one that has the point."""
     names = [name for name, points in bodies.items()
-             if load.toward in points and name != load.link]  # fmt: skip
+             if toward in points and name != link]  # fmt: skip
     if not names:
         points = dict.fromkeys(point for each in bodies.values() for point in each)
-        return ModelError(f"{where}.toward", unknown(load.toward, points, "point"))
+        return ModelError(f"{where}.toward", unknown(toward, points, "point"))
     name = FRAME if FRAME in names else names[0]
     wrong = Note(
         "missing; add {example}, the body with the point {toward!r}, which bears the opposite",
         example=f'reaction = "{name}"',
-        toward=load.toward,
+        toward=toward,
     )
     return ModelError(f"{where}.reaction", wrong)
