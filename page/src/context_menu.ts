@@ -125,6 +125,7 @@ export class ContextMenu {
       if (!this.open({ target, at: [clientX, clientY], keys: false })) return;
       const over = { pointerId, pointerType: "touch", bubbles: true, clientX, clientY };
       target.dispatchEvent(new PointerEvent("pointercancel", over));
+      keptWhenLifted(target);
     }, LONG);
     // The press that begins it is still on its way.
     setTimeout(() => {
@@ -132,6 +133,17 @@ export class ContextMenu {
         board.addEventListener(name, moved, true);
     });
   }
+}
+
+/** Let no click, which would close the menu, follow when the finger that has opened it is lifted. */
+function keptWhenLifted(target: Element): void {
+  const lifted = new AbortController();
+  const end = (event: Event) => {
+    if (event.cancelable) event.preventDefault();
+    lifted.abort();
+  };
+  const { signal } = lifted;
+  for (const name of ["touchend", "touchcancel"]) target.addEventListener(name, end, { passive: false, signal });
 }
 
 /** What a menu is of, in words. */

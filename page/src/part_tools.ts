@@ -49,7 +49,7 @@ export const RIDERS: [rides: string, name: string][] = [
   ["knife", toSay("knife edge")],
 ];
 
-/** That for those who hear the page. */
+/** Label of that choice for screen readers. */
 export const RIDING = toSay("What rides on the cam");
 
 export const PART_TOOLS: PartTool[] = [

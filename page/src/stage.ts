@@ -41,7 +41,7 @@ export interface Grip {
 }
 
 export class Stage<S extends Drawable = State> {
-  readonly svg = s("svg", { class: "linkage", role: "group", "aria-label": say("Linkage") });
+  readonly svg = s("svg", { class: "linkage", role: "group", "aria-label": say("Linkage"), tabindex: -1 });
   /** Fine lines and scales, apart, so that they are not painted with every frame. */
   readonly lines = s("svg", { class: "sheet-lines", "aria-hidden": "true" });
   /** Over the linkage: below its soil they could not be read. */
@@ -324,7 +324,8 @@ export class Stage<S extends Drawable = State> {
     this.labels = [...new Set([...scene.frame, ...points])].map((name) => labelOf(name, scene));
     this.layer.labels?.append(...this.labels.map(({ element }) => element));
     this.buildGrips(scene);
-    if (held) this.grips.get(held)?.focus({ preventScroll: true }); // keys go on where they were
+    // Keys go on where they were; those of what was deleted, on the drawing.
+    if (held) (this.grips.get(held) ?? this.svg).focus({ preventScroll: true });
   }
 
   private buildGrips({ movable, mass_centers, circles }: Scene): void {

@@ -255,6 +255,9 @@ def test_the_menu_key_opens_the_menu_and_delete_deletes(live: Live) -> None:
         keyboard.press("ArrowDown")
     keyboard.press("Enter")
     expect(live.joint("P")).to_have_count(0)
+    expect(live.page.get_by_role("group", name="Linkage", exact=True)).to_be_focused()
+    keyboard.press("Control+z")
+    expect(live.joint("P")).to_have_count(1)
 
 
 @pytest.mark.exhaustive
@@ -274,6 +277,14 @@ def test_a_finger_that_rests_opens_the_menu(new_page: Callable[..., Page], addre
     line.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
     expect(menu(live, "C")).to_be_visible()
     expect(live.button("Undo")).to_be_disabled()  # nothing was dragged
+    live.page.keyboard.press("Escape")
+    left, top, width, _ = box(board(live))
+    place = [{"x": left + 0.75 * width, "y": top + 40, "id": 0}]  # where nothing is
+    line.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": place})
+    expect(menu(live, "This place")).to_be_visible()
+    line.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    live.painted()
+    expect(menu(live, "This place")).to_be_visible()
 
 
 # -- pinned figures --------------------------------------------------------------------------------

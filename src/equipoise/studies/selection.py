@@ -53,7 +53,7 @@ BINS = 40
 """Along each side of a picture of many."""
 MIDST, DECADES = (5, 95), 30.0
 """Percentiles of a figure above 0, and their ratio from which its axis is logarithmic."""
-MOST_COLUMNS = 11
+STREAM_OF_LINES = 11
 """Stream of random numbers of those designs that are drawn as lines."""
 
 
@@ -136,7 +136,7 @@ def cloud_of(
     chosen = (
         np.arange(size)
         if few
-        else random_numbers(1, MOST_COLUMNS).choice(size, SOME, replace=False)
+        else random_numbers(1, STREAM_OF_LINES).choice(size, SOME, replace=False)
     )
     counted = np.zeros(3, int)
     least, most = np.full(len(names), np.inf), np.full(len(names), -np.inf)
