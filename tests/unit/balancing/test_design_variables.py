@@ -188,7 +188,7 @@ def test_limits_of_stiffness_and_length_are_kept() -> None:
 
 
 def test_price_of_stiffness() -> None:
-    part = FreeSpring(MACHINE, SpringChoice("rocker", "C", "A", 4.0))
+    part = FreeSpring(MACHINE, SpringChoice("rocker", "C", "A", 4.0), "balance.springs[1]")
     program = Program()
     places = program.numbers(2)
     part.constrain(program, places)
@@ -207,7 +207,7 @@ def test_a_spring_that_only_harms_is_left_out() -> None:
 
 def test_numbers_stand_for_stiffness_and_pull() -> None:
     """k (l - l0) at every crank angle, for any two numbers."""
-    part = FreeSpring(MACHINE, FREE)
+    part = FreeSpring(MACHINE, FREE, "balance.springs[1]")
     motion = eq.move(MACHINE, 90, acceleration=0.0)
     numbers = np.array([0.4, 0.1])
     spring = part.spring(numbers)
