@@ -18,6 +18,7 @@ from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.javascript import javascript
 from equipoise.errors import ModelError, UsageError
+from equipoise.exchange.formats import FORMATS
 from equipoise.keys import KeyTable, Tables, declared, key
 from equipoise.mechanism import Machine
 from equipoise.mechanism.assembly.linkage import assemble
@@ -33,6 +34,7 @@ from equipoise.web.gallery import search_words
 from equipoise.web.interactive import Interactive
 from equipoise.web.tables import tables_of
 from secondroute.test_javascript import run
+from support.refusals import refused
 
 Made = TypeVar("Made", bound=Machine)
 
@@ -89,9 +91,9 @@ def designs_by_numbers(
     """
     batch = Batch(machine, paths, [Figure(name, "peak") for name in names], angles=90)
     figures, reason = batch(np.array(sizes))
-    for row, refused, numbers in zip(figures, reason, sizes, strict=True):
+    for row, wrong, numbers in zip(figures, reason, sizes, strict=True):
         made = alone(*numbers)
-        assert (made is None) == bool(refused)
+        assert (made is None) == bool(wrong)
         if made is not None:
             summary = eq.analyze(made, 90).summary
             np.testing.assert_allclose(row, [summary[name].peak for name in names], rtol=1e-9)
@@ -142,7 +144,20 @@ def found_in_the_gallery(machine: Machine, words: str) -> None:
     assert words not in search_words(base)
 
 
-def refused_by_formats(machine: Machine, table: str, special: str, folder: Path) -> None:
-    """A format that lacks the kind says so."""
-    with pytest.raises(UsageError, match=rf"^{table}\[1\]: a file of .* no {special}; give"):
-        eq.export(machine, folder / "mine.xml")
+BY_KIND = [one.name for one in FORMATS.values() if one.by_kind]
+"""Formats that have code for each kind."""
+
+
+def refused_by_formats(machine: Machine, table: str, folder: Path) -> None:
+    """Formats that lack the kind, on whose motion all else depends, say so."""
+    special = getattr(machine, table)[0].special
+    for name in BY_KIND:
+        with refused(UsageError, place=f"{table}[1]", special=special, title=FORMATS[name].title):
+            eq.export(machine, folder / "mine", name)
+
+
+def left_out_by_formats(machine: Machine, table: str, folder: Path) -> None:
+    """Formats that lack the kind, which exerts forces alone, write the rest and say so."""
+    group = getattr(machine, table)[0].group
+    for name in BY_KIND:
+        assert group in eq.export(machine, folder / "mine", name)

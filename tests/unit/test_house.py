@@ -62,8 +62,8 @@ def test_modules_are_imported_by_statements() -> None:
         file.relative_to(ROOT).as_posix() for file in FILES if "import_module" in text_of(file)
     }
     assert names == {"errors.py", "guarding.py", "displays.py",
-                     "exchange/export.py", "keys/kinds.py", "results/joint_blocks.py",
-                     "symbols/part_signs.py"}  # fmt: skip
+                     "exchange/export.py", "keys/kinds.py",
+                     "mechanism/parts/element_kinds.py"}  # fmt: skip
 
 
 def test_a_file_is_one_concept() -> None:

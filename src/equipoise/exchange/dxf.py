@@ -44,7 +44,8 @@ def export_bytes(job: Job) -> str:
     if job.machine.rows:
         job.leave_out(Note("rows: one linkage is drawn"))
     _linkage(space, scene)
-    _pitch_curves(space, scene, motion)
+    for write in job.writers("dxf"):
+        write(space, scene, motion)
     _paths(space, scene)
     try:
         _parts(space, parts(job), scene, job.sizes)
@@ -102,7 +103,7 @@ def _linkage(space: Any, scene: Scene) -> None:
         space.add_text(name, height=letter, dxfattribs=_layer("names")).set_placement(spot)
 
 
-def _pitch_curves(space: Any, scene: Scene, motion: Motion) -> None:
+def roller_paths(space: Any, scene: Scene, motion: Motion) -> None:
     """The way of each roller's centre round its cam, as a cutter of its radius goes."""
     turn = np.linspace(0.0, 2 * np.pi, ANGLES, endpoint=False)
     for fit in fits_of(motion.machine, motion.linkage.joints):

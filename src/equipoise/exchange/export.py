@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from importlib import import_module
 from math import isfinite
 
@@ -14,6 +15,7 @@ from equipoise.i18n import LANGUAGES, Note, speaking, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.parts.element_kinds import part_kinds
+from equipoise.mechanism.parts.force_kinds import ForceElement
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import printable, write
 from equipoise.studies.selection import write_designs
@@ -149,14 +151,14 @@ def export_content(
     machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, None)
     if file_format.turns:
         check_turning(machine, file_format.title)
-    _check_joints(machine, file_format)
+    forces_left_out = [*_left_out(machine, file_format)]
     frictionless = not file_format.rubs and any(
         joint.rubs_by_load if file_format.drags else joint.rubs for joint in machine.joints
     )
     if angles is None and crank_angle is not None:
         angles = [crank_angle]
     without_friction = machine.without_friction(file_format.drags) if frictionless else machine
-    job = Job(without_friction, crank_angle or 0.0, changes, link, angles, sizes)
+    job = Job(without_friction, crank_angle or 0.0, changes, link, angles, sizes, forces_left_out)
     if frictionless:
         left_out = PRESSED if file_format.drags else FRICTION
         job.leave_out(Note(left_out))
@@ -176,21 +178,23 @@ def export_content(
     return job, data
 
 
-def _check_joints(machine: Machine, file_format: Format) -> None:
-    """Refuse a machine with parts that a format lacks."""
-    for table in part_kinds(type(machine)):
+def _left_out(machine: Machine, file_format: Format) -> Iterator[Note]:
+    """Force elements that a format lacks, a kind each; joints and couplings that it lacks are
+    refused, since nothing moves as it should without them.
+    """
+    for table, kind in part_kinds(type(machine)).items():
         for where, part in numbered(table, getattr(machine, table)):
-            if not file_format.has(part.special):
-                raise UsageError(
-                    at_place(
-                        where,
-                        Note(
-                            "a file of {title} has no {special}; give another format",
-                            title=file_format.title,
-                            special=part.special,
-                        ),
-                    )
-                )
+            if file_format.has(part):
+                continue
+            if issubclass(kind, ForceElement):
+                yield Note(kind.group)
+                break
+            refusal = Note(
+                "a file of {title} has no {special}; give another format",
+                title=file_format.title,
+                special=Note(part.special),
+            )
+            raise UsageError(at_place(where, refusal))
 
 
 def check_turning(machine: Machine, title: str) -> None:

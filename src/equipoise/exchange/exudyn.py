@@ -23,9 +23,8 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import PlacedBodies, move
 from equipoise.mechanism.parts.machine import FRAME, Machine
-from equipoise.mechanism.parts.resistances import Resistance
-from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.support import PLANAR, Support, unit_vector
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 
 Data = dict[str, Any]
 End = tuple[str, list[float]]
@@ -112,19 +111,8 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
         axes = ([float(item.real), float(item.imag), 0.0] for item in (way, across))
         model["sliders"].append(dict(zip(("ends", "axis", "normal"), (ends, *axes), strict=True)))
     model["geared"] += _geared(tree)
-    for spring in machine.springs:
-        ends = [_end(tree, spring.on, spring.to), _end(tree, spring.link, spring.point)]
-        if spring.stiffness is None:
-            job.leave_out(Note("springs with a table"))
-            continue
-        rates = {"stiffness": spring.stiffness, "length": spring.free_length}
-        if spring.preload is not None:
-            rates["preload"] = spring.preload
-        model["springs"].append({"ends": ends, **rates})
-    if machine.torsion_springs:
-        job.leave_out(Note("the torsion springs"))
-    _rated(model, tree, job)
-    _bushings(model, tree, job)
+    for write in job.writers("exudyn"):
+        write(model, tree, job)
     for _, load in constant_loads(job):
         end = _end(tree, load.link, load.point or next(iter(machine.links[load.link].points)))
         force, turns = complex(*(load.force or (0.0, 0.0))), load.axes is not None
@@ -134,40 +122,79 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
                                "torque": load.torque or 0.0, "turns": turns})  # fmt: skip
 
 
-def _rated(model: Data, tree: Tree, job: Job) -> None:
-    """Dampers, stops and resistances."""
-    machine = tree.machine
-    for damper in machine.dampers:
+def springs(model: Data, tree: Tree, job: Job) -> None:
+    """Between two points each."""
+    for spring in tree.machine.springs:
+        ends = [_end(tree, spring.on, spring.to), _end(tree, spring.link, spring.point)]
+        if spring.stiffness is None:
+            job.leave_out(Note("springs with a table"))
+            continue
+        rates = {"stiffness": spring.stiffness, "length": spring.free_length}
+        if spring.preload is not None:
+            rates["preload"] = spring.preload
+        model["springs"].append({"ends": ends, **rates})
+
+
+def dampers(model: Data, tree: Tree, _: Job) -> None:
+    """Between two points each."""
+    for damper in tree.machine.dampers:
         ends = [_end(tree, damper.on, damper.to), _end(tree, damper.link, damper.point)]
         speeds, forces = damper.rows
         law: Data = {"speeds": [*speeds], "forces": [*forces]}
         law = {"damping": damper.damping} if damper.linear else law
         model["dampers"].append({"ends": ends, **law})
-    base = "" if machine.support is None else BASE
-    for torsion in machine.torsion_dampers:
+
+
+def torsion_dampers(model: Data, tree: Tree, job: Job) -> None:
+    """Between two bodies each."""
+    base = "" if tree.machine.support is None else BASE
+    for torsion in tree.machine.torsion_dampers:
         if not torsion.linear:
             job.leave_out(Note("torsion dampers with a table"))
             continue
         on, by = (base if body == FRAME else f"{body}{tree.suffix}"
                   for body in (torsion.link, torsion.on))  # fmt: skip
         model["torsion_dampers"].append({"on": on, "by": by, "damping": torsion.damping})
-    moving = {"stops": Note("stops over a body that moves"),
-              "resistances": Note("resistances over a body that moves")}  # fmt: skip
-    for noun, items in (("stops", machine.stops), ("resistances", machine.resistances)):
-        for item in items:
-            if item.on != FRAME or base:
-                job.leave_out(moving[noun])
-                continue
-            ends = [_end(tree, FRAME, item.to), _end(tree, item.link, item.point)]
-            model[noun].append({"ends": ends, **_law(item)})
 
 
-def _bushings(model: Data, tree: Tree, job: Job) -> None:
+def stops(model: Data, tree: Tree, job: Job) -> None:
+    """Over the ground."""
+    for item in tree.machine.stops:
+        if _ground(tree, item):
+            law: Data = {"direction": item.direction, "stiffness": item.stiffness}
+            if item.dissipation is not None:
+                law["loss"] = item.dissipation
+            model["stops"].append({"ends": _over_ground(tree, item), **law})
+        else:
+            job.leave_out(Note("stops over a body that moves"))
+
+
+def resistances(model: Data, tree: Tree, job: Job) -> None:
+    """Over the ground."""
+    names = ("direction", "one_way", "force", "damping", "positions", "forces", "speed")
+    for item in tree.machine.resistances:
+        if _ground(tree, item):
+            law = {name: getattr(item, name) for name in names}
+            model["resistances"].append({"ends": _over_ground(tree, item), **law})
+        else:
+            job.leave_out(Note("resistances over a body that moves"))
+
+
+def _ground(tree: Tree, item: BetweenPoints) -> bool:
+    """Whether a part is between a link and what stands still."""
+    return item.on == FRAME and tree.machine.support is None
+
+
+def _over_ground(tree: Tree, item: BetweenPoints) -> list[End]:
+    return [_end(tree, FRAME, item.to), _end(tree, item.link, item.point)]
+
+
+def bushings(model: Data, tree: Tree, job: Job) -> None:
     """Bushings on the ground; angles count from where the linkage is drawn."""
     machine = tree.machine
     motion = move(machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
     for number, item in enumerate(machine.bushings):
-        if item.on != FRAME or machine.support is not None:
+        if not _ground(tree, item):
             job.leave_out(Note("bushings on a body that moves"))
             continue
         *_, (turned, _) = item.ways(PlacedBodies(motion, f"bushings[{number + 1}]"))
@@ -176,7 +203,7 @@ def _bushings(model: Data, tree: Tree, job: Job) -> None:
         own = f"{item.link}{tree.suffix}"
         model["bushings"].append(
             {
-                "ends": [_end(tree, FRAME, item.to), _end(tree, item.link, item.point)],
+                "ends": _over_ground(tree, item),
                 "direction": item.direction,
                 **{name: [*getattr(item, name)] for name in ("stiffness", "damping", "preload")},
                 "on": own,
@@ -190,17 +217,6 @@ def _bushings(model: Data, tree: Tree, job: Job) -> None:
         if item.torque and not stiffness:
             couple = {"force": [0.0, 0.0], "torque": item.torque, "turns": False}
             model["loads"].append({"end": _end(tree, item.link, item.point), **couple})
-
-
-def _law(item: Stop | Resistance) -> Data:
-    """The numbers of a stop or a resistance."""
-    if isinstance(item, Resistance):
-        names = ("direction", "one_way", "force", "damping", "positions", "forces", "speed")
-        return {name: getattr(item, name) for name in names}
-    law: Data = {"direction": item.direction, "stiffness": item.stiffness}
-    if item.dissipation is not None:
-        law["loss"] = item.dissipation
-    return law
 
 
 def _end(tree: Tree, body: str, point: str) -> End:

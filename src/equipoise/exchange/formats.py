@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING, Literal
 
@@ -11,6 +11,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, said, say, to_say
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.parts.element_kinds import PartKind, named_function, part_kinds
 
 if TYPE_CHECKING:
     from equipoise.balancing.workshop import Change
@@ -27,8 +28,9 @@ class Format:
     `exchange`.  of_store : whether it is of the designs of a study, not of a machine.
     posed : whether it shows the machine at a crank angle, or begins there.
     turns : whether it turns the driven link all the way round at constant speed.
-    joints : that it has beside pins, guides and what turns two links in a fixed ratio, as kinds of
-    parts call them (`PartKind.special`); None where it has all but those that it `lacks`.
+    by_kind : whether it has code for each kind of parts that it holds (`PartKind.exports`), beside
+    that for pins, guides and what turns two links in a fixed ratio.
+    evaluates : whether it holds motions that have no formula.
     rubs : whether it holds friction in joints, or what follows from it.
     drags : whether it holds damping and drag of joints, which nothing presses on.
     tightens : whether its pins bear the tension of belts and chains.
@@ -46,8 +48,8 @@ class Format:
     of_store: bool = False
     posed: bool = True
     turns: bool = False
-    joints: tuple[str, ...] | None = None
-    lacks: tuple[str, ...] = ()
+    by_kind: bool = False
+    evaluates: bool = True
     module: str = ""
     rubs: bool = True
     drags: bool = False
@@ -57,11 +59,11 @@ class Format:
     worded: bool = False
     cuts: bool = False
 
-    def has(self, special: str) -> bool:
-        """Whether it has what a kind of parts calls so, empty of what all formats have."""
-        if not special or self.joints is None:
-            return special not in self.lacks
-        return special in self.joints
+    def has(self, part: PartKind) -> bool:
+        """Whether it holds a part."""
+        if self.by_kind:
+            return part.in_fixed_ratio or self.name in part.exports
+        return self.evaluates or part.has_formula
 
     @property
     def maker(self) -> str:
@@ -80,7 +82,7 @@ FORMATS: Mapping[str, Format] = {
             "bushings, elastic stops, viscous resistances, damping and drag of joints, constant "
             "loads, rows, the support on its mounts, the drive at constant speed",
             turns=True,
-            joints=("damper", "torsion damper", "bushing", "stop", "resistance"),
+            by_kind=True,
             rubs=False,
             drags=True,
             tightens=False,
@@ -93,7 +95,7 @@ FORMATS: Mapping[str, Format] = {
             "dampers, bushings, stops, resistances, constant loads, rows, the support on its "
             "mounts in the plane, the drive at constant speed",
             turns=True,
-            joints=("damper", "torsion damper", "bushing", "stop", "resistance"),
+            by_kind=True,
             rubs=False,
             tightens=False,
         ),
@@ -103,7 +105,7 @@ FORMATS: Mapping[str, Format] = {
             "robots (URDF)",
             "the tree: links with masses, hinges and slides with their damping and drag, gears and "
             "belts of two joints; loops are cut",
-            joints=(),
+            by_kind=True,
             rubs=False,
             drags=True,
             tightens=False,
@@ -116,7 +118,7 @@ FORMATS: Mapping[str, Format] = {
             "belts, racks, springs, torsion springs, dampers, bushings, stops, resistances, "
             "constant loads; C sources, and a library where a C compiler is found",
             turns=True,
-            lacks=("cam", "gears of varying ratio"),
+            evaluates=False,
             rubs=False,
         ),
         Format(
@@ -127,7 +129,7 @@ FORMATS: Mapping[str, Format] = {
             "springs, torsion springs, dampers, bushings, stops, resistances, constant loads, the "
             "drive at constant speed",
             turns=True,
-            joints=("damper", "torsion damper", "bushing", "stop", "resistance"),
+            by_kind=True,
             rubs=False,
             tightens=False,
         ),
@@ -250,6 +252,14 @@ class Job:
         yield from (say(LEFT_OUT[of], part=said(part)) for part in self.left_out)
         if self.sizes:
             yield say("note: {note}", note=said(self.sizes))
+
+    def writers(self, format: str) -> Iterator[Callable[..., None]]:
+        """Functions that write parts of the machine into a format, one for each kind that has
+        one there (`PartKind.exports`), in the order of the model file.
+        """
+        for table, kind in part_kinds(type(self.machine)).items():
+            if format in kind.exports and getattr(self.machine, table):
+                yield named_function(kind.exports[format])
 
     def leave_out(self, what: Note) -> None:
         """Report, once, what the file does not hold."""

@@ -66,11 +66,8 @@ def export_bytes(job: Job) -> str:
     for tree in trees_of_links:
         _links(base, tree, job, machine.drive.flywheel if tree is trees_of_links[0] else 0.0)
         _constraints(root, tree)
-        _springs(root, tree, job)
-        _dampers(root, tree, job)
-        _resistances(root, tree, job)
-        _bushings(root, tree, job)
-        _stops(root, tree, job)
+        for write in job.writers("mjcf"):
+            write(root, tree, job)
         _drags(root, tree)
         _loads(root, world, tree, job)
     _shaft(root, trees_of_links)
@@ -263,7 +260,8 @@ def _constant_sum(root: ET.Element, name: str, factors: Mapping[str, float]) -> 
     ET.SubElement(_part(root, "equality"), "tendon", tendon1=name)
 
 
-def _springs(root: ET.Element, tree: Tree, job: Job) -> None:
+def springs(root: ET.Element, tree: Tree, job: Job) -> None:
+    """Tendons with a stiffness."""
     for spring in tree.machine.springs:
         if spring.stiffness is None:
             job.leave_out(Note("springs with a table"))
@@ -276,6 +274,10 @@ def _springs(root: ET.Element, tree: Tree, job: Job) -> None:
             continue
         rates = {"stiffness": repr(spring.stiffness), "springlength": repr(rest)}
         _between(root, tree, spring, rates)
+
+
+def torsion_springs(root: ET.Element, tree: Tree, job: Job) -> None:
+    """Tendons as long as an angle, with a stiffness."""
     motion = move(tree.machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
     for number, torsion in enumerate(tree.machine.torsion_springs):
         if torsion.stiffness is None:
@@ -304,12 +306,17 @@ def _turning(
         ET.SubElement(tendon, "joint", joint=f"{joint}{tree.suffix}", coef=repr(factor))
 
 
-def _dampers(root: ET.Element, tree: Tree, job: Job) -> None:
+def dampers(root: ET.Element, tree: Tree, job: Job) -> None:
+    """Tendons with damping."""
     for damper in tree.machine.dampers:
         if damper.linear:
             _between(root, tree, damper, {"damping": repr(damper.damping)})
         else:
             job.leave_out(Note("dampers with a table"))
+
+
+def torsion_dampers(root: ET.Element, tree: Tree, job: Job) -> None:
+    """Tendons as long as an angle, with damping."""
     for torsion in tree.machine.torsion_dampers:
         if torsion.linear:
             rates = {"damping": repr(torsion.damping)}
@@ -318,7 +325,7 @@ def _dampers(root: ET.Element, tree: Tree, job: Job) -> None:
             job.leave_out(Note("torsion dampers with a table"))
 
 
-def _resistances(root: ET.Element, tree: Tree, job: Job) -> None:
+def resistances(root: ET.Element, tree: Tree, job: Job) -> None:
     """Viscous ones, as forces on sites against their speeds along lines of the frame."""
     for number, item in enumerate(tree.machine.resistances, 1):
         if item.on != FRAME or tree.machine.support is not None:
@@ -337,7 +344,7 @@ def _resistances(root: ET.Element, tree: Tree, job: Job) -> None:
             _push(root, name, site, other, _along(way), (0.0, 0.0, -item.damping))
 
 
-def _bushings(root: ET.Element, tree: Tree, job: Job) -> None:
+def bushings(root: ET.Element, tree: Tree, job: Job) -> None:
     """Pushes on sites by their way and speed in the axes of the frame, and turning tendons."""
     motion = move(tree.machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
     for number, item in enumerate(tree.machine.bushings, 1):
@@ -366,7 +373,7 @@ def _bushings(root: ET.Element, tree: Tree, job: Job) -> None:
             _turning(root, tree, (item.link, FRAME), rates)
 
 
-def _stops(root: ET.Element, tree: Tree, job: Job) -> None:
+def stops(root: ET.Element, tree: Tree, job: Job) -> None:
     """Pushes on sites that never pull; what contacts lose is a product of way and speed, which no
     actuator has.
     """

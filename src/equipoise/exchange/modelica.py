@@ -18,12 +18,10 @@ from equipoise.exchange.tree import constant_loads, mass_of, weighed
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move
-from equipoise.mechanism.parts.bushings import Bushing
 from equipoise.mechanism.parts.damping import Damping
 from equipoise.mechanism.parts.machine import FRAME, Load, Machine
 from equipoise.mechanism.parts.ramps import Ramps, ramps_of
-from equipoise.mechanism.parts.resistances import Resistance
-from equipoise.mechanism.parts.stops import Stop
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 
 
 @dataclass
@@ -127,7 +125,9 @@ def export_bytes(job: Job) -> str:
     _pins(model)
     _sliders(model, motion)
     _couplings(model, motion)
-    _forces(model, job)
+    for write in job.writers("modelica"):
+        write(model, job)
+    _loads(model, job)
     _drive(model, job)
     lines = [*_balances(model), *model.equations]
     title = re.sub(r"\W+", "_", str(machine.title), flags=re.ASCII).strip("_")
@@ -220,8 +220,8 @@ def _couplings(model: Flat, motion: Motion) -> None:
             model.turn(body, f"{_in_brackets(share)} * {couple}")
 
 
-def _forces(model: Flat, job: Job) -> None:
-    """Springs, and loads that are always the same."""
+def springs(model: Flat, job: Job) -> None:
+    """Pulls along lines, by their lengths."""
     for number, spring in enumerate(model.machine.springs, 1):
         (x, y), (x0, y0) = model.place(spring.link, spring.point), model.place(spring.on, spring.to)
         length, pull = f"L_{number}", f"S_{number}"
@@ -236,11 +236,10 @@ def _forces(model: Flat, job: Job) -> None:
         model.push(spring.link, spring.point, force, "+")
         if spring.on != FRAME:
             model.push(spring.on, spring.to, force, "-")
-    _torsion_springs(model, job)
-    _dampers(model)
-    _bushings(model, job)
-    _stops(model)
-    _resistances(model)
+
+
+def _loads(model: Flat, job: Job) -> None:
+    """Loads that are always the same."""
     for _, load in constant_loads(job, between=True):
         other = load.reaction or FRAME
         if load.force is not None and load.point is not None:
@@ -270,7 +269,7 @@ def _force(model: Flat, load: Load) -> tuple[str, str]:
     return f"({fx} * {cos} - {fy} * {sin})", f"({fx} * {sin} + {fy} * {cos})"
 
 
-def _torsion_springs(model: Flat, job: Job) -> None:
+def torsion_springs(model: Flat, job: Job) -> None:
     """Torques by sums of ramps; each angle is counted on from where it is drawn."""
     motion = move(model.machine, [job.crank_angle], acceleration=0.0)
     for number, spring in enumerate(model.machine.torsion_springs):
@@ -288,8 +287,8 @@ def _torsion_springs(model: Flat, job: Job) -> None:
         model.turn(ends[1], f"(-{torque})")
 
 
-def _dampers(model: Flat) -> None:
-    """Pulls along lines, and couples, against their speeds."""
+def dampers(model: Flat, _: Job) -> None:
+    """Pulls along lines, against the speeds of their lengths."""
     for number, damper in enumerate(model.machine.dampers, 1):
         (x, y), (x0, y0) = model.place(damper.link, damper.point), model.place(damper.on, damper.to)
         (vx, vy), (vx0, vy0) = (
@@ -303,6 +302,10 @@ def _dampers(model: Flat) -> None:
         force = f"({pull} * ({x0} - {x}))", f"({pull} * ({y0} - {y}))"
         model.push(damper.link, damper.point, force, "+")
         model.push(damper.on, damper.to, force, "-")
+
+
+def torsion_dampers(model: Flat, _: Job) -> None:
+    """Couples against angular speeds."""
     for number, torsion in enumerate(model.machine.torsion_dampers, 1):
         speed = f"{model.rate(torsion.link)} - {model.rate(torsion.on)}"
         speed = model.define(f"WD_{number}", speed)
@@ -318,7 +321,7 @@ def _resisted(damper: Damping, speed: str) -> str:
     return _ramps(ramps_of(*damper.rows), speed)
 
 
-def _bushings(model: Flat, job: Job) -> None:
+def bushings(model: Flat, job: Job) -> None:
     """Forces along a direction and across it, and couples; angles count from where it is drawn."""
     motion = move(model.machine, [job.crank_angle], acceleration=0.0)
     for number, item in enumerate(model.machine.bushings, 1):
@@ -342,7 +345,7 @@ def _bushings(model: Flat, job: Job) -> None:
         model.turn(ends[1], f"(-{couple})")
 
 
-def _stops(model: Flat) -> None:
+def stops(model: Flat, _: Job) -> None:
     """Forces that push points back over the lines of stops."""
     for number, stop in enumerate(model.machine.stops, 1):
         at = _Guided.of(model, stop, stop.direction)
@@ -354,7 +357,7 @@ def _stops(model: Flat) -> None:
         at.push(model.define(f"FS_{number}", force), "0.0")
 
 
-def _resistances(model: Flat) -> None:
+def resistances(model: Flat, _: Job) -> None:
     """Forces against the motion of points: dry, viscous, by the way."""
     for number, item in enumerate(model.machine.resistances, 1):
         at = _Guided.of(model, item, item.direction or 0.0)
@@ -388,13 +391,13 @@ class _Guided:
     """
 
     model: Flat
-    item: Bushing | Stop | Resistance
+    item: BetweenPoints
     arm: tuple[str, str]
     moving: tuple[str, str]
     way: tuple[str, str]
 
     @classmethod
-    def of(cls, model: Flat, item: Bushing | Stop | Resistance, direction: float) -> _Guided:
+    def of(cls, model: Flat, item: BetweenPoints, direction: float) -> _Guided:
         """direction : from the x axis of the other body, rad."""
         (link, point), (on, to) = (item.link, item.point), (item.on, item.to)
         (x, y), (x0, y0) = model.place(link, point), model.place(on, to)

@@ -47,7 +47,6 @@ def export_bytes(job: Job) -> str:
                 )
             )
     missing = {
-        to_say("springs"): [*machine.force_elements],
         to_say("loads"): machine.loads,
         to_say("what the support stands on"): machine.support,
         to_say("the drive's speed"): machine.drive.speed,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +13,12 @@ from equipoise.mechanism.dynamics.reactions import (
     SliderForce,
 )
 from equipoise.mechanism.outputs.declared import DECLARED, body_named, joint_named
-from equipoise.mechanism.parts.element_kinds import Element, element_kinds, part_kinds
+from equipoise.mechanism.parts.element_kinds import (
+    Element,
+    element_kinds,
+    named_function,
+    part_kinds,
+)
 from equipoise.quantities import Dimension, Display, display
 from equipoise.results.bearing_blocks import bearing_blocks
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
@@ -48,8 +52,7 @@ def kind_tables(analysis: Analysis, chapter: str) -> Iterator[Block]:
     """What kinds of parts have tables of in a chapter, of each kind that the machine has."""
     for table, kind in part_kinds(type(analysis.machine)).items():
         if chapter in kind.tables and getattr(analysis.machine, table):
-            module, _, name = kind.tables[chapter].partition(":")
-            yield from getattr(import_module(module), name)(analysis)
+            yield from named_function(kind.tables[chapter])(analysis)
 
 
 def elements_tables(analysis: Analysis) -> Iterator[Table]:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
-from functools import cache
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.checks import Bodies
-from equipoise.mechanism.parts.element_kinds import PartKind
+from equipoise.mechanism.parts.element_kinds import PartKind, named_function
 from equipoise.symbols.shapes import BodyMark
 
 if TYPE_CHECKING:
@@ -51,14 +49,6 @@ class DraggedCircle:
     point: str
 
 
-@cache
-def named_function(name: str) -> Callable[..., Any] | None:
-    """The function that a kind of part names as ``module:function``; None where it names none."""
-    module, _, function = name.partition(":")
-    found: Callable[..., Any] | None = getattr(import_module(module), function) if module else None
-    return found
-
-
 def dragged_circles(
     machine: Machine, joints: Structure
 ) -> Iterator[tuple[str, int, PartKind, DraggedCircle]]:
@@ -66,14 +56,13 @@ def dragged_circles(
     place there from 0, and the part.
     """
     for table, place, part in machine.parts:
-        if circle := named_function(part.dragged):
-            yield table, place, part, circle(part, joints)
+        if part.dragged:
+            yield table, place, part, named_function(part.dragged)(part, joints)
 
 
 def signs_of(table: str, part: PartKind, around: Surroundings) -> list[BodyMark]:
     """The signs of a part, if its kind has one.  table : key of its list."""
-    sign = named_function(part.sign)
-    marks = sign(part, around) if sign else ()
+    marks = named_function(part.sign)(part, around) if part.sign else ()
     return [replace(mark, table=table, legend=part.legend) for mark in marks]
 
 

@@ -102,9 +102,9 @@ def test_dampers_stops_and_resistances(
 def test_what_a_script_leaves_out_of_force_elements(tmp_path: Path) -> None:
     assert eq.export(machine_with(ON_LINKS), tmp_path / "model.py") == (
         "torsion dampers with a table",
+        "bushings on a body that moves",
         "stops over a body that moves",
         "resistances over a body that moves",
-        "bushings on a body that moves",
     )
 
 

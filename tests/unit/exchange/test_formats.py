@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import sys
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
 import pytest
 
 import equipoise as eq
+from equipoise.exchange.export import export_content
 from equipoise.exchange.formats import FORMATS, Format
+from equipoise.mechanism import Machine
+from equipoise.mechanism.parts.couplings import coupling_kinds
+from equipoise.mechanism.parts.element_kinds import PartKind
+from equipoise.mechanism.parts.force_kinds import force_kinds
+from equipoise.mechanism.parts.joint_kinds import joint_kinds
+from equipoise.schema.open_files import bundled
 from support.refusals import refused
 
 PAGE = Path(__file__).parents[3] / "docs" / "exchange.md"
@@ -18,14 +26,31 @@ MACHINE = eq.load("yamashita-1")
 OWN = [one for one in FORMATS.values() if not one.of_store]
 
 
-CAM, RACK, VARYING, SLOT = "cam", "rack", "gears of varying ratio", "pin in a slot"
 FRICTION = "friction in joints"
 PRESSED = "friction in joints by what presses there"
 
 
+@cache
+def holding_parts() -> dict[str, tuple[Machine, str, PartKind]]:
+    """Joints and couplings by what formats may call them: a bundled model that has one, and its
+    place there.
+    """
+    texts = {name: file.read_text("utf-8") for name, file in bundled().items()}
+    kinds = {**coupling_kinds(Machine), **joint_kinds(Machine)}
+    names = [next(name for name in texts if f"[[{table}]]" in texts[name]) for table in kinds]
+    parts: dict[str, tuple[Machine, str, PartKind]] = {}
+    for machine in map(eq.load, ["elliptic-quick-return", *names]):
+        for table, place, part in machine.parts:
+            if table in kinds:
+                parts.setdefault(part.special, (machine, f"{table}[{place + 1}]", part))
+    return parts
+
+
 def lacking(one: Format) -> list[str]:
-    """Special joints that a format has none for."""
-    return [joint for joint in (CAM, RACK, VARYING, SLOT) if not one.has(joint)]
+    """Joints and couplings that a format has none of, and force elements."""
+    parts = [name for name, (*_, part) in holding_parts().items() if not one.has(part)]
+    forces = force_kinds(Machine).values() if one.by_kind else ()
+    return parts + [kind.group for kind in forces if one.name not in kind.exports]
 
 
 def table() -> str:
@@ -71,19 +96,14 @@ def test_each_has_its_module(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [one.name for one in OWN if lacking(one)])
-def test_joints_that_a_format_lacks(name: str, tmp_path: Path) -> None:
-    for joint, where, example in (
-        (CAM, "cams[1]", "cam-pusher"),
-        (RACK, "racks[1]", "knife-drive"),
-        (VARYING, "gears[1]", "elliptic-quick-return"),
-    ):
-        if joint not in lacking(FORMATS[name]):
-            assert (name, joint) == ("fmu", RACK)
-            continue
-        with pytest.raises(eq.EquipoiseError) as caught:
-            eq.export(eq.load(example), tmp_path / "x", name)
-        said = f"{where}: a file of {FORMATS[name].title} has no {joint}; give another format"
-        assert str(caught.value) == said
+def test_joints_that_a_format_lacks(name: str) -> None:
+    for special, (machine, where, part) in holding_parts().items():
+        if not FORMATS[name].has(part):
+            with pytest.raises(eq.EquipoiseError) as caught:
+                export_content(machine, FORMATS[name])
+            title = FORMATS[name].title
+            said = f"{where}: a file of {title} has no {special}; give another format"
+            assert str(caught.value) == said
 
 
 def test_what_is_no_format(tmp_path: Path) -> None:

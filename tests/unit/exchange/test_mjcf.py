@@ -189,15 +189,15 @@ def test_what_a_file_leaves_out_of_force_elements(tmp_path: Path) -> None:
     path = tmp_path / "m.xml"
     left_out = (
         "dampers with a table",
-        "dry and one-way parts of resistances",
         "the restitution of stops: they lose nothing",
+        "dry and one-way parts of resistances",
     )
     assert eq.export(machine_with(LAWS), path) == left_out
     assert eq.export(machine_with(ON_LINKS), path) == (
         "torsion dampers with a table",
-        "resistances over a body that moves",
         "bushings on a body that moves",
         "stops on a body that moves",
+        "resistances over a body that moves",
     )
 
 

@@ -32,6 +32,7 @@ from equipoise.schema.writing import key_table
 from equipoise.symbols.pieces import pieces
 from equipoise.web.gallery import sections
 from support.own_kinds import (
+    BY_KIND,
     designs_by_numbers,
     drawn,
     exported,
@@ -40,7 +41,6 @@ from support.own_kinds import (
     on_the_page,
     own_outputs,
     read_back,
-    refused_by_formats,
     scripted,
     with_own,
 )
@@ -59,7 +59,6 @@ class Rollers(Turning):
     group = "rollers"
     heading = Note("Rollers")
     counted = "{count} pairs of rollers"
-    special = "pair of rollers"
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"start", "lean"}}
 
     radii: tuple[float, float] = key(
@@ -213,8 +212,14 @@ def test_the_gallery_is_searched_by_its_word() -> None:
     assert sections(Rolled)[2].lower() == "gears, belts, racks, cams, rollers"
 
 
-def test_formats_without_it_say_so(tmp_path: Path) -> None:
-    refused_by_formats(MACHINE, "rollers", "pair of rollers", tmp_path)
+@pytest.mark.parametrize("name", BY_KIND)
+def test_formats_of_fixed_ratios_have_it(name: str, tmp_path: Path) -> None:
+    """As they have gears of the same ratio, but for what these are called."""
+    texts = []
+    for machine in (MACHINE, with_gear(0.0)):
+        eq.export(machine, tmp_path / "mine", name)
+        texts.append((tmp_path / "mine").read_text("utf-8"))
+    assert texts[0] == texts[1]
 
 
 def test_slope_of_its_line_is_the_tangent_of_its_lean() -> None:

@@ -6,12 +6,15 @@ import shutil
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, ClassVar
+from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
+from equipoise.exchange.formats import Job
+from equipoise.exchange.tree import Tree
 from equipoise.i18n import Note
 from equipoise.keys import TextKind, declared, key
 from equipoise.mechanism import Machine
@@ -25,6 +28,7 @@ from support.own_kinds import (
     designs_by_numbers,
     drawn,
     exported,
+    left_out_by_formats,
     machine_with,
     on_the_page,
     own_outputs,
@@ -105,6 +109,12 @@ def magnet_sign(one: Magnet, *_: Any) -> Iterator[BodyMark]:
     yield BodyMark(one.link, one.point, circle("spiral", 0j, 0.01))
 
 
+def mjcf_site(root: ET.Element, tree: Tree, _: Job) -> None:
+    """What stands for it in a file for MuJoCo."""
+    for magnet in tree.machine.magnets:  # type: ignore[attr-defined]
+        ET.SubElement(root.find("worldbody") or root, "site", name=f"magnet at {magnet.to}")
+
+
 Magnetic = machine_with(Magnet)
 
 
@@ -161,6 +171,15 @@ def test_scripts_have_it(tmp_path: Path) -> None:
 
 def test_interactive_pages_and_fmus_have_it(tmp_path: Path) -> None:
     exported(MACHINE, "magnets.1.attraction", tmp_path)
+
+
+def test_formats_write_it_as_it_says_or_leave_it_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left_out_by_formats(MACHINE, "magnets", tmp_path)
+    monkeypatch.setattr(Magnet, "exports", {"mjcf": f"{__name__}:mjcf_site"})
+    assert "magnets" not in eq.export(MACHINE, tmp_path / "mine.xml")
+    assert 'name="magnet at S"' in (tmp_path / "mine.xml").read_text("utf-8")
 
 
 def test_drawings_have_the_sign_that_it_names() -> None:

@@ -183,4 +183,4 @@ def test_the_gallery_is_searched_by_its_word() -> None:
 
 
 def test_formats_without_it_say_so(tmp_path: Path) -> None:
-    refused_by_formats(MACHINE, "straight_slots", "pin in a slot", tmp_path)
+    refused_by_formats(MACHINE, "straight_slots", tmp_path)

@@ -330,7 +330,7 @@ def test_the_guide_of_a_rack_is_hatched_away_from_its_teeth(side: Any, sense: in
 
 def test_a_file_without_racks_refuses_them(tmp_path: Path) -> None:
     given = racked(Rack("rocker", "ram", 0.07, "left"))
-    with refusals.refused(UsageError, place="racks[1]", special="rack"):
+    with refusals.refused(UsageError, place="racks[1]", special="racks"):
         eq.export(given, tmp_path / "a.xml", format="mjcf")
     left = eq.export(belted(belt(tension=9.0)), tmp_path / "b.xml", format="mjcf")
     assert left == ("the tension of the belt crank to wheel, which its pins bear",)

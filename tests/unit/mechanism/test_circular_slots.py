@@ -216,7 +216,7 @@ def test_pins_in_slots_have_radii_and_formats_without_slots_refuse(tmp_path: Pat
     with refused(ModelError, "joints[1].joint", given="joints.centre of C in frame"):
         assemble(replace(MACHINE, joints=(replace(joint, joint="joints.centre of C in frame"),)))
     for ending in ("xml", "urdf", "mo", "py"):
-        with refused(UsageError, special="pin in a slot"):
+        with refused(UsageError, special="circular slots"):
             eq.export(MACHINE, tmp_path / f"mine.{ending}")
     assert not [*tmp_path.iterdir()]
 

@@ -456,7 +456,7 @@ def test_a_slot_is_as_wide_as_its_pin() -> None:
 
 def test_formats_without_it_say_so(tmp_path: Path) -> None:
     for ending in ("xml", "urdf", "mo", "py"):
-        with refused(UsageError, special="pin in a slot"):
+        with refused(UsageError, special="curved slots"):
             eq.export(in_curve(circle(12)), tmp_path / f"mine.{ending}")
     assert not [*tmp_path.iterdir()]
 

@@ -40,11 +40,15 @@ class Bushing(BetweenPoints, RatedElement):
 
     cause = "bushing"
     cause_label = to_say("bushings")
-    special = to_say("bushing")
     legend = ("bushing", to_say("bushing"))
     sign = "equipoise.symbols.bushings:bushing_sign"
     title = to_say("Bushings, each with its crank angle; forces and torques on the link")
     group = to_say("bushings")
+    exports: ClassVar[Mapping[str, str]] = {
+        "mjcf": "equipoise.exchange.mjcf:bushings",
+        "exudyn": "equipoise.exchange.exudyn:bushings",
+        "modelica": "equipoise.exchange.modelica:bushings",
+    }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
         "along": ("length", to_say("deflection along bushing {name}")),
         "across": ("length", to_say("deflection across bushing {name}")),

@@ -49,9 +49,9 @@ class Cam(Coupling):
         **{(law,): {"between", "values", "phase"} for law in ("lift", "swing")},
         **{(law, "segments", int): {"to"} for law in ("lift", "swing")},
     }
-    special = "cam"
     contact = "surface"
     touch = to_say("cam")
+    exports: ClassVar[Mapping[str, str]] = {"dxf": "equipoise.exchange.dxf:roller_paths"}
     legend = ("cam", to_say("cams"))
     tables: ClassVar[Mapping[str, str]] = {"motion": "equipoise.results.cam_blocks:cam_blocks"}
     counted = to_say("{count} cams")
@@ -124,6 +124,10 @@ class Cam(Coupling):
         "towards the follower's pivot",
         default="left",
     )
+
+    @property
+    def has_formula(self) -> bool:
+        return False
 
     @property
     def points(self) -> tuple[tuple[str, str], ...]:

@@ -341,6 +341,10 @@ class Turning(Coupling):
     }
     heading: ClassVar[Note]
 
+    @property
+    def in_fixed_ratio(self) -> bool:
+        return not self.varies
+
     driver: str = inside(TextKind())
     driven: str = inside(TextKind())
     carrier: str = key(

@@ -51,11 +51,15 @@ class Damper(BetweenPoints, Damping):
     conditions: ClassVar[Conditions] = one_law("damping", ("speeds", "forces"))
 
     lists = ("speeds", "forces")
-    special = to_say("damper")
     legend = ("damper", to_say("damper"))
     sign = "equipoise.symbols.dampers:damper_sign"
     title = to_say("Dampers, each with its crank angle; above 0 they pull and lengthen")
     group = to_say("dampers")
+    exports: ClassVar[Mapping[str, str]] = {
+        "mjcf": "equipoise.exchange.mjcf:dampers",
+        "exudyn": "equipoise.exchange.exudyn:dampers",
+        "modelica": "equipoise.exchange.modelica:dampers",
+    }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
         "pull": ("force", to_say("pull of damper {name}")),
         "speed": ("speed", to_say("speed of damper {name}")),

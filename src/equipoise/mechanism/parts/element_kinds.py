@@ -8,7 +8,9 @@ arithmetic, so that it runs on arrays and on terms alike.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from equipoise.i18n import Note
@@ -74,8 +76,8 @@ class PartKind(Frozen):
         the part is dragged on a drawing; empty where none is.
     tables : ``module:function`` that shows what an analysis says of all parts of the kind, by the
         chapter in which that stands, ``motion`` or ``joints``.
-    special : what it is called by formats of other programs, some of which lack it; empty of what
-        all have.
+    exports : ``module:function`` that writes all parts of the kind into a file, by the name of a
+        format whose code knows kinds of parts.
     """
 
     list_name: ClassVar[str]
@@ -83,10 +85,10 @@ class PartKind(Frozen):
     order: ClassVar[int] = 99
     most: ClassVar[int] = 200
     group: ClassVar[str]
-    special: ClassVar[Any] = ""
     sign: ClassVar[str] = ""
     dragged: ClassVar[str] = ""
     tables: ClassVar[Mapping[str, str]] = {}
+    exports: ClassVar[Mapping[str, str]] = {}
     legend: ClassVar[tuple[str, str] | None] = None
 
     @property
@@ -113,6 +115,21 @@ class PartKind(Frozen):
     @abstractmethod
     def label(self) -> Note:
         """Label that distinguishes it from others of its kind."""
+
+    @property
+    def special(self) -> str:
+        """What it is called where a format lacks it."""
+        return self.group
+
+    @property
+    def in_fixed_ratio(self) -> bool:
+        """Whether it does nothing but turn two links in a fixed ratio, which any format has."""
+        return False
+
+    @property
+    def has_formula(self) -> bool:
+        """Whether its motion has a formula, for formats that evaluate no tables and laws."""
+        return True
 
     @abstractmethod
     def sentence(self) -> Note:
@@ -167,6 +184,14 @@ class Element(PartKind):
     @abstractmethod
     def summary(self) -> str:
         """What it is with all its numbers, in a line of `check`."""
+
+
+@cache
+def named_function(name: str) -> Callable[..., Any]:
+    """The function that a kind of part names as ``module:function``."""
+    module, _, function = name.partition(":")
+    named: Callable[..., Any] = getattr(import_module(module), function)
+    return named
 
 
 @once

@@ -212,7 +212,15 @@ class Gear(Turning):
 
     @property
     def special(self) -> str:
-        return "gears of varying ratio" if self.shape else ""
+        return to_say("gears of varying ratio") if self.shape else self.group
+
+    @property
+    def in_fixed_ratio(self) -> bool:
+        return self.shape is None
+
+    @property
+    def has_formula(self) -> bool:
+        return self.shape is None
 
     def circles(self, distance: Callable[[], Any]) -> Iterator[tuple[str, Any]]:
         """Both gears."""

@@ -71,7 +71,6 @@ class JointKind(Element):
     base : the field that names the point of `on` from which the path is given.
     """
 
-    special = "pin in a slot"
     base: ClassVar[str]
 
     link: str = key(TextKind(of="link"), "the link that has the pin", example="arm")

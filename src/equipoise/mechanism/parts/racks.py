@@ -44,7 +44,6 @@ class Rack(Coupling):
     group = to_say("racks")
     loses = True
     columns: ClassVar[Mapping[PathPattern, Set[str]]] = {(): {"angle", "travel", "pressure_angle"}}
-    special = "rack"
     counted = to_say("{count} racks")
 
     pinion: str = key(TextKind(of="body"), "link that turns", example="rocker")

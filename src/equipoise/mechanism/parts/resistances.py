@@ -79,11 +79,15 @@ class Resistance(BetweenPoints, TableRows, RatedElement):
 
     cause = "resistance"
     cause_label = to_say("resistances")
-    special = to_say("resistance")
     legend = ("resistance", to_say("resistance"))
     sign = "equipoise.symbols.resistances:resistance_sign"
     title = to_say("Resistances, each with its crank angle")
     group = to_say("resistances")
+    exports: ClassVar[Mapping[str, str]] = {
+        "mjcf": "equipoise.exchange.mjcf:resistances",
+        "exudyn": "equipoise.exchange.exudyn:resistances",
+        "modelica": "equipoise.exchange.modelica:resistances",
+    }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
         "force": ("force", to_say("force of resistance {name}")),
         "speed": ("speed", to_say("speed of resistance {name}")),

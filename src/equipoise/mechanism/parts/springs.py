@@ -78,6 +78,11 @@ class Spring(BetweenPoints, RowLaw, ForceElement):
 
     title = to_say("Springs, each with its crank angle; below 0 they push their ends apart")
     group = to_say("springs")
+    exports: ClassVar[Mapping[str, str]] = {
+        "mjcf": "equipoise.exchange.mjcf:springs",
+        "exudyn": "equipoise.exchange.exudyn:springs",
+        "modelica": "equipoise.exchange.modelica:springs",
+    }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
         "pull": ("force", to_say("pull of spring {name}")),
         "length": ("length", to_say("length of spring {name}")),

@@ -52,11 +52,15 @@ class Stop(BetweenPoints, RatedElement):
 
     cause = "stop"
     cause_label = to_say("stops")
-    special = to_say("stop")
     legend = ("stop", to_say("stop"))
     sign = "equipoise.symbols.stops:stop_sign"
     title = to_say("Stops, each with its crank angle; a gap below 0 is pressed in")
     group = to_say("stops")
+    exports: ClassVar[Mapping[str, str]] = {
+        "mjcf": "equipoise.exchange.mjcf:stops",
+        "exudyn": "equipoise.exchange.exudyn:stops",
+        "modelica": "equipoise.exchange.modelica:stops",
+    }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
         "force": ("force", to_say("force of stop {name}")),
         "gap": ("length", to_say("gap of stop {name}")),

@@ -47,11 +47,15 @@ class TorsionDamper(BetweenBodies, Damping):
     conditions: ClassVar[Conditions] = one_law("damping", ("speeds", "torques"))
 
     lists = ("speeds", "torques")
-    special = to_say("torsion damper")
     legend = ("vane", to_say("torsion damper"))
     sign = "equipoise.symbols.dampers:torsion_damper_sign"
     title = to_say("Torsion dampers, each with its crank angle; torques on the link")
     group = to_say("torsion dampers")
+    exports: ClassVar[Mapping[str, str]] = {
+        "mjcf": "equipoise.exchange.mjcf:torsion_dampers",
+        "exudyn": "equipoise.exchange.exudyn:torsion_dampers",
+        "modelica": "equipoise.exchange.modelica:torsion_dampers",
+    }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
         "torque": ("torque", to_say("torque of torsion damper {name}")),
         "speed": ("angular speed", to_say("speed of torsion damper {name}")),

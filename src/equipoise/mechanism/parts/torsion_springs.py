@@ -61,6 +61,10 @@ class TorsionSpring(BetweenBodies, RowLaw, ForceElement):
     sign = "equipoise.symbols.torsion_springs:torsion_sign"
     title = to_say("Torsion springs, each with its crank angle; torques on the link")
     group = to_say("torsion springs")
+    exports: ClassVar[Mapping[str, str]] = {
+        "mjcf": "equipoise.exchange.mjcf:torsion_springs",
+        "modelica": "equipoise.exchange.modelica:torsion_springs",
+    }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
         "torque": ("torque", to_say("torque of torsion spring {name}")),
         "angle": ("angle", to_say("angle of torsion spring {name}")),
