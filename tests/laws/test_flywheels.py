@@ -241,7 +241,7 @@ def test_shares(given: float | str, share: float) -> None:
 
 @pytest.mark.parametrize("given", ["two", "0 %", "100 %", -0.1, "nan", "2 rpm", ""])
 def test_what_is_no_share_is_refused(given: float | str) -> None:
-    with pytest.raises(UsageError, match="for fluctuation; give more than 0 and less than 1"):
+    with refused(UsageError, given=given):
         eq.run(subject_of("transplanter").machine, fluctuation=given)
 
 

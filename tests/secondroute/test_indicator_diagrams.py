@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
-from equipoise.errors import EquipoiseError, UsageError
+from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.loads import load_at, work_in_cycle
 from equipoise.mechanism.kinematics.indicators import loads_of
@@ -135,7 +135,7 @@ def test_a_compiled_study_has_the_same_torque() -> None:
     heavier = machine.with_link("piston", mass=0.4)
     torque = eq.analyze(heavier, angles=720).summary["drive_torque"]
     assert found[0] == pytest.approx(torque.rms, rel=1e-9)
-    with pytest.raises(UsageError, match="indicator diagram"):
+    with refused(UsageError, by="Batch.__init__"):
         Batch(machine, ["links.rod.points.C.x"], [figure])
     with refused(UsageError, paths="loads[1].back_pressure"):
         Batch(machine, ["loads[1].back_pressure"], [figure])(np.array([[BAR]]))
@@ -159,27 +159,24 @@ def test_a_file_is_written_and_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "at", "words"),
+    ("change", "at", "expected"),
     [
-        ({"bore": 0.07}, "loads[1].indicator", "span 196.1 cm³, and the piston sweeps"),
-        ({"bore": None}, "loads[1].bore", "missing"),
-        ({"axes": None}, "loads[1].axes", "along its slider"),
-        ({"torque": 1.0}, "loads[1]", "exactly one"),
-        ({"indicator": diagram(FOUR[:2])}, "loads[1].indicator", "got 2 rows"),
+        ({"bore": 0.07}, "loads[1].indicator", {"given": "196.1 cm³"}),
+        ({"bore": None}, "loads[1].bore", {}),
+        ({"axes": None}, "loads[1].axes", {}),
+        ({"torque": 1.0}, "loads[1]", {}),
+        ({"indicator": diagram(FOUR[:2])}, "loads[1].indicator", {"rows": 2}),
         ({"indicator": IndicatorDiagram((1.0, 1.0, 1.0), (1.0, 2.0, 3.0))}, "loads[1].indicator",
-         "at one place"),
+         {}),
         ({"indicator": diagram(BACKWARD)}, "loads[1].indicator",
-         "row 3: the diagram turns back at 104.4 cm³, which is no dead centre of the piston "
-         "(26.00 cm³, 222.1 cm³)"),
+         {"row": 3, "by": "_by_angle"}),
         ({"indicator": diagram(BACKWARD, "position")}, "loads[1].indicator",
-         "row 3: the diagram turns back at 23.60 mm, which is no dead centre of the piston "
-         "(2.000 mm, 56.00 mm)"),
+         {"row": 3, "by": "_by_angle"}),
         ({"indicator": diagram([*FOUR[:5], (0.05, 30.0), (0.02, 30.0), *FOUR[5:]])},
-         "loads[1].indicator", "row 6: the diagram turns back at 35.81 cm³"),
+         "loads[1].indicator", {"row": 6}),
     ],
 )  # fmt: skip
-def test_what_is_refused(change: dict[str, object], at: str, words: str) -> None:
+def test_what_is_refused(change: dict[str, object], at: str, expected: dict[str, Any]) -> None:
     machine = machine_of(diagram(FOUR))
-    with pytest.raises(EquipoiseError, match=re.escape(words)) as error:
+    with refused(ModelError, at, **expected):
         eq.analyze(replace(machine, loads=(replace(machine.loads[0], **change),)))
-    assert at in str(error.value)

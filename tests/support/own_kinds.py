@@ -65,17 +65,22 @@ def with_own(of: type[Made], base: Machine, **own: Any) -> Made:
     return of(**{one.name: getattr(base, one.name) for one in fields(Machine)} | own)
 
 
-def read_back(machine: Machine, table: str, rows: str, slip: tuple[str, str], refusal: str) -> None:
-    """It is written with these rows, read again, and refused with a slip in them, or too many."""
+def read_back(
+    machine: Machine, table: str, rows: str, slip: tuple[str, str], place: str, name: str
+) -> None:
+    """It is written with these rows, read again, and refused with a slip in them, or too many.
+
+    place, name : of the refusal of the slip.
+    """
     kind = type(machine)
     text = toml_text(kind, Writer({}).content(kind, machine))
     assert rows in text
     assert read_table(kind, tomllib.loads(text), Context()) == machine
     wrong = text.replace(rows, rows.replace(*slip))
     assert wrong != text
-    with pytest.raises(ModelError, match=refusal):
+    with refused(ModelError, place, name=name):
         read_table(kind, tomllib.loads(wrong), Context())
-    with pytest.raises(ModelError, match=rf"^{table}: got 201"):
+    with refused(ModelError, table, items=201):
         replace(machine, **{table: getattr(machine, table)[:1] * 201})
 
 

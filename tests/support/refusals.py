@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import isclose
+from traceback import walk_tb
 from typing import Any, TypeVar
 
 import pytest
@@ -31,14 +32,26 @@ def has_value(note: Note, name: str, wanted: object) -> bool:
     return str(wanted) in texts
 
 
+def refusing_functions(error: BaseException) -> Iterator[str]:
+    """Names of the functions that raised an error and its causes, with and without their class."""
+    cause: BaseException | None = error
+    while cause is not None:
+        *_, (frame, _) = walk_tb(cause.__traceback__)
+        name = frame.f_code.co_qualname
+        yield from {name, name.rpartition(".")[2]}
+        cause = cause.__cause__
+
+
 @contextmanager
 def refused(
-    kind: type[Refusal], where: str | None = None, /, **values: Any
+    kind: type[Refusal], where: str | None = None, /, *, by: str | None = None, **values: Any
 ) -> Iterator[pytest.ExceptionInfo[Refusal]]:
     """Expect a refusal.
 
-    where : its place in a file, of a `ModelError`; any if None.  values : those that its sentence
-    has by these names, or a sentence in it; it may have more.
+    where : its place in a file, of a `ModelError`; any if None.  by : the function that refuses,
+    where neither a place nor a value says which refusal it is.  values : those that its sentence
+    has by these names, or a sentence in it; it may have more; `place` is also that of a
+    `ModelError`.
     """
     with pytest.raises(kind) as caught:
         yield caught
@@ -46,5 +59,9 @@ def refused(
     if where is not None:
         assert isinstance(error, ModelError)
         assert error.where == where, error
+    if by is not None:
+        assert by in refusing_functions(error), [*refusing_functions(error)]
+    if isinstance(error, ModelError) and values.get("place") == error.where:
+        del values["place"]
     missing = {k: value for k, value in values.items() if not has_value(error.note, k, value)}
     assert missing == {}, f"{error}: {[*values_of(error.note)]}"

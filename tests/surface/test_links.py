@@ -172,7 +172,7 @@ def test_a_number_that_leads_out_of_the_store_names_no_file(outside: Outside) ->
 def test_pages_list_and_open_no_store_through_a_link(outside: Outside, made: Path) -> None:
     planted(STORE / "zarr.json", made / "zarr.json")
     assert stores_in(Path()) == []
-    with pytest.raises(UsageError, match="is a link"):
+    with refusals.refused(UsageError, place="lengths.zarr"):
         StoreDesk.load(str(STORE))
 
 
@@ -683,7 +683,7 @@ def test_saving_in_place_follows_no_link_that_was_put_there(outside: Outside) ->
     Path("twin").mkdir()
     Path("twin/mine.toml").write_text(MODEL)
     Path("sub").symlink_to(Path("twin").resolve())
-    with pytest.raises(UsageError, match="is a link"):
+    with refusals.refused(UsageError, place=str(Path("sub/mine.toml").absolute())):
         disk.save(disk.model)
     assert Path("twin/mine.toml").read_text() == MODEL
 

@@ -110,7 +110,7 @@ def test_refusals() -> None:
         conditions(lone(), "none")  # type: ignore[arg-type]
     with refused(UsageError, name="shaking_force"):
         conditions(lone(), "zero", ["shaking_forces"])
-    with pytest.raises(UsageError, match="at least one output"):
+    with refused(UsageError, by="conditions"):
         conditions(lone(), "zero", [])
     bare = lone().with_link("crank", mass=None, center_of_mass=None, inertia=None)
     with refused(MassError, links="crank"):

@@ -160,7 +160,7 @@ def test_orders_that_there_are_not(order: float) -> None:
         moves=(CenterMove("coupler"),),
         objectives=(Objective("shaking_force.y", orders=(order,)),),
     )
-    with pytest.raises(UsageError, match=f"there is no order {order:g}"):
+    with refused(UsageError, order=order):
         eq.balance(MACHINE, plan)
 
 
@@ -326,7 +326,7 @@ def test_progress_is_told() -> None:
 def test_what_cannot_be_traded() -> None:
     with refused(UsageError, name="peak of shaking_force"):
         trade_off(MACHINE, FORCE, replace(FORCE, weight=2.0), PLAN)
-    with pytest.raises(UsageError, match="not drawn over phases"):
+    with refused(UsageError, by="trade_off"):
         trade_off(MACHINE, FORCE, TORQUE, replace(PLAN, phases=Phases()))
     everything = tuple(float(order) for order in range(100))
     with refused(UsageError, name="peak of shaking_force"):
@@ -334,5 +334,5 @@ def test_what_cannot_be_traded() -> None:
 
 
 def test_nothing_free() -> None:
-    with pytest.raises(UsageError, match="no change is permitted"):
+    with refused(UsageError, by="_checked"):
         trade_off(MACHINE, FORCE, TORQUE)

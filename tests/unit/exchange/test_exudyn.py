@@ -120,9 +120,9 @@ def test_a_constant_load(tmp_path: Path) -> None:
 
 def test_what_a_planar_model_cannot_hold(tmp_path: Path) -> None:
     path = tmp_path / "x.py"
-    with pytest.raises(eq.EquipoiseError, match="support moves out of the plane"):
+    with refused(eq.EquipoiseError, by="_support"):
         eq.export(eq.load("riding-transplanter"), path)
-    with pytest.raises(eq.EquipoiseError, match="the drive stands still"):
+    with refused(eq.EquipoiseError, by="_model"):
         eq.export(eq.load("yamashita-1").with_drive(speed=0.0), path)
     belted = make("belted_coupler", 1).machine
     with refused(eq.EquipoiseError, noun="belt", name="crank to wheel"):

@@ -85,7 +85,7 @@ def test_a_library_that_is_not_installed(
     library = FORMATS[name].needs
     monkeypatch.setitem(sys.modules, library, None)
     path = tmp_path / f"x{FORMATS[name].ending}"
-    with pytest.raises(eq.EquipoiseError, match=rf"needs {library}, .*equipoise\[exchange\]"):
+    with refused(eq.EquipoiseError, library=library):
         eq.export(MACHINE, path)
     assert not path.exists()
 
@@ -107,7 +107,7 @@ def test_joints_that_a_format_lacks(name: str) -> None:
 
 
 def test_what_is_no_format(tmp_path: Path) -> None:
-    with pytest.raises(eq.EquipoiseError, match=r"got .*x\.xmll'; give the name of a file that"):
+    with refused(eq.EquipoiseError, given=str(tmp_path / "x.xmll")):
         eq.export(MACHINE, tmp_path / "x.xmll")
     with refused(eq.EquipoiseError, given="mjfc", name="mjcf"):
         eq.export(MACHINE, tmp_path / "x.xml", "mjfc")

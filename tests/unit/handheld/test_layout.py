@@ -312,9 +312,8 @@ def test_what_shakes_too_fast_for_a_shaft_is_refused() -> None:
     while len(Layout(tool, highest).cells) <= 110:
         highest *= 1.2
     tool = shaken(tool, Excitation("e", "a", force=1.0))
-    sentence = r"shaft: at .* Hz its waves are some .* m long, too short for 1.5 m; check its"
     for run in (respond_tool, lambda tool, speed: speeds_between(tool, 1.0, speed)):
-        with pytest.raises(ModelError, match=sentence):
+        with refused(ModelError, "shaft", length=1.5):
             run(tool, highest)
     with refused(ModelError, "shaft", length=1.5):
         Layout(tool, 1e3 * highest).cells  # noqa: B018

@@ -113,7 +113,7 @@ def test_size_of_the_chart() -> None:
 
 @pytest.mark.parametrize("highest", [0.0, -3.0, np.nan])
 def test_no_chart(highest: float) -> None:
-    with pytest.raises(UsageError, match="give more than 0"):
+    with refused(UsageError, highest=str(highest)):
         determinant_chart(bare(), highest)
 
 

@@ -306,7 +306,7 @@ def test_nothing_within_the_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     variables = PLANS["masses"].variables[:1]
     limits = (DesignLimit("force", 1e-3, "belt"),)
     plan = replace(PLANS["masses"], variables=variables, limits=limits)
-    with pytest.raises(ResponseError, match="no design within the limits was found"):
+    with refused(ResponseError, by="solve"):
         design_tool(brush_cutter(plan))
 
 

@@ -129,8 +129,7 @@ outputs = own_outputs(Rolled)
 
 def test_it_is_read_written_and_refused() -> None:
     rows = f'between = ["{GEAR.driver}", "{GEAR.driven}"]\n'
-    slip = r"^rollers\[1\]\.between\[1\]: .* did you mean 'rocker'"
-    read_back(MACHINE, "rollers", rows, ("rocker", "rockr"), slip)
+    read_back(MACHINE, "rollers", rows, ("rocker", "rockr"), "rollers[1].between[1]", "rocker")
     with refused(ModelError, "rollers[1]"):
         eq.move(rolled(replace(ROLLERS, driver=GEAR.driven, driven="crank")))
     with refused(MobilityError, mobility="2"):

@@ -112,18 +112,24 @@ def test_a_jump_of_acceleration_is_noted_and_is_no_place_without_effect():
 
 
 @pytest.mark.parametrize(
-    ("drives", "told"),
+    ("drives", "expected"),
     [
-        ((FurtherDrive("follower", ratio=pi),), r"drives\[1\].ratio: got 3.14159"),
-        ((FurtherDrive("follower", ratio=-0.1428571),), r"such as -0.14285714285714285 for -1/7"),
-        ((FurtherDrive("crank"),), r"drives\[1\].link: 'crank' has a drive already"),
-        ((FurtherDrive("nobody"),), r"drives\[1\].link: no link is called 'nobody'"),
-        ((FurtherDrive("follower", 2.0, motion=SWING),), "give either motion, or ratio and start"),
-        ((FurtherDrive("follower", motion=AngleLaw()),), r"drives\[1\].motion: give exactly one"),
+        (
+            (FurtherDrive("follower", ratio=pi),),
+            {"place": "drives[1].ratio", "most": 100, "fraction": "311/99"},
+        ),
+        (
+            (FurtherDrive("follower", ratio=-0.1428571),),
+            {"place": "drives[1].ratio", "fraction": "-1/7", "ratio": -0.142857},
+        ),
+        ((FurtherDrive("crank"),), {"place": "drives[1].link", "link": "crank"}),
+        ((FurtherDrive("nobody"),), {"place": "drives[1].link", "given": "nobody"}),
+        ((FurtherDrive("follower", 2.0, motion=SWING),), {"place": "drives[1]"}),
+        ((FurtherDrive("follower", motion=AngleLaw()),), {"place": "drives[1].motion"}),
     ],
 )
-def test_a_wrong_drive_is_told(drives, told):
-    with pytest.raises(ModelError, match=told):
+def test_a_wrong_drive_is_told(drives, expected):
+    with refused(ModelError, **expected):
         five_bar(drives=drives)
 
 
@@ -145,7 +151,7 @@ def test_drives_that_are_too_many_or_hang_nowhere_are_told():
 
 def test_what_turns_with_a_crank_goes_with_no_motion():
     for name, given in (("flywheel", 0.2), ("motor", Motor(300.0, 2.0))):
-        with pytest.raises(ModelError, match=f"drive.{name}: turns with the crank"):
+        with refused(ModelError, f"drive.{name}"):
             eq.load("yamashita-1").with_drive(motion=SWING, **{name: given})
 
 
@@ -153,7 +159,7 @@ def test_models_in_which_the_crank_turns_the_support_are_refused():
     machine = eq.load("yamashita-rig")
     machine = machine.with_drive(motion=SWING, motor=None, flywheel=0.0)
     for model in ("torque", "coupled", "exact"):
-        with pytest.raises(UsageError, match=f"the {model} model is for one crank that turns"):
+        with refused(UsageError, value=model):
             eq.respond(machine, model=model)
     assert eq.respond(machine, model="moment").gauges
 

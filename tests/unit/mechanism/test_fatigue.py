@@ -15,6 +15,7 @@ from equipoise.mechanism.dynamics.link_stress import (
     damage,
     rainflow,
 )
+from support.refusals import refused
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -71,5 +72,5 @@ def test_a_part_that_breaks_at_once_has_used_up_any_life() -> None:
 
 @pytest.mark.parametrize("load", [[], [1.0, float("nan")], [[1.0, 2.0]]])
 def test_what_cannot_be_counted_is_refused(load: list[float]) -> None:
-    with pytest.raises(UsageError, match="needs a list of finite numbers"):
+    with refused(UsageError, by="rainflow"):
         rainflow(np.array(load))

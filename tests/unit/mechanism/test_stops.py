@@ -116,7 +116,7 @@ def test_a_body_leaves_with_the_restitution(restitution: float, speed: float) ->
 
 def test_it_is_read_written_and_refused() -> None:
     rows = '[[stops]]\nlink = "rocker"\npoint = "F"\nto = "S"\n'
-    read_back(MACHINE, "stops", rows, ("rocker", "rockr"), r"^stops\[1\]\.link: .* 'rocker'")
+    read_back(MACHINE, "stops", rows, ("rocker", "rockr"), "stops[1].link", "rocker")
 
 
 def test_loops_and_scripts_have_them(tmp_path: Path) -> None:

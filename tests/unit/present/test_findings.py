@@ -18,6 +18,7 @@ from equipoise.present.pictures import SECTIONS, LazyPicture, each, pictures
 from equipoise.quantities import PER_RPM
 from equipoise.results.blocks import SvgPicture
 from equipoise.running.run import Run
+from support.refusals import refused
 from surface.running import example_text
 
 
@@ -142,5 +143,5 @@ def test_a_tool_is_found_at_another_speed() -> None:
 
 
 def test_a_study_is_refused() -> None:
-    with pytest.raises(EquipoiseError, match="this is a study"):
+    with refused(EquipoiseError, place="study-of-lengths.toml"):
         find("study-of-lengths")

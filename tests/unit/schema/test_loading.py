@@ -127,7 +127,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
 def test_pipes_and_devices_do_not_hang(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", "/dev/zero"):
-        with pytest.raises(ModelError, match="no regular file"):
+        with refused(ModelError, place=str(path)):
             load(path)
 
 
@@ -135,7 +135,7 @@ def test_pipes_and_devices_do_not_hang(tmp_path: Path) -> None:
 def test_forbidden_file(tmp_path: Path) -> None:
     path = tmp_path / "model.toml"
     path.touch(mode=0)
-    with pytest.raises(ModelError, match="may not be read"):
+    with refused(ModelError, place=str(path)):
         load(path)
 
 
@@ -226,5 +226,5 @@ def test_a_file_beside_that_is_spelt_alike_is_suggested(
     for name in ("sieve-2", "siev-2.toml"):
         with refused(ModelError, name="sieve-2.toml"):
             load(name)
-    with pytest.raises(ModelError, match="there is no such file; give a path, or the name of an"):
+    with refused(ModelError, place="nothing-at-all"):
         load("nothing-at-all")

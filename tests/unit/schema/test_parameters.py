@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -91,8 +91,7 @@ def test_studies_vary_parameters(tmp_path: Path) -> None:
         "parameters.base": "4*crank", "links.rod.mass": "weight", "frame.points.D.x": "base",
         "frame.points.D.direction": "base", "links.rod.center_of_mass.x": "(base + 10 mm)/2",
     }.items():  # fmt: skip
-        what = f"{path} is worked out by '={expression}'; let a parameter in it vary"
-        with pytest.raises(ModelError, match=re.escape(what)):
+        with refused(ModelError, path, expression=f"={expression}"):
             template.number(path)
     with refused(ModelError, "parameters.crnk", name="parameters.crank"):
         template.number("parameters.crnk")
@@ -161,25 +160,25 @@ def test_two_forms_of_one_name_are_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("old", "new", "expected"),
     [
-        ('"30 mm"', '"=crank"', "parameters.crank: is worked out from itself: crank → crank"),
-        ('"30 mm"', '"=base/4"', "parameters.base: is worked out from itself: base → crank → base"),
-        ('"30 mm"', '"30mm"', "parameters.crank: got '30mm'; put a space between"),
-        ('"30 mm"', "true", "parameters.crank: got true; give a quantity"),
-        ("crank = ", "mm = ", "parameters.mm: mm is a unit; give another name"),
-        ("crank = ", '"a b" = ', 'parameters."a b": got .a b.; give letters, digits'),
-        ('"=weight"', '"=wieght"', "links.rod.mass: .*no parameter is called 'wieght'; did you"),
-        ('"=weight"', '"=crank"', "links.rod.mass: .*which gives a length; give a mass"),
-        ('"=weight"', '"=weight*weight"', "links.rod.mass: .* no sum or product that gives a mass"),
-        ('"=weight"', '"=0*weight - 1 g"', "links.rod.mass: got -1 g; a mass cannot be neg"),
-        ('"=weight"', '"2*weight"', "links.rod.mass: .*begin an expression with =: '=2[*]weight'"),
-        ('"=weight"', '"weight"', "links.rod.mass: .*begin an expression with =: '=weight'"),
-        ('"=weight"', '"=9**9**9"', "links.rod.mass: .* no sum or product that gives a mass"),
-        ('"=weight"', '"=weight/(base - 4*crank)"', "links.rod.mass: .*which divides by 0"),
+        ('"30 mm"', '"=crank"', {"place": "parameters.crank"}),
+        ('"30 mm"', '"=base/4"', {"place": "parameters.base"}),
+        ('"30 mm"', '"30mm"', {"place": "parameters.crank", "number": "30", "unit": "mm"}),
+        ('"30 mm"', "true", {"place": "parameters.crank", "given": "true"}),
+        ("crank = ", "mm = ", {"place": "parameters.mm", "name": "mm"}),
+        ("crank = ", '"a b" = ', {"place": 'parameters."a b"', "name": "a b"}),
+        ('"=weight"', '"=wieght"', {"place": "links.rod.mass", "name": "weight"}),
+        ('"=weight"', '"=crank"', {"place": "links.rod.mass", "text": "=crank"}),
+        ('"=weight"', '"=weight*weight"', {"place": "links.rod.mass", "unit": "g"}),
+        ('"=weight"', '"=0*weight - 1 g"', {"place": "links.rod.mass", "text": "-1 g"}),
+        ('"=weight"', '"2*weight"', {"place": "links.rod.mass", "right": "=2*weight"}),
+        ('"=weight"', '"weight"', {"place": "links.rod.mass", "right": "=weight"}),
+        ('"=weight"', '"=9**9**9"', {"place": "links.rod.mass", "unit": "g"}),
+        ('"=weight"', '"=weight/(base - 4*crank)"', {"place": "links.rod.mass"}),
     ],
 )  # fmt: skip
-def test_what_cannot_be_worked_out_is_refused(old: str, new: str, message: str) -> None:
+def test_what_cannot_be_worked_out_is_refused(old: str, new: str, expected: dict[str, Any]) -> None:
     assert old in FOUR_BAR
-    with pytest.raises(ModelError, match=message):
+    with refused(ModelError, **expected):
         eq.loads(FOUR_BAR.replace(old, new, 1))

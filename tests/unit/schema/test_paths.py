@@ -47,7 +47,7 @@ def test_a_path_reads_and_writes_its_value_and_leaves_the_rest() -> None:
 
 @pytest.mark.parametrize("text", ["", ".", "springs[0].x", "a..b", "a[", "[x]", 'a."b', "a]"])
 def test_what_is_no_path(text: str) -> None:
-    with pytest.raises(ModelError, match=r"give keys with points between"):
+    with refused(ModelError, text):
         KeyPath.parse(text)
 
 

@@ -13,6 +13,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.parts.machine import Drive, Link, Machine, Position
 from equipoise.mechanism.parts.support import UP
 from equipoise.schema import dumps, examples, load, loads, save
+from support.refusals import refused
 from unit.schema.samples import EVERYTHING, FOUR_BAR, changed_machine, survives
 
 size = st.floats(1e-25, 1e25)
@@ -103,15 +104,15 @@ def test_saving_goes_through_a_link(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "words"),
+    ("name", "reason"),
     [
-        ("missing/model.toml", "cannot be written"),
-        (".", "this is a directory"),
-        ("nu\0ll.toml", "cannot be written"),
+        ("missing/model.toml", {"reason": "no such file or directory"}),
+        (".", {}),
+        ("nu\0ll.toml", {"reason": "embedded null byte"}),
     ],
 )
-def test_places_that_cannot_be_written(tmp_path: Path, name: str, words: str) -> None:
-    with pytest.raises(UsageError, match=words):
+def test_places_that_cannot_be_written(tmp_path: Path, name: str, reason: dict[str, str]) -> None:
+    with refused(UsageError, **reason):
         save(loads(FOUR_BAR), tmp_path / name)
     assert not list(tmp_path.iterdir())
 
@@ -126,7 +127,7 @@ def test_an_interrupted_save_leaves_the_old_file(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("os.fsync", full)
-    with pytest.raises(UsageError, match="no space left on device"):
+    with refused(UsageError, reason="no space left on device"):
         save(replace(loads(FOUR_BAR), title="New"), path)
     assert path.read_text() == FOUR_BAR
     assert [file.name for file in tmp_path.iterdir()] == ["model.toml"]

@@ -12,6 +12,7 @@ from equipoise.design.requirements import Requirement
 from equipoise.errors import ModelError
 from equipoise.planting.search import figure_names
 from equipoise.schema.targets import SearchTable, Targets, read_targets
+from support.refusals import refused
 
 KNOWN = figure_names(eq.load("kim-chung-a"))
 
@@ -121,5 +122,5 @@ def test_wrong_files(tmp_path: Path, text: str, said: str) -> None:
 
 
 def test_no_file(tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="there is no such file"):
+    with refused(ModelError, by="in_file"):
         read_targets(tmp_path / "none.toml", KNOWN)

@@ -299,7 +299,7 @@ def test_values_that_cannot_be(values: dict[str, Any], said: str) -> None:
 def test_planes_and_both() -> None:
     values = {"shaft.stations[5].inertia": 1.0, "shaft.stations[5].inertia.vertical": 2.0}
     for given in (values, dict(reversed(values.items()))):
-        with pytest.raises(ModelError, match="varies already"):
+        with refused(ModelError, path=[*given][-1]):
             example("brush-cutter").machine(given)
 
 

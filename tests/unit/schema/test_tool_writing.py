@@ -175,11 +175,8 @@ def test_a_file_that_would_hide_an_example(tmp_path: Path) -> None:
     assert load_tool(tmp_path / "a.toml").excitations[0].linkage == load("scotch-yoke")
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [("missing/tool.toml", "cannot be written"), (".", "this is a directory")],
-)
-def test_places_that_cannot_be_written(tmp_path: Path, name: str, words: str) -> None:
-    with pytest.raises(UsageError, match=words):
+@pytest.mark.parametrize("name", ["missing/tool.toml", "."])
+def test_places_that_cannot_be_written(tmp_path: Path, name: str) -> None:
+    with refused(UsageError, place=str(tmp_path / name)):
         save(loads_tool(TOOL), tmp_path / name)
     assert not list(tmp_path.iterdir())

@@ -232,7 +232,7 @@ def test_workers_with_other_versions_are_refused(
 def test_what_the_study_itself_raises_passes_through(address: str, tmp_path: Path) -> None:
     task = evaluator.ChunkTask(studies.refuse, b"")
     for pool in (Threads(task, 1), Cluster(task, address)):
-        with closing(pool), pytest.raises(UsageError, match="no study at 0") as caught:
+        with closing(pool), refused(UsageError) as caught:
             list(computed(pool, CHUNKS[:1]))
         assert not isinstance(caught.value, StoppedError)
 
@@ -268,7 +268,7 @@ def test_a_cluster_computes_for_a_search_and_a_map_too(
 
 def test_workers_of_this_machine_have_no_place_beside_a_cluster() -> None:
     study = load_study("study-of-balance")
-    with pytest.raises(UsageError, match="leave them out with a cluster"):
+    with refused(UsageError, by="elsewhere"):
         search(study, workers=2, cluster="tcp://127.0.0.1:9")
 
 
@@ -284,14 +284,14 @@ def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
     monkeypatch.setattr(clusters, "JOIN", 0.2)
     task = Orders(STUDY, tmp_path).task
     with scheduler(tmp_path) as (address, process):
-        with pytest.raises(StoppedError, match="has no workers; start some by: dask worker tcp"):
+        with refused(StoppedError, address=address):
             Cluster(task, address)
         monkeypatch.setattr(clusters, "JOIN", 20)
         with worker(address, tmp_path), closing(Cluster(task, address)) as pool:
             with refused(StoppedError, name="equipoise"):
                 list(computed(pool, CHUNKS))
             process.kill()
-            with pytest.raises(StoppedError, match=f"the Dask scheduler at {address} has gone"):
+            with refused(StoppedError, address=address):
                 list(computed(pool, CHUNKS))
     assert capfd.readouterr() == ("", "")
 
@@ -308,8 +308,7 @@ def test_no_scheduler_is_told_in_a_sentence(
     with socket.create_server(("127.0.0.1", 0)) as silent:
         addresses = [f"tcp://127.0.0.1:{silent.getsockname()[1]}", "tcp://127.0.0.1:9", "here", ""]
         for address in addresses:
-            told = f"^no Dask scheduler answers at {address} .*; see whether it runs"
-            with pytest.raises(StoppedError, match=told):
+            with refused(StoppedError, address=address):
                 Cluster(task, address)
     assert capfd.readouterr() == ("", "")
     assert logging.getLogger("distributed").level == level

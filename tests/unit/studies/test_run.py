@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -224,7 +225,7 @@ def test_a_file_that_the_system_refuses_is_told(
         resource.setrlimit(resource.RLIMIT_FSIZE, (500, before[1]))
 
     try:
-        with pytest.raises(UsageError, match=r"\(file too large\).*; 300 of 1000 designs are st"):
+        with refused(UsageError, brief="file too large"):
             sweep(STUDY, tmp_path / "s", workers=1, progress=after(3, refuse))
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
@@ -236,14 +237,14 @@ def test_a_folder_that_goes_is_told_and_not_made_again(tmp_path: Path) -> None:
     def remove() -> None:
         shutil.rmtree(tmp_path / "s")
 
-    with pytest.raises(UsageError, match="the folder has gone, and what was stored with it"):
+    with refused(UsageError, by="_store"):
         sweep(STUDY, tmp_path / "s", progress=after(2, remove))
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_store_is_not_overwritten_and_nothing_is_computed_for_it(tmp_path: Path) -> None:
     (tmp_path / "s").write_text("mine")
-    with pytest.raises(UsageError, match=f"is there already; .*: equipoise resume {tmp_path}/s"):
+    with refused(UsageError, place=str(tmp_path / "s"), target=str(tmp_path / "s")):
         sweep(STUDY, tmp_path / "s")
     assert (tmp_path / "s").read_text() == "mine"
 
@@ -269,15 +270,17 @@ def test_another_engine_does_not_go_on(tmp_path: Path, monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "expected"),
     [
-        ({"workers": 0}, "got 0 workers; give 1 or more"),
-        ({"workers": 2, "cluster": "tcp://127.0.0.1:9"}, "leave them out with a cluster"),
-        ({"cluster": "localhost"}, "no Dask scheduler answers at localhost .missing port number"),
+        ({"workers": 0}, {"workers": 0}),
+        ({"workers": 2, "cluster": "tcp://127.0.0.1:9"}, {"by": "elsewhere"}),
+        ({"cluster": "localhost"}, {"by": "_counted"}),
     ],
 )
-def test_what_cannot_be_asked_makes_no_store(tmp_path: Path, given, told: str) -> None:
-    with pytest.raises(UsageError, match=told):
+def test_what_cannot_be_asked_makes_no_store(
+    tmp_path: Path, given, expected: dict[str, Any]
+) -> None:
+    with refused(UsageError, **expected):
         sweep(STUDY, tmp_path / "s", **given)
     assert not (tmp_path / "s").exists()
 

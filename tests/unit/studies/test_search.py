@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from typing import Any
 from unittest import mock
@@ -203,30 +202,30 @@ def test_nothing_is_computed_twice(
 
 
 @pytest.mark.parametrize(
-    ("some", "told"),
+    ("some", "place"),
     [
         (of(*made("f"), spreads=(Range(0.0, 1.0), Normal(0.07, 0.001))),
-         f"vary[2]: {LENGTH} has a tolerance, which cannot be chosen"),
+         "vary[2]"),
         (of(*made("f"), correlations=(Correlation(MASS, LENGTH, 0.5),)),
-         "correlations: have no place in a search; leave them out"),
+         "correlations"),
         (of(Output("f", value="a.b", at_most=1.0)),
-         "outputs: no output is an objective"),
+         "outputs"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_searched(some: Study, told: str) -> None:
-    with pytest.raises(ModelError, match=f"^{re.escape(told)}"):
+def test_what_cannot_be_searched(some: Study, place: str) -> None:
+    with refused(ModelError, place):
         search(some, compute=formula(bowl))
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "expected"),
     [
-        ({"population": 4}, "got a population of 4; give 8 to 100000"),
-        ({"generations": 0}, "got 0 generations; give 1 to 100000"),
+        ({"population": 4}, {"population": 4, "most": "8 to 100000"}),
+        ({"generations": 0}, {"generations": 0, "most_generations": 100000}),
     ],
 )
-def test_sizes(given: dict[str, int], told: str) -> None:
-    with pytest.raises(UsageError, match=re.escape(told)):
+def test_sizes(given: dict[str, int], expected: dict[str, Any]) -> None:
+    with refused(UsageError, **expected):
         searched(made("f"), bowl, **given)
 
 
@@ -249,7 +248,7 @@ def test_nothing_can_be_computed() -> None:
         count = len(values)
         return Outcome(np.full((count, 1), np.nan), np.full(count, NO_MACHINE, np.uint8))
 
-    with pytest.raises(UsageError, match=r"^no design has figures \(not a machine: \d+\)"):
+    with refused(UsageError, by="_result"):
         search(of(*made("f")), compute=failing, population=8, generations=3)
 
 

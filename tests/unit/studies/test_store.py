@@ -140,9 +140,9 @@ def test_what_a_killed_process_left_half_written_is_cleared_away(tmp_path: Path)
 
 def test_a_store_that_cannot_be_made_leaves_nothing(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    with pytest.raises(UsageError, match=r"the store cannot be made \((not a directory|file ex)"):
+    with refused(UsageError, place=str(tmp_path / "file" / "s")):
         create_store(tmp_path / "file" / "s", STUDY, 100, "compiled")
-    with pytest.raises(UsageError, match=r"the store cannot be made \(file name too long\)"):
+    with refused(UsageError, brief="file name too long"):
         create_store(tmp_path / "s", short_study(outputs=(Output("ä" * 150),)), 100, "compiled")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
@@ -165,20 +165,21 @@ def incomplete(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "told"),
+    "make",
     [
-        (lambda path: None, "there is no such store; make it by: equipoise sweep"),
-        (Path.touch, "a store is a folder; of a study file it is made by: equipoise sweep"),
-        (Path.mkdir, "is no store of Equipoise; give the folder that equipoise sweep has made"),
-        (other_group, "is no store of Equipoise"),
-        (torn, "is no store of Equipoise"),
-        (incomplete, "is no store of Equipoise"),
-        (newer, "with layout 7, and this one reads layout 2; install"),
+        lambda path: None,
+        Path.touch,
+        Path.mkdir,
+        other_group,
+        torn,
+        incomplete,
+        newer,
     ],
 )
-def test_what_is_no_store_is_told_in_a_sentence(tmp_path: Path, make, told: str) -> None:
+def test_what_is_no_store_is_told_in_a_sentence(tmp_path: Path, make) -> None:
     make(tmp_path / "s")
-    with pytest.raises(UsageError, match=told) as caught:
+    layouts = {"layout": 7, "own": 2} if make is newer else {}
+    with refused(UsageError, place=str(tmp_path / "s"), **layouts) as caught:
         open_store(tmp_path / "s")
     assert str(caught.value).startswith(f"{tmp_path / 's'}: ")
     assert "\n" not in str(caught.value)
@@ -194,8 +195,7 @@ def test_a_damaged_chunk_is_told_in_a_sentence(tmp_path: Path) -> None:
 def test_a_store_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) -> None:
     store = filled(tmp_path / "s", STUDY, (0,))
     (store.path / ".lock").mkdir()
-    told = r"cannot be written \((is a directory|permission denied)\); make it writable"
-    with pytest.raises(UsageError, match=told), store.writing():
+    with refused(UsageError, place=str(store.path)), store.writing():
         pass
 
 
@@ -218,8 +218,8 @@ def test_a_second_process_is_told_who_writes_until_that_is_killed(tmp_path: Path
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as holder:
         assert holder.stdout is not None
         assert holder.stdout.readline() == "held\n"
-        who = f"process {holder.pid} on {socket.gethostname()} is writing into this store"
-        with pytest.raises(UsageError, match=who), store.writing():
+        writer = f"process {holder.pid} on {socket.gethostname()}"
+        with refused(UsageError, holder=writer), store.writing():
             pass
         assert open_store(store.path).missing() == [1, 2]  # whoever reads may
         holder.kill()

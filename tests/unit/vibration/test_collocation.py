@@ -15,6 +15,7 @@ from scipy.special import mathieu_a, mathieu_b
 from equipoise.errors import ResponseError
 from equipoise.vibration.collocation import RULE, STAGES, BoundaryConditions, Orbit, Rates, solve
 from equipoise.vibration.steady import FINE, steady
+from support.refusals import refused
 from unit.vibration.build import Array
 
 
@@ -227,7 +228,7 @@ def growing(_: Array, x: Array) -> list[Any]:
 
 def test_no_steady_state() -> None:
     """x' = 1 + x^2 never comes back."""
-    with pytest.raises(ResponseError, match="no steady state was found; the machine may not"):
+    with refused(ResponseError, by="_first"):
         steady(
             Equations(growing), [lambda s: np.zeros((1, len(s)))], 1, BoundaryConditions.periodic(1)
         )

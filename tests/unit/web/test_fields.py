@@ -72,7 +72,7 @@ def test_a_number_without_a_unit_is_shown_typed_and_slid() -> None:
     for text, value in (("0.15", 0.15), (" 0.15 ", 0.15), ("=0.3/2", 0.15), ("2*0.1", 0.2)):
         assert field.typed(design, text).own.joints[0].friction == value
     for text in ("0.1 mm", "much", "", "1e99", "0.1/0"):
-        with pytest.raises(UsageError, match="got '"):
+        with refused(UsageError, text=repr(text) if text == "1e99" else text):
             field.typed(design, text)
     with refused(ModelError, "joints[1].friction", text=-0.1, limit="0"):
         field.typed(design, "-0.1")

@@ -51,6 +51,7 @@ from equipoise.web.server import (
     served,
 )
 from equipoise.web.session import Session
+from support.refusals import refused
 from unit.web.pages import Content, unpacked
 
 FOREIGN = "http://other.example"
@@ -606,6 +607,5 @@ def test_time_to_send_is_counted_of_each_request() -> None:
 def test_a_port_that_is_taken_is_told() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-        told = f"the port {port} cannot be used"
-        with pytest.raises(UsageError, match=told), served(Session, port):
+        with refused(UsageError, port=port), served(Session, port):
             pass

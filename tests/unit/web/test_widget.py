@@ -10,6 +10,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.web import documents, notebook
+from support.refusals import refused
 
 BUILT = {"equipoise.js": b"export default {}", "equipoise.css": b".equipoise {}"}
 
@@ -38,9 +39,9 @@ def test_a_widget_answers_as_the_server_does(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_what_is_missing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(documents, "files", lambda _: __import__("pathlib").Path("nowhere"))
-    with pytest.raises(UsageError, match="run `make page`"):
+    with refused(UsageError, by="asset"):
         eq.view("yamashita-1")
     monkeypatch.setitem(sys.modules, "anywidget", None)
     monkeypatch.delitem(sys.modules, "equipoise.web.notebook")
-    with pytest.raises(UsageError, match=r'pip install "equipoise\[notebook\]"'):
+    with refused(UsageError, by="view"):
         eq.view("yamashita-1")

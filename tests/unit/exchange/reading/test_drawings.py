@@ -302,7 +302,7 @@ def test_what_cannot_be_read_is_told(
 def test_entities_are_refused(tmp_path: Path) -> None:
     bomb = '<!DOCTYPE svg [<!ENTITY a "b">]><svg>&a;</svg>'
     (tmp_path / "a.svg").write_text(bomb)
-    with pytest.raises(EquipoiseError, match="declares entities"):
+    with refused(EquipoiseError, place=str(tmp_path / "a.svg")):
         import_machine(tmp_path / "a.svg")
 
 

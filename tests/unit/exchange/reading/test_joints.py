@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,6 +14,7 @@ from equipoise.exchange.reading.pmks import DIGITS, PLAIN
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.schema.models import loads_linkage
+from support.refusals import refused
 
 PLACES = {
     "A": (0.0, 0.0),
@@ -76,18 +78,20 @@ def test_connectors_that_slide_have_blocks(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "sentence"),
+    ("text", "expected"),
     [
-        (linkage2('gear="true"'), "gears and linear actuators are not read"),
-        (linkage2(more='<connector id="x" x="1" y="1"/>'), "its id is 'x'"),
-        (linkage2().replace('x="0.0"', 'x="inf"', 1), "x: got 'inf'"),
-        (linkage2()[:-4], "no XML"),
-        ("<linkage2/>", "there is no link in it"),
+        (linkage2('gear="true"'), {"place": "Link 'crank'"}),
+        (linkage2(more='<connector id="x" x="1" y="1"/>'), {"place": "connector", "given": "x"}),
+        (linkage2().replace('x="0.0"', 'x="inf"', 1), {"place": "connector 'A'", "shown": "inf"}),
+        (linkage2()[:-4], {"lineno": 14}),
+        ("<linkage2/>", {}),
     ],
 )
-def test_what_linkage_has_beside_is_refused(text: str, sentence: str, tmp_path: Path) -> None:
+def test_what_linkage_has_beside_is_refused(
+    text: str, expected: dict[str, Any], tmp_path: Path
+) -> None:
     (tmp_path / "a.linkage2").write_text(text)
-    with pytest.raises(EquipoiseError, match=sentence):
+    with refused(EquipoiseError, **expected):
         import_machine(tmp_path / "a.linkage2")
 
 
@@ -144,16 +148,18 @@ def test_a_piston_of_pmks_slides_on_the_frame(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "sentence"),
+    ("text", "expected"),
     [
-        (pmks()[:-9], "it is incomplete: its last character does not match"),
-        ("0.0.0.0.1.2.3", "it is incomplete"),
-        (pmks().replace("ku,", "k§,"), "'k§' is no number as PMKS"),
-        (pmks().replace("B,ku", "BBku"), "is not written as by PMKS"),
-        ("", "it is incomplete"),
+        (pmks()[:-9], {}),
+        ("0.0.0.0.1.2.3", {}),
+        (pmks().replace("ku,", "k§,"), {"text": "k§"}),
+        (pmks().replace("B,ku", "BBku"), {"text": "0B,BBku,Fe,0"}),
+        ("", {}),
     ],
 )
-def test_a_damaged_file_of_pmks_is_refused(text: str, sentence: str, tmp_path: Path) -> None:
+def test_a_damaged_file_of_pmks_is_refused(
+    text: str, expected: dict[str, Any], tmp_path: Path
+) -> None:
     (tmp_path / "a.pmks").write_text(text)
-    with pytest.raises(EquipoiseError, match=sentence):
+    with refused(EquipoiseError, place=str(tmp_path / "a.pmks"), **expected):
         import_machine(tmp_path / "a.pmks")
