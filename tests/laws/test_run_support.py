@@ -102,6 +102,9 @@ def test_a_support_falls_onto_its_feet_and_bounces() -> None:
     np.testing.assert_allclose(run.support.place[1], wanted, atol=1e-9)
     assert run.time[-1] > 2 * (2 * fall + contact)
     assert np.min(run.support.mounts["left"]) == 0 < np.max(run.support.mounts["left"])
+    left = [item for item in run.contacts if item.part == "mounts.left"]
+    assert [left[0].begin, left[0].end] == pytest.approx([fall, fall + contact], rel=1e-7)
+    assert max(item.force for item in left) == np.max(run.support.mounts["left"])
 
 
 def test_a_run_on_its_support_tells_gauges_and_mounts() -> None:

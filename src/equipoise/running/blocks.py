@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from equipoise.running.flywheel import Flywheel
     from equipoise.running.integration import Event
     from equipoise.running.run import Run
-    from equipoise.running.stop_contacts import StopContact
+    from equipoise.running.run_contacts import RunContact
 
 EVENTS = {
     "off": to_say("motor switched off"),
@@ -246,13 +246,13 @@ def losses_table(run: Run | DrivesRun) -> Iterator[Block]:
     yield Table.of(say("Friction in joints from the start to the end"), columns, rows)
 
 
-def contacts_table(contacts: Sequence[StopContact]) -> Iterator[Table]:
+def contacts_table(contacts: Sequence[RunContact]) -> Iterator[Table]:
     """The last contacts of a run; nothing where there are none."""
     if not contacts:
         return
-    title = say("Contacts of stops")
+    title = say("Contacts of one-sided parts")
     if len(contacts) > MOST_EVENTS:
-        title = say("Contacts of stops, the last {shown} of {count}", shown=MOST_EVENTS,
+        title = say("Contacts of one-sided parts, the last {shown} of {count}", shown=MOST_EVENTS,
                     count=len(contacts))  # fmt: skip
     heads = (
         "",
@@ -266,7 +266,7 @@ def contacts_table(contacts: Sequence[StopContact]) -> Iterator[Table]:
             _contact_named(contact),
             Value(contact.begin),
             None if contact.end is None else Value(contact.end),
-            Value(contact.approach),
+            None if contact.approach is None else Value(contact.approach),
             Value(contact.force),
         )
         for contact in contacts[-MOST_EVENTS:]
@@ -274,10 +274,10 @@ def contacts_table(contacts: Sequence[StopContact]) -> Iterator[Table]:
     yield Table.of(title, heads, rows)
 
 
-def _contact_named(contact: StopContact) -> str:
-    """Points that meet, and in which row."""
-    points = contact.points.said()
-    return points if contact.row is None else f"{points}, {say('row {number}', number=contact.row)}"
+def _contact_named(contact: RunContact) -> str:
+    """Parts that touch, and in which row."""
+    parts = contact.parts.said()
+    return parts if contact.row is None else f"{parts}, {say('row {number}', number=contact.row)}"
 
 
 def event_named(event: Event) -> str:

@@ -21,6 +21,7 @@ from equipoise.errors import MassError, UsageError, at_place
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.dynamics.friction import Demands
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drive_angles import DriveAngles
@@ -49,6 +50,7 @@ class DriveState(NamedTuple):
     """What acts in K states.
 
     pose : of the linkages of all R rows, as all that follows (R K).  where : coordinates of each.
+    demands : of each of `DrivesEquation.sources`, what would hold it.
     inertia : (C, C, R K) of links and motors, kg m2.
     forces : of each of `DrivesEquation.acting` (S, C, R K), N m, or N along a support.
     rubbing : friction in joints; None without.
@@ -56,6 +58,7 @@ class DriveState(NamedTuple):
 
     pose: DrivesPose
     where: DriveAngles
+    demands: list[Demands]
     inertia: Array
     forces: Array
     rubbing: JointPressing | None
@@ -336,7 +339,7 @@ class DrivesEquation:
         rubbing = None
         if self.friction is not None:
             rubbing = self.friction.of(pose, plus(pose.turning, *acting))
-        return DriveState(pose, where, self.with_rotors(pose.inertia), forces, rubbing)
+        return DriveState(pose, where, acting, self.with_rotors(pose.inertia), forces, rubbing)
 
     def mount_forces(self, pose: DrivesPose) -> Array:
         """Generalized forces (0, N, R K) of mounts of the support: none on a fixed frame."""

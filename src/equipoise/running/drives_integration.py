@@ -97,14 +97,15 @@ class SpanInstants(NamedTuple):
 class DrivesTrack(NamedTuple):
     """Rows of the solution at K instants.
 
-    time : (K,) s.  states : (n, K).  quadratures : (Q, K).  torques : of all drives (N, K), N m.
-    references : (..., K).
+    time : (K,) s.  states : (n, K).  quadratures : (Q, K).  references : (..., K).
+    torques, accelerations : as of `DrivesReadings`.
     """
 
     time: Array
     states: Array
     quadratures: Array
     torques: Array
+    accelerations: Array
     references: References
 
 
@@ -323,12 +324,14 @@ class DrivesIntegration:
                     self._note("reversal", float(now.times[0]), now.states[:, 0], link)
 
     def _record(self, span: TimeSpan, places: Array) -> None:
+        others = self.rates.others(span.others(places))
         self.tracks.append(
             DrivesTrack(
                 span.time(places),
                 span.states(places),
                 span.quadratures(places),
-                self.rates.others(span.others(places)).torques,
+                others.torques,
+                others.accelerations,
                 span.references(places),
             )
         )
@@ -622,5 +625,6 @@ def joined(tracks: Sequence[DrivesTrack]) -> DrivesTrack:
         whole(track.states for track in tracks),
         whole(track.quadratures for track in tracks),
         whole(track.torques for track in tracks),
+        whole(track.accelerations for track in tracks),
         {name: whole(track.references[name] for track in tracks) for name in tracks[0].references},
     )

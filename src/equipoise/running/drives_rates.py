@@ -29,11 +29,13 @@ class DrivesReadings(NamedTuple):
 
     torques : of all drives (N, K), N m, and forces of strokes, N.  margins : (D, K) as of
     `DrivesEquation.margins`.  joint_rates : (J R, K) of joints with friction, rad/s or m/s.
+    accelerations : of all coordinates of each row (C R, K), rad/s2 or m/s2.
     """
 
     torques: Array
     margins: Array
     joint_rates: Array
+    accelerations: Array
 
 
 class DrivesRates:
@@ -99,7 +101,10 @@ class DrivesRates:
         """By the rows of `NodeValues.others` (O, K)."""
         drives = len(self.drivers)
         before = drives + len(self.equation.dead_positions)
-        return DrivesReadings(rows[:drives], rows[drives:before], rows[before:])
+        rubbing = before + len(self.settled)
+        return DrivesReadings(
+            rows[:drives], rows[drives:before], rows[before:rubbing], rows[rubbing:]
+        )
 
     def at(self, time: Array, states: Array, near: References) -> NodeValues | None:
         """Rates in K states; None where the machine cannot be, or does not obey the laws."""
@@ -148,7 +153,14 @@ class DrivesRates:
         return NodeValues(
             np.array(np.broadcast_arrays(*rates)),
             np.array([*electric, *works]).reshape(-1, len(time)),
-            np.concatenate([torques[: len(self.drivers)], margins, joint_rates]),
+            np.concatenate(
+                [
+                    torques[: len(self.drivers)],
+                    margins,
+                    joint_rates,
+                    changes.reshape(-1, len(time)),
+                ]
+            ),
             equation.references(state),
         )
 

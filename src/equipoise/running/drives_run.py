@@ -11,6 +11,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.force_kinds import rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.declaring import columns_of, values_of
 from equipoise.results.result import Result
@@ -21,7 +22,13 @@ from equipoise.running.drives_linkage import pose_of
 from equipoise.running.electric import Electric
 from equipoise.running.energy_balance import energy_error, losses_apart
 from equipoise.running.integration import Limits
-from equipoise.running.stop_contacts import StopContact, stop_contacts
+from equipoise.running.joint_forces import Passage
+from equipoise.running.run_contacts import (
+    RunContact,
+    contacts_of_couplings,
+    contacts_of_elements,
+    contacts_of_mounts,
+)
 from equipoise.signals import Array
 from equipoise.vibration.support_motion import SupportMotion
 
@@ -100,6 +107,7 @@ class DrivesRun(Result):
     cycle_begins : times at which a cycle of the crank began, s.
     losses : joint with friction -> energy that it has taken since the start (M,), J.
     where : drives, and coordinates of the support, of each of R rows (R M).
+    passage : the states that it has passed.
     references : about what running angles (..., R, M), and unknowns of loops, are, by their names
         in the linkage.
     support : how the support moves; None on a fixed frame.
@@ -115,6 +123,7 @@ class DrivesRun(Result):
     cycle_begins: tuple[float, ...]
     losses: Mapping[str, Array]
     where: DriveAngles
+    passage: Passage
     references: Mapping[str, Array]
     support: SupportMotion | None = None
     blocks_in = "running.drives_blocks.run_blocks"
@@ -163,13 +172,16 @@ class DrivesRun(Result):
         return pose_of(linkage, crank, angles[:count], speeds[:count], references).moving
 
     @cached_property
-    def contacts(self) -> tuple[StopContact, ...]:
-        """Contacts of stops in all rows, in the order in which they begin."""
-        if not self.machine.stops:
-            return ()
-        places = np.arange(len(self.time))
-        motions = [self.motion_at(places, row) for row in range(self.equation.rows.count)]
-        return stop_contacts(motions, self.time, 1.0)
+    def contacts(self) -> tuple[RunContact, ...]:
+        """Contacts of one-sided parts in all rows, in the order in which they begin."""
+        contacts = [*contacts_of_couplings(self.passage)]
+        if self.support is not None:
+            contacts += contacts_of_mounts(self.support, self.time)
+        if any(element.one_sided for *_, element in rated_elements(self.machine)):
+            places = np.arange(len(self.time))
+            motions = [self.motion_at(places, row) for row in range(self.equation.rows.count)]
+            contacts += contacts_of_elements(motions, self.time, 1.0)
+        return tuple(sorted(contacts, key=lambda contact: contact.begin))
 
     @property
     def last_cycle(self) -> Array | None:
@@ -230,6 +242,7 @@ def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> Drives
     integration.follow([angles[k] for k in unknowns], [speeds[k] for k in unknowns])
     track, rates = joined(integration.tracks), integration.rates
     where = rates.where(track.time, track.states)
+    passed = DriveAngles(*(values.copy() for values in where))
     of_rows = equation.in_rows(track.time, where, track.references)
     pushed = () if equation.strokes is None else equation.strokes.places
     lengths = dict(zip(pushed, equation.rows.first(of_rows.lengths), strict=True))
@@ -262,6 +275,7 @@ def run_drives(equation: DrivesEquation, limits: Limits, start: Start) -> Drives
         tuple(integration.marks),
         losses,
         of_rows,
+        Passage(equation, track.time, passed, track.references, track.accelerations),
         track.references,
         equation.support_motion(where.angles, where.speeds),
     )

@@ -15,6 +15,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.force_kinds import rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.run_plans import MOST_TURNS, RunPlan
 from equipoise.quantities import Dimension, in_si
@@ -28,9 +29,14 @@ from equipoise.running.energy_balance import energy_error, losses_apart
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
 from equipoise.running.integration import Event, Integration, Limits
+from equipoise.running.joint_forces import Passage, passage_of_crank
 from equipoise.running.piece_motion import ELECTRIC, Instant
+from equipoise.running.run_contacts import (
+    RunContact,
+    contacts_of_couplings,
+    contacts_of_elements,
+)
 from equipoise.running.sources import LOADS
-from equipoise.running.stop_contacts import StopContact, stop_contacts
 from equipoise.running.support_equation import SupportedEquation
 from equipoise.signals import Array
 from equipoise.vibration.linkages import rows_of
@@ -133,13 +139,25 @@ class Run(Result):
         return energy_error(self.kinetic_energy, self.work.values(), circuits)
 
     @cached_property
-    def contacts(self) -> tuple[StopContact, ...]:
-        """Contacts of stops in all rows, in the order in which they begin."""
-        if not self.machine.stops:
-            return ()
-        angles = (self.crank_angle + row.phase for row in rows_of(self.machine))
-        motions = [move(self.machine, angle) for angle in angles]
-        return stop_contacts(motions, self.time, self.crank_speed)
+    def contacts(self) -> tuple[RunContact, ...]:
+        """Contacts of one-sided parts in all rows, in the order in which they begin."""
+        contacts = [*contacts_of_couplings(self._passage)]
+        if any(element.one_sided for *_, element in rated_elements(self.machine)):
+            angles = (self.crank_angle + row.phase for row in rows_of(self.machine))
+            motions = [move(self.machine, angle) for angle in angles]
+            contacts += contacts_of_elements(motions, self.time, self.crank_speed)
+        return tuple(sorted(contacts, key=lambda contact: contact.begin))
+
+    @property
+    def _passage(self) -> Passage:
+        """The states that it has passed."""
+        off = next((event.time for event in self.events if event.kind == "off"), 0.0)
+        is_off = self.machine.drive.motor is None or off > 0
+        braked = np.sign(self.crank_speed) * self.machine.drive.brake * is_off * (self.time >= off)
+        machine, time = self.machine, self.time
+        return passage_of_crank(
+            machine, time, self.crank_angle, self.crank_speed, self.drive_torque - braked
+        )
 
     @cached_property
     def last_cycle(self) -> LastCycle | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -54,6 +55,12 @@ class SupportMotion:
         """Force (M,) of each mount, N or N m."""
         names = (contact.name for contact in self.mounted.contacts)
         return dict(zip(names, self.mounted.forces(self.at), strict=True))
+
+    @property
+    def smooth_forces(self) -> Array:
+        """(G, M) of its mounts, N or N m, below 0 where a one-sided mount would have to pull."""
+        smooth = [replace(contact, one_sided=False) for contact in self.mounted.contacts]
+        return SpatialMounts(smooth, self.mounted.at).forces(self.at)
 
     declared: ClassVar[Declarations] = {
         "gauges": of_support(

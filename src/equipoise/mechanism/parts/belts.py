@@ -133,6 +133,15 @@ class Belt(Turning):
             return as_fraction(self.speed_ratio)
         return Fraction(*self.teeth) * (-1 if self.crossed else 1)
 
+    @property
+    def one_sided(self) -> Mapping[str, Note]:
+        if self.tension is None:
+            return {}
+        return {
+            "left": Note("left strand of belt {name}", name=self.name),
+            "right": Note("right strand of belt {name}", name=self.name),
+        }
+
     def strands(self, apart: Any) -> Strands:
         """Where they run; apart : from the driver's pin to the driven link's, complex, m."""
         from equipoise.mechanism.formulas.rolling import Strands  # which needs NumPy

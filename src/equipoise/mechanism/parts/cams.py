@@ -184,6 +184,13 @@ class Cam(Coupling):
         """Along the normal away from the cam; below 0 where the follower is held back."""
         return {"normal": at.push}
 
+    @property
+    def one_sided(self) -> Mapping[str, Note]:
+        if self.closed_by != "spring":
+            return {}
+        cam = Note("frame") if self.driver == FRAME else self.driver
+        return {"normal": Note("{follower} on {cam}", follower=self.driven, cam=cam)}
+
     @classmethod
     def declare_outputs(cls, table: str) -> None:
         declare, of_contact = of_coupling(table), of_contacts(table)

@@ -236,6 +236,13 @@ class Coupling(PartKind):
         low, high = self.ratios
         return low != high
 
+    @property
+    def one_sided(self) -> Mapping[str, Note]:
+        """Outputs of its force that are below 0 where what touches would let go, each with
+        what touches.
+        """
+        return {}
+
     def accepts_columns(self, base: Coupling) -> bool:
         """Whether its relation has a formula for columns of its numbers, together with the base."""
         return True

@@ -69,10 +69,12 @@ class RatedElement(ForceElement):
     """A force element whose forces depend on ways between its bodies and on the speeds of these.
 
     freedoms : how many ways it has.
+    one_sided : whether it only pushes, with its one effort, where its one way is below 0.
     """
 
     rated = True
     freedoms: ClassVar[int] = 1
+    one_sided: ClassVar[bool] = False
 
     @property
     @abstractmethod

@@ -49,6 +49,7 @@ class Stop(BetweenPoints, RatedElement):
     order = 6
     file_order = ("link", "point", "to", "on", "direction", "stiffness", "restitution", "speed")
     still = ("restitution",)
+    one_sided = True
 
     cause = "stop"
     cause_label = to_say("stops")

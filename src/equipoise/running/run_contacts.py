@@ -1,0 +1,162 @@
+"""Contacts in a run: when parts that only push, or only pull, meet and let go, and how hard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.dataclass import dataclass
+from equipoise.i18n import Note
+from equipoise.mechanism.dynamics.rated_elements import rated_ways
+from equipoise.mechanism.parts.force_kinds import rated_elements
+from equipoise.signals import ROUNDING, Array
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.kinematics.motion import Motion
+    from equipoise.mechanism.parts.machine import Machine
+    from equipoise.running.joint_forces import Passage
+    from equipoise.vibration.support_motion import SupportMotion
+
+HALVINGS = 50
+"""Of the time between two instants, in which a gap of 0 is looked for."""
+Crossing = Callable[[int], float]
+"""Time, s, at which contact changes between the instants before a place and at it."""
+
+
+@dataclass(frozen=True)
+class RunContact:
+    """A time for which a one-sided part is in contact.
+
+    part : its name in outputs, such as ``stops.1``, ``cams.follower``, ``belts.wheel.left`` (a
+        strand) or ``mounts.front``.
+    row : number of its row, from 1; None of a machine without rows, and of mounts.
+    parts : those that touch, for readers.
+    begin : s, at which they meet, or the start of the run.
+    end : s, at which they let go; None where the run ends first.
+    approach : speed with which the gap closes at the begin, m/s; None of a part whose motion is
+        computed as if it stayed in contact, and of mounts.
+    force : the largest, N.
+    """
+
+    part: str
+    row: int | None
+    parts: Note
+    begin: float
+    end: float | None
+    approach: float | None
+    force: float
+
+    def to_dict(self) -> dict[str, object]:
+        """The machine-readable output, in SI units."""
+        return {name: value for name, value in vars(self).items() if name != "parts"}
+
+
+def contacts_of_elements(
+    motions: Sequence[Motion], time: Array, rate: Array | float
+) -> Iterator[RunContact]:
+    """Contacts of force elements that only push.
+
+    motions : of each row, at M instants of time (M,), s, rising.
+    rate : by which derivatives of the motion become those by time, such as the speed of the crank
+        (M,), rad/s.
+    """
+    machine = motions[0].machine
+    one_sided = [item for item in rated_elements(machine) if item[2].one_sided]
+    for row, motion in enumerate(motions, 1):
+        for table, number, element in one_sided:
+            gap, slope = rated_ways(motion, [(table, number, element)])
+            opening = slope * rate
+            force = np.asarray(element.efforts([(gap, opening)])[0])
+
+            def crossing(k: int, gap: Array = gap, opening: Array = opening) -> float:
+                return _zero(time, gap, opening, k)
+
+            named = f"{table}.{number + 1}", _row(machine, row), element.label
+            for begin, end, largest in _intervals(gap < 0, force, time, crossing):
+                approach = -float(np.interp(begin, time, opening))
+                yield RunContact(*named, begin, end, approach, largest)
+
+
+def contacts_of_couplings(passage: Passage) -> Iterator[RunContact]:
+    """Contacts of couplings that only push, or only pull: their bodies move as if these did not let
+    go, and they do where they would have to hold, between instants by straight lines.
+    """
+    machine, time = passage.equation.machine, passage.time
+    count = passage.equation.rows.count
+    one_sided = [(coupling, part) for coupling in machine.couplings for part in coupling.one_sided]
+    if not one_sided:
+        return
+    pressing, known = np.zeros((len(one_sided), count, len(time))), np.zeros(len(time), bool)
+    for places, forces in passage.forces():
+        known[places] = True
+        for own, (coupling, part) in zip(pressing, one_sided, strict=True):
+            values = getattr(forces.couplings[coupling.list_name][coupling.name], part)
+            own[:, places] = np.reshape(values, (count, -1))
+    if not np.any(known):
+        return
+    for (coupling, part), own in zip(one_sided, pressing[:, :, known], strict=True):
+        for row, force in enumerate(own, 1):
+            name = f"{coupling.list_name}.{coupling.name}"
+            named = f"{name}.{part}" if len(coupling.one_sided) > 1 else name
+            words = coupling.one_sided[part]
+            for begin, end, largest in _by_force(force, time[known]):
+                yield RunContact(named, _row(machine, row), words, begin, end, None, largest)
+
+
+def contacts_of_mounts(support: SupportMotion, time: Array) -> Iterator[RunContact]:
+    """Contacts of mounts that only push, whose letting go is part of the motion."""
+    for contact, force in zip(support.mounted.contacts, support.smooth_forces, strict=True):
+        if contact.one_sided:
+            words = Note("mount {name}", name=contact.name)
+            for begin, end, largest in _by_force(force, time):
+                yield RunContact(f"mounts.{contact.name}", None, words, begin, end, None, largest)
+
+
+def _row(machine: Machine, row: int) -> int | None:
+    return row if machine.rows else None
+
+
+def _by_force(force: Array, time: Array) -> Iterator[tuple[float, float | None, float]]:
+    """Begin, end and largest force of each contact, where a force (M,) is above 0."""
+    touches = force > -ROUNDING * np.max(np.abs(force))
+
+    def crossing(k: int) -> float:
+        if k == 0:
+            return float(time[0])
+        before, at = force[k - 1 : k + 1]
+        return float(time[k - 1] + (time[k] - time[k - 1]) * before / (before - at))
+
+    return _intervals(touches, force, time, crossing)
+
+
+def _intervals(
+    touches: Array, force: Array, time: Array, crossing: Crossing
+) -> Iterator[tuple[float, float | None, float]]:
+    """Begin, end and largest force (of M,) of each contact, by whether parts touch (M,)."""
+    padded = np.concatenate([[False], touches, [False]])
+    edges = np.flatnonzero(padded[1:] != padded[:-1]).tolist()
+    for first, behind in zip(edges[::2], edges[1::2], strict=True):
+        end = crossing(behind) if behind < len(time) else None
+        yield crossing(first), end, float(np.max(force[first:behind]))
+
+
+def _zero(time: Array, gap: Array, opening: Array, k: int) -> float:
+    """When a gap changes its sign between the instants before `k` and at it: a cubic by the values
+    and speeds of both; the start of the run where `k` is 0.
+    """
+    if k == 0:
+        return float(time[0])
+    span = time[k] - time[k - 1]
+    (a, b), (p, q) = gap[k - 1 : k + 1], opening[k - 1 : k + 1] * span
+
+    def cubic(s: float) -> float:
+        t = 1.0 - s
+        return float(a * t * t * (1 + 2 * s) + b * s * s * (3 - 2 * s) + s * t * (p * t - q * s))
+
+    low, high = 0.0, 1.0
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if (cubic(middle) < 0) == (a < 0) else (low, middle)
+    return float(time[k - 1] + high * span)
