@@ -342,6 +342,14 @@ def write_words(view: View) -> None:
     _asides(view)
 
 
+def dot_of(look: DrawingStyle) -> DrawingStyle:
+    """What a single place of a curve looks like, on which signs that it has may stand already."""
+    if look.sign and not look.spaced:
+        return look
+    hollow = look.hollow and not look.spaced
+    return DrawingStyle(look.color, sign="o", size=4.0, hollow=hollow)
+
+
 def _marks(view: View) -> None:
     apart: list[tuple[Mark, Array]] = []
     size = np.array([view.x.length, view.y.length])
@@ -356,11 +364,7 @@ def _marks(view: View) -> None:
         apart.append((mark, place))
         look = look_of(mark.role)
         if mark.sign:
-            signs = (
-                look
-                if look.sign and not look.spaced
-                else DrawingStyle(look.color, sign="o", size=4.0)
-            )
+            signs = dot_of(look)
             view.sheet.add(signs_at(place[None], signs), max(look.order, 4.0))
             view.labels.reserve(float(place[0]), float(place[1]), max(signs.size / 2, 2.0))
     for mark, (x, y) in apart:

@@ -13,6 +13,8 @@ INK, LINES, FAINT, PALE = (LIGHT[name] for name in ("ink", "lines", "faint", "pa
 MAIN, STRESS, PAPER = (LIGHT[name] for name in ("main", "stress", "paper"))
 SOIL, EARTH = (LIGHT[name] for name in ("soil", "earth"))
 """As symbols have them."""
+THIN = "#8c8c8c"
+"""Of a line on a strong one: as pale as it can be on paper."""
 GRID, STUBBLE = "#e6e6e6", "#dccbb0"
 """Of charts alone: behind their curves, and the hatching below the surface."""
 QUIET, LOUD, STRETCH = "#ededed", "#d3d3d3", "#e9b79b"
@@ -29,6 +31,7 @@ class DrawingStyle:
     dashes : lengths over the width.  sign : a marker, as Matplotlib calls it, of so many points.
     hollow : whether the sign is white inside.  fill : of an area, with so much opacity.
     spaced : whether only a few places of a curve have the sign.  order : what is higher lies above.
+    words : colour of words about it, where its own is too pale for them.
     """
 
     color: str = MAIN
@@ -41,11 +44,12 @@ class DrawingStyle:
     opacity: float = 1.0
     spaced: bool = False
     order: float = 3.0
+    words: str = ""
 
     @property
     def ink(self) -> str:
         """Colour of words about it."""
-        return self.color or LINES
+        return self.words or self.color or LINES
 
     @property
     def inside(self) -> str:
@@ -82,11 +86,12 @@ LOOKS: dict[str, DrawingStyle] = {
     "faint": DrawingStyle(FAINT, 0.9, order=2),
     "thin": DrawingStyle(MAIN, 1.0),
     "zero": DrawingStyle(FAINT, 0.8, order=1),
-    # rows, and before and after: the thin line lies on the strong one, so that both are seen
-    "one": DrawingStyle(LINES, 0.9, order=3.1),
-    "all": DrawingStyle(MAIN, 1.9),
-    "before": DrawingStyle(LINES, 0.9, order=3.1),
-    "after": DrawingStyle(MAIN, 1.9),
+    # rows, and before and after: the thin line lies on the strong one, and is lighter, so that both
+    # are seen in grey too where they are one; so are their dots
+    "one": DrawingStyle(THIN, 1.0, hollow=True, order=3.1, words=LINES),
+    "all": DrawingStyle(MAIN, 2.2),
+    "before": DrawingStyle(THIN, 1.0, hollow=True, order=3.1, words=LINES),
+    "after": DrawingStyle(MAIN, 2.2),
     "unchanged": DrawingStyle(LINES, 1.3),
     "bar before": DrawingStyle(LINES, fill=FAINT),
     "bar after": DrawingStyle(MAIN, fill=MAIN),

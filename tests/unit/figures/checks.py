@@ -13,6 +13,7 @@ import pytest
 
 from equipoise.figures import is_wide, layout
 from equipoise.figures.layout import lay_out
+from equipoise.figures.panel import dot_of
 from equipoise.figures.sheet import Canvas, CanvasStroke, Item, Words, box_of
 from equipoise.figures.style import PAPER, DrawingStyle, look_of
 from equipoise.figures.vector import svg_of
@@ -28,7 +29,8 @@ NUMBERS = 3
 SLACK = 1.5
 """Points that a line may be off the axes, by its width."""
 LIGHTER, WIDER = 15.0, 0.8
-"""Lightness (CIE L*) and points by which lines in grey differ that differ in nothing else."""
+"""Lightness (CIE L*) and points by which lines in grey differ that differ in nothing else; a thin
+one that lies on a wide one is not seen by its width."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -299,13 +301,23 @@ def _told(view: View) -> str:
 
 
 def alike_in_grey(laid: Laid) -> Iterator[Fault]:
-    """Lines in one panel that mean different things differ without colour, too; so do bars."""
+    """Lines in one panel that mean different things differ without colour, too; so do bars, and the
+    dots at places of lines with the same dashes.
+    """
     for view, _ in laid.panels:
         lines = dict.fromkeys((curve.role, curve.dashed) for curve in view.panel.curves)
+        dotted = {mark.role for mark in view.panel.marks if mark.sign}
         for one, other in combinations(lines, 2):
             a, b = look_of(*one), look_of(*other)
-            marked = (a.dashes, a.sign) == (b.dashes, b.sign) and abs(a.width - b.width) < WIDER
-            if marked and abs(lightness(a.color) - lightness(b.color)) < LIGHTER:
+            if (a.dashes, a.sign) != (b.dashes, b.sign):
+                continue
+            thin, wide = sorted((a, b), key=lambda look: look.width)
+            if wide.width - thin.width >= WIDER and wide.order > thin.order:
+                continue
+            dots = [(dot.sign, lightness(dot.inside)) for dot in map(dot_of, (a, b))]
+            alike = dots[0][0] == dots[1][0] and abs(dots[0][1] - dots[1][1]) < LIGHTER
+            alike = alike and {one[0], other[0]} <= dotted
+            if alike or abs(lightness(a.color) - lightness(b.color)) < LIGHTER:
                 yield "alike in grey", f"{one[0]} and {other[0]}"
         for one, other in combinations(dict.fromkeys(bars.role for bars in view.panel.bars), 2):
             if abs(_shade(look_of(one)) - _shade(look_of(other))) < LIGHTER:
