@@ -1,8 +1,11 @@
-"""Designs shared out among two processes, beside one: what both cost in processor time.
+"""Designs shared out among two processes, beside one: the time that passes, and processor time.
 
-What two free processors would take follows from that: the time of the busier of this process and of
-the other, starting it included, which end at about the same time.  So the ratio does not depend on
-what else the computer does, as long as both get the same share of it.
+On a computer that does nothing else, the time that passes says it: two processes and one take
+turns, and the shortest of each count.  On one that does, the processor time of the busier of this
+process and of the other, starting it included, is what two free processors would take if neither
+waited for the other; how much they wait is left out of it.
+
+    python sharing.py [TASK ...]     such as "search of tool"; all tasks without
 """
 
 from __future__ import annotations
@@ -10,10 +13,13 @@ from __future__ import annotations
 import one_thread  # noqa: F401  has to come before NumPy
 
 # isort: split
+import os
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from resource import RUSAGE_CHILDREN, RUSAGE_SELF, getrusage
+from typing import Any
 
 import numpy as np
 
@@ -21,12 +27,15 @@ import equipoise as eq
 from asked import Limit, Table
 from equipoise.planting.search import Designs, PlantingProblem
 from equipoise.schema.template import Template
-from equipoise.studies.evaluate import evaluator, pooled
+from equipoise.studies.evaluate import evaluator
 from equipoise.studies.objective_map import landscape
+from equipoise.studies.searching import search
 from equipoise.studies.study import samples
+from equipoise.studies.tolerances import machines_of, tolerance
 
-SECONDS = 25.0
-"""Of one processor that each task takes."""
+SECONDS = float(os.environ.get("SECONDS_ALONE", "25"))
+"""Of one processor that each task takes; a search may end earlier, where it stands still."""
+ROUNDS = int(os.environ.get("ROUNDS", "2"))
 ASKED = Limit(1.7, at_most=False)
 STUDIES = {
     "respond": ("yamashita-rig", "links.crank.mass", "gauges.gauge.rms"),
@@ -36,35 +45,45 @@ STUDIES = {
 Task = Callable[[int], object]
 
 
-def study(command: str, designs: int) -> eq.studies.Study:
+def study(command: str, spread: str, designs: int) -> eq.studies.Study:
     """Some designs about a bundled model, with one number of a command's result."""
     name, path, value = STUDIES[command]
     model = Template.load(name)
     own = model.number(path)[0]
+    is_search = spread == "search"
+    of: Any = (
+        eq.design.Range(0.9 * own, 1.1 * own) if is_search else eq.design.Uniform(own, 0.01 * own)
+    )
+    make: Any = "smallest" if is_search else None
     return eq.studies.Study(
         title="",
         model=model,
-        vary=(eq.design.Variable(path, eq.design.Range(0.9 * own, 1.1 * own)),),
-        outputs=(eq.studies.Output(value, of=command),),  # type: ignore[arg-type]
+        vary=(eq.design.Variable(path, of),),
+        outputs=(eq.studies.Output(value, of=command, make=make),),  # type: ignore[arg-type]
         sampling=eq.studies.Sampling("sobol", designs),
     )
 
 
-def studied(command: str) -> Task:
-    """As searches and tolerances compute designs of a study."""
-    alone = study(command, 8)
-    evaluate = evaluator(alone)
-    evaluate(samples(alone, 0, 8))  # what is read and kept on the first call
+def searched(command: str) -> Task:
+    some = study(command, "search", count_of(command, "search"))
+    return lambda workers: search(some, workers=workers).to_dict()
+
+
+def tolerated(command: str) -> Task:
+    count = count_of(command, "tolerance")
+    share = machines_of(study(command, "tolerance", count)) / count
+    some = study(command, "tolerance", round(count / share))
+    return lambda workers: tolerance(some, workers=workers).to_dict()
+
+
+def count_of(command: str, spread: str) -> int:
+    """Designs that take so long; what the first of them imports and keeps is there afterwards."""
+    few = study(command, spread, 8)
+    evaluate = evaluator(few)
+    evaluate(samples(few, 0, 8))
     begin = time.process_time()
-    evaluate(samples(alone, 0, 8))
-    count = max(16, round(8 * SECONDS / (time.process_time() - begin)))
-    some = study(command, count)
-
-    def task(workers: int) -> object:
-        with pooled(some, workers) as evaluate:
-            return evaluate(samples(some, 0, count)).figures
-
-    return task
+    evaluate(samples(few, 0, 8))
+    return max(200, round(8 * SECONDS / (time.process_time() - begin)))
 
 
 def mapped() -> Task:
@@ -104,34 +123,42 @@ def fitted() -> Task:
     return task
 
 
-def spent(task: Task, workers: int) -> tuple[object, float, float]:
-    """What comes of a task; processor time of this process and of those that it started, s."""
-    before = [getrusage(who) for who in (RUSAGE_SELF, RUSAGE_CHILDREN)]
+def spent(task: Task, workers: int) -> tuple[object, list[float]]:
+    """What comes of a task; time that passes, processor time of this process and of those that it
+    started, s.
+    """
+    before = _clocks()
     result = task(workers)
-    after = [getrusage(who) for who in (RUSAGE_SELF, RUSAGE_CHILDREN)]
-    here, there = (
-        new.ru_utime + new.ru_stime - old.ru_utime - old.ru_stime
-        for new, old in zip(after, before, strict=True)
-    )
-    return result, here, there
+    return result, [new - old for new, old in zip(_clocks(), before, strict=True)]
+
+
+def _clocks() -> list[float]:
+    used = (getrusage(who) for who in (RUSAGE_SELF, RUSAGE_CHILDREN))
+    return [time.monotonic(), *(item.ru_utime + item.ru_stime for item in used)]
 
 
 def main() -> None:
     """Print what was measured; names of tasks may be given."""
     tasks: dict[str, Callable[[], Task]] = {
-        **{f"of {name}": (lambda name=name: studied(name)) for name in STUDIES},
+        **{f"search of {name}": partial(searched, name) for name in STUDIES},
+        **{f"tolerance of {name}": partial(tolerated, name) for name in STUDIES},
         "map of lengths": mapped,
         "planting fingers": fitted,
     }
     table = Table()
     for name in sys.argv[1:] or tasks:
         task = tasks[name]()
-        one, alone, _ = spent(task, 1)
-        two, here, there = spent(task, 2)
-        if not np.array_equal(np.asarray(one), np.asarray(two), equal_nan=True):
-            raise SystemExit(f"{name}: two processes give other figures than one")
-        print(f"{name}: {alone:.1f} s in one; {here:.1f} s here and {there:.1f} s in another")
-        table.value(f"{name}: how many times as fast", [alone / max(here, there)], "", ASKED)
+        rounds = []
+        for _ in range(ROUNDS):
+            (one, alone), (two, shared) = spent(task, 1), spent(task, 2)
+            if repr(one) != repr(two):
+                raise SystemExit(f"{name}: two processes give other figures than one")
+            rounds.append((alone, shared))
+            print(name, *(" ".join(f"{t:.2f}" for t in item) for item in (alone, shared)), sep="; ")
+        walls = [min(item[k][0] for item in rounds) for k in (0, 1)]
+        table.value(f"{name}: times as fast", [walls[0] / walls[1]], "", ASKED)
+        busier = [alone[1] / max(shared[1:]) for alone, shared in rounds]
+        table.value(f"{name}: times less processor time of the busier", busier, "")
     table.print()
 
 

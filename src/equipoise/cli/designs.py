@@ -111,13 +111,13 @@ def search(
         check_new(study.model.base(), chosen.out)
     size, turns = search_size(study, population, generations)
     units = units_of(study)
-    with swept(units) as text, Watched(study, text, computers) as watched:
+    with swept(units) as text, Watched(study, text, computers, size * turns) as watched:
         result = search(
             study,
             population=size,
             generations=turns,
             seed=seed,
-            progress=lambda *_: watched.show_progress(size * turns),
+            progress=watched.show_progress,
             compute=watched,
         )
     chosen.check(0, len(result.values) - 1)

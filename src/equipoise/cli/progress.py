@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from equipoise.cli.options import Computers
-    from equipoise.design.evaluator import PooledEvaluator
     from equipoise.studies.blocks import Unit
     from equipoise.studies.outcomes import Outcome, Progress
     from equipoise.studies.study import Study
@@ -218,39 +217,34 @@ def swept(units: Mapping[str, Unit]) -> Iterator[Callable[[Progress], None]]:
 class Watched:
     """Computes designs of a study, and reports progress each time; a context manager.
 
-    computers : who computes.
+    computers : who computes.  total : number of designs in all, or the most there can be.
     """
 
     def __init__(
-        self, study: Study, report: Callable[[Progress], None], computers: Computers
+        self, study: Study, report: Callable[[Progress], None], computers: Computers, total: int
     ) -> None:
+        from equipoise.studies.evaluate import pooled
         from equipoise.studies.outcomes import Tally
 
-        self.study, self.report, self.computers = study, report, computers
-        self.tally = Tally(study.outputs, 0)
-        self.compute: PooledEvaluator[Outcome] | None = None
+        self.report, self.tally = report, Tally(study.outputs, total)
+        self.compute = pooled(study, **vars(computers), expected=total)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *error: object) -> None:
-        if self.compute is not None:
-            self.compute.close()
+        self.compute.close()
 
     def __call__(self, values: Any) -> Outcome:
         """Compute designs (P, d)."""
-        from equipoise.studies.evaluate import pooled
         from equipoise.studies.outcomes import Block
 
-        if self.compute is None:
-            self.compute = pooled(self.study, **vars(self.computers))
         outcome = self.compute(values)
         self.tally.add(Block(values, outcome), computed=True)
         return outcome
 
-    def show_progress(self, total: int) -> None:
-        """Report progress; `total` is the number of designs in all, or the most there can be."""
-        self.tally.total = total
+    def show_progress(self, *_: object) -> None:
+        """Report progress."""
         self.report(self.tally.progress())
 
 

@@ -176,6 +176,7 @@ def tolerance(
     """
     from equipoise.figures.studies import tolerance_charts
     from equipoise.schema.study_units import units_of
+    from equipoise.studies.tolerances import machines_of
     from equipoise.studies.tolerances import tolerance as of_study
 
     given: dict[tuple[str, ...], str] = {("sampling", "designs"): "--designs"}
@@ -185,11 +186,9 @@ def tolerance(
     with (
         blaming_by_place({} if designs is None else given),
         swept(units) as text,
-        Watched(study, text, computers) as watched,
+        Watched(study, text, computers, machines_of(study)) as watched,
     ):
-        result = of_study(
-            study, progress=lambda _, total: watched.show_progress(total), compute=watched
-        )
+        result = of_study(study, progress=watched.show_progress, compute=watched)
     return CommandResult(
         lambda: result.blocks(units=units),
         result.to_dict,

@@ -340,9 +340,13 @@ OnDesigns = Callable[[int], None]
 PATIENCE = 2.0
 """Time of computing alone after which processes are started, which takes them about as long, s; at
 once where designs that are still to come take longer."""
+EARLY = 400
+"""Designs, or batches of them, that are to come from which processes start before the first design
+is computed: one by one they take some milliseconds each, and processes need as long to start as
+this one to import what the first needs."""
 QUICK = 0.2
 """Time below which twice as many designs are computed alone before the clock is read again, s."""
-SHARES = 2
+SHARES = 3
 """Each part is what is left over this and the workers: parts become small towards the end, so that
 all end at about the same time."""
 HANDY = 0.05
@@ -375,6 +379,7 @@ class PooledEvaluator(Generic[Figures]):
     shared : whether processes help at all; not where loops use all processors.
     batch_size : designs that are sent together where there are as many for each process: those that
         one run of arrays computes take longer in small parts.
+    expected : designs that are to come, in all calls, if that is known; at most so many.
     elsewhere : begins a pool of others that compute instead, such as a cluster, once it is known
         how long a design takes.
 
@@ -392,9 +397,11 @@ class PooledEvaluator(Generic[Figures]):
         *,
         shared: bool = True,
         batch_size: int = 1,
+        expected: int = 0,
         elsewhere: Callable[[ChunkTask], Pool] | None = None,
     ) -> None:
-        self.alone, self.join, self.batch_size = alone, join, batch_size
+        self.alone, self.join = alone, join
+        self.batch_size, self.expected = batch_size, expected
         self.runner: Runner[DesignSlice, Figures] = Runner(
             lambda part: alone(part.values),
             partial(_of_parts, make),
@@ -405,6 +412,9 @@ class PooledEvaluator(Generic[Figures]):
         self.shared = elsewhere is not None or (self.runner.workers > 1 and shared)
         self.patience = PATIENCE if elsewhere is None else QUICK
         self.spent, self.count, self.step, self.begun = 0.0, 0, 1, False
+        self.each = 0.0
+        if self.shared and expected >= EARLY * batch_size:
+            self.runner.begin()
 
     def __enter__(self) -> Self:
         return self
@@ -419,7 +429,7 @@ class PooledEvaluator(Generic[Figures]):
     @property
     def is_shared_out(self) -> bool:
         """Whether others compute, since computing alone has taken long or would."""
-        return self.shared and (self.begun or self.spent > self.patience)
+        return self.shared and self.count > 0 and (self.begun or self.spent > self.patience)
 
     def __call__(self, values: Array, progress: OnDesigns | None = None) -> Figures:
         """What is computed of designs (P, d), SI units, in their order.
@@ -431,25 +441,32 @@ class PooledEvaluator(Generic[Figures]):
         if not self.shared and progress is None:
             return self.alone(values)
         report = progress or (lambda _: None)
-        if self.is_shared_out and self.spent * len(values) < HANDY * self.count:
+        if self.is_shared_out and self.each * len(values) < HANDY:
             return self.alone(values)
         outcomes, begin = [], 0
-        while begin < len(values) and not (self.count and self.is_shared_out):
-            start = monotonic()
+        while begin < len(values) and not self.is_shared_out:
             part = values[begin : begin + self.step]
-            outcomes.append(self.alone(part))
+            outcomes.append(self._computed_alone(part, len(values) - begin))
             begin += len(part)
-            took = monotonic() - start
-            self.spent, self.count = self.spent + took, self.count + len(part)
-            if took < QUICK:
-                self.step *= 2
             report(begin)
-            # The first part took as long as all that is imported for it.
-            long = len(outcomes) > 1 and took * (len(values) - begin) > PATIENCE * len(part)
-            self.begun = self.begun or (self.spent > QUICK and long)
         if begin < len(values):
             outcomes += self._shared_out(values[begin:], lambda k: report(begin + k))
         return self.join(outcomes)
+
+    def _computed_alone(self, part: Array, left: int) -> Figures:
+        """Compute a part of the designs that are left of a call, and see whether others are to."""
+        start = monotonic()
+        outcome = self.alone(part)
+        took = monotonic() - start
+        self.each = took / len(part)
+        self.spent, self.count = self.spent + took, self.count + len(part)
+        if took < QUICK:
+            self.step *= 2
+        if self.count > len(part):  # the first part took as long as all that is imported for it
+            to_come = max(left - len(part), self.expected - self.count)
+            is_long = self.spent > QUICK and self.each * to_come > PATIENCE
+            self.begun = self.begun or is_long or self.runner.pool is not None
+        return outcome
 
     def _shared_out(self, values: Array, report: OnDesigns) -> list[Figures]:
         self.begun = True
@@ -464,7 +481,7 @@ class PooledEvaluator(Generic[Figures]):
         """Designs in parts, the first ones large."""
         workers, begin = self.runner.workers, 0
         least = min(self.batch_size, -(-len(values) // workers))
-        most = max(1, int(PART * self.count / max(self.spent, 1e-9)))
+        most = max(1, int(PART / max(self.each, 1e-9)))
         while begin < len(values):
             size = max(least, min(most, -(-(len(values) - begin) // (SHARES * workers))))
             yield DesignSlice(begin, values[begin : begin + size])

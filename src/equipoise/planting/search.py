@@ -188,6 +188,7 @@ class PlantingProblem(DesignProblem):
 
     workers : processes, where judging takes more than some seconds; as many as this machine has
         processors if not given.
+    expected : designs that are to be judged, if that is known; at most so many.
     judged : number of designs so far.
 
     Raises
@@ -196,7 +197,11 @@ class PlantingProblem(DesignProblem):
     """
 
     def __init__(
-        self, designs: Designs, goals: Sequence[Requirement], workers: int | None = 1
+        self,
+        designs: Designs,
+        goals: Sequence[Requirement],
+        workers: int | None = 1,
+        expected: int = 0,
     ) -> None:
         self.designs, self.goals = designs, tuple(goals)
         self.judged = 0
@@ -212,7 +217,12 @@ class PlantingProblem(DesignProblem):
         ]
         make = partial(_judging, *designs.given, self.goals)
         self.pooled = PooledEvaluator(
-            self.judge_here, make, GoalOutcome.joined, workers, batch_size=BATCH
+            self.judge_here,
+            make,
+            GoalOutcome.joined,
+            workers,
+            batch_size=BATCH,
+            expected=expected,
         )
 
     def __enter__(self) -> Self:
@@ -438,7 +448,8 @@ def fit_planting(
     ModelError, MotionError : the machine to start from cannot be used.
     """
     _check(machine, seed, generations, population)
-    with PlantingProblem(Designs(machine, vary, sense), goals, workers) as problem:
+    designs, expected = Designs(machine, vary, sense), generations * population
+    with PlantingProblem(designs, goals, workers, expected) as problem:
         problem.seed, problem.generations, problem.population = seed, generations, population
         problem.solvers = (EvolutionAndPolish(progress),)
         return _fit(problem)

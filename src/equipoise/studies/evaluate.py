@@ -84,12 +84,13 @@ def evaluator(study: Study, threads: int | None = None) -> Evaluator:
 
 
 def pooled(
-    study: Study, workers: int | None = None, cluster: str | None = None
+    study: Study, workers: int | None = None, cluster: str | None = None, expected: int = 0
 ) -> PooledEvaluator[Outcome]:
     """Evaluator shared out among processes where no loop computes everything, or on a cluster.
 
     workers : processes; as many as this machine has processors if not given.
     cluster : address of a Dask scheduler whose workers compute instead.
+    expected : designs that are to come, if that is known; at most so many.
 
     Raises
     ------
@@ -107,6 +108,7 @@ def pooled(
         workers,
         shared=shared,
         batch_size=batch,
+        expected=expected,
         elsewhere=elsewhere(cluster, workers),
     )
 

@@ -177,7 +177,9 @@ def search(
         )
     seed = study.sampling.seed if seed is None else seed
     with ExitStack() as exitstack:
-        evaluate = compute or exitstack.enter_context(pooled(study, workers, cluster))
+        evaluate = compute or exitstack.enter_context(
+            pooled(study, workers, cluster, population * generations)
+        )
         return _search(_Archive(study, evaluate), population, generations, seed, progress)
 
 

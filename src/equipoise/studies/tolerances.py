@@ -360,7 +360,9 @@ def tolerance(
     """
     _check(study)
     with ExitStack() as exitstack:
-        evaluate = compute or exitstack.enter_context(pooled(study, workers, cluster))
+        evaluate = compute or exitstack.enter_context(
+            pooled(study, workers, cluster, machines_of(study))
+        )
         return _tolerances(study, evaluate, progress)
 
 

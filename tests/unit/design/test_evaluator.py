@@ -78,6 +78,36 @@ def test_what_is_over_soon_starts_no_process() -> None:
         assert evaluate.runner.pool is None
 
 
+@pytest.mark.parametrize(("expected", "is_early"), [(399, False), (400, True)])
+def test_processes_start_before_many_expected_designs(
+    expected: int, is_early: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While this process still imports what it needs for the first."""
+    begun: list[bool] = []
+    monkeypatch.setattr(pooling.Runner, "begin", lambda _: begun.append(True))
+    make = partial(partial, np.square)
+    PooledEvaluator(np.square, make, np.concatenate, 2, expected=expected)
+    PooledEvaluator(np.square, make, np.concatenate, 1, expected=expected)
+    PooledEvaluator(np.square, make, np.concatenate, 2, expected=expected, batch_size=2)
+    assert begun == [True] * is_early
+
+
+def test_processes_are_for_all_designs_to_come(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not for those of a call alone, of which a search makes many short ones."""
+    monkeypatch.setattr(pooling, "QUICK", 0.0)
+    few, many = (
+        PooledEvaluator(np.square, lambda: np.square, np.concatenate, 2, expected=count)
+        for count in (8, 399)
+    )
+    moments = iter(range(100))
+    monkeypatch.setattr(pooling, "monotonic", lambda: 0.1 * next(moments))  # of a design
+    for evaluate in (few, many):
+        evaluate(np.arange(1.0))
+        assert not evaluate.is_shared_out, "the first takes long for another reason"
+        evaluate(np.arange(1.0))
+    assert (few.is_shared_out, many.is_shared_out) == (False, True)
+
+
 def test_loops_share_out_nothing(at_once: list[Any]) -> None:
     some = load_study("study-of-balance")
     with pooled(some, 2) as evaluate:
