@@ -58,8 +58,9 @@ def page_of(room: ModuleType, homes: dict[Any, str], shown: dict[Any, Sample]) -
     name = room.__name__
     lines = [f"# {name}", "", "```{eval-rst}", f".. py:module:: {name}", ""]
     lines += [inspect.cleandoc(room.__doc__ or ""), "", ".. toctree::", "   :hidden:", ""]
-    rooms = [one.__name__ for one in offered(room).values() if isinstance(one, ModuleType)]
-    lines += [*(f"   {one}" for one in rooms), "", *(f"* :doc:`{one}`" for one in rooms), ""]
+    rooms = [one for one in offered(room).values() if isinstance(one, ModuleType)]
+    lines += [*(f"   {one.__name__}" for one in rooms), ""]
+    lines += [*(f"* :doc:`{one.__name__}`: {summary(one)}" for one in rooms), ""]
     own = {key: one for key, one in offered(room).items() if not isinstance(one, ModuleType)}
     lines += table((f":py:obj:`{key} <{homes.get(one, f'{name}.{key}')}>`", summary(one))
                    for key, one in own.items())  # fmt: skip
@@ -75,9 +76,11 @@ def page_of(room: ModuleType, homes: dict[Any, str], shown: dict[Any, Sample]) -
 
 
 def summary(one: Any) -> str:
-    """What something is, in the first sentence of its docstring, without markup."""
+    """What something is, in the first sentence of its docstring; names of code as such."""
     text = " ".join(inspect.cleandoc(one.__doc__ or "").partition("\n\n")[0].split())
-    return text.partition(". ")[0].replace("`", "").replace("*", r"\*").rstrip(".;")
+    parts = text.partition(". ")[0].rstrip(".;").split("`")
+    parts[::2] = [part.replace("*", r"\*") for part in parts[::2]]
+    return "`".join(parts)
 
 
 def table(rows: Iterable[tuple[str, str]]) -> Iterator[str]:

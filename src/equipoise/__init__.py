@@ -5,8 +5,8 @@
 >>> round(analysis.summary["shaking_force.y"].peak, 1)
 23.1
 
-What is public is in the stub beside this file, and so it is of each room; a name is imported when
-it is first used.
+The stub file of this package and of each of its subpackages, ``__init__.pyi``, lists the public
+names. A name is imported when it is first used.
 """
 
 import sys

@@ -204,7 +204,7 @@ def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
         )
     elif largest is not None:
         yield say(
-            "No counterweight that fits helps here: the trouble is {figure}.",
+            "No counterweight that fits reduces what is large here: {figure}.",
             figure=largest.label.said(),
         )
 
@@ -498,11 +498,11 @@ def _asking_for_more(balanced: Balanced) -> Iterator[str]:
             "links."
         )
     of_one = to_say(
-        "The file does not say what may be changed: [balance] in it asks for something else, or "
+        "The file does not say what may be changed: write that into a table [balance], or give "
         "options such as --objective, --counterweight and --move-cm."
     )
     of_rows = to_say(
-        "The file does not say what may be changed: [balance] in it asks for something else, or "
+        "The file does not say what may be changed: write that into a table [balance], or give "
         "options such as --objective, --phases, --counterweight and --move-cm."
     )
     yield say(of_rows if len(balanced.original.rows) > 1 else of_one)

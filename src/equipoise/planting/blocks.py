@@ -36,6 +36,11 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
 
 LIMITS = {"acceleration": to_say("all the way"), "soil_acceleration": to_say("in the soil")}
+LIMITED = {
+    "acceleration": "max_acceleration.value",
+    "soil_acceleration": "soil.max_acceleration.value",
+}
+"""Limit of acceleration -> the figure that is to keep to it."""
 DRIVEN = (
     to_say("{link} driven at {speed} rpm, counterclockwise; machine drives {travel} at {forward}"),
     to_say("{link} driven at {speed} rpm, clockwise; machine drives {travel} at {forward}"),
@@ -263,6 +268,11 @@ def _clearances(pages: Sequence[FigureCells]) -> Iterator[Block]:
     yield Table(title, columns, tuple(rows))
 
 
+def is_over(speed: float, highest: float) -> bool:
+    """Whether a drive is faster, by more than rounding, than the highest speed of a limit."""
+    return speed > highest * (1 + 1e-9)
+
+
 def _limits(pages: Sequence[FigureCells]) -> Iterator[Block]:
     """Limits of acceleration; a highest speed that is below the machine's stands out."""
     speed = abs(pages[0].figures.machine.drive.speed)
@@ -271,7 +281,7 @@ def _limits(pages: Sequence[FigureCells]) -> Iterator[Block]:
         figures = ("limit", "highest_speed", "highest_forward_speed")
         limit, highest, forward = (page.cell(f"limits.{name}.{what}") for what in figures)
         if highest is not None:
-            over = broken_if(speed > highest.value * (1 + 1e-9))
+            over = broken_if(is_over(speed, highest.value))
             of = say(label)
             of = say("{what}, tip {tip}", what=of, tip=page.figures.tip) if pages[1:] else of
             rows.append((of, limit, replace(highest, emphasis=over), forward))

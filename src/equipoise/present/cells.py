@@ -13,6 +13,8 @@ from equipoise.i18n import Note, decimals, listed, say, spoken
 from equipoise.quantities import Dimension, Display, change, display, fixed, typeset
 from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.blocks import (
+    FAINT,
+    FAINT_IN_ROW,
     Cell,
     Column,
     Emphasis,
@@ -27,10 +29,6 @@ Kind = tuple[Dimension | None, str | None]
 """Dimension and unit of a number; those of one kind have one unit in a table."""
 Sizes = Mapping[tuple[int, Kind], float]
 """The largest number of each kind in each column; numbers that are rounding beside it show as 0."""
-FAINT, FAINT_IN_ROW = 1e-5, 1e-4
-"""Over the largest number of its kind in a table, and in a row, which has one subject: a smaller
-number has no meaning for a reader, since the large one has four digits, and is shown as 0."""
-
 UNCHANGED = change(1.0, 1.0)
 """Text of `change` for two equal figures."""
 

@@ -114,8 +114,8 @@ def direction(force: Array) -> tuple[float, float]:
     return float(np.arctan2(y, x) % pi), share
 
 
-STRETCHED, ROUND = 0.8, 0.6
-"""Share of the mean square along one direction: from where, and up to where, it is called so."""
+ROUND = 0.6
+"""Share of the mean square along one direction up to which a force acts in all alike."""
 
 
 def acting(force: Array) -> str:
@@ -123,9 +123,9 @@ def acting(force: Array) -> str:
     way, share = direction(force)
     if share <= ROUND:
         return say("The force acts in all directions alike, turning with the crank")
-    if share >= STRETCHED and abs(sin(way)) > cos(pi / 6):
+    if abs(sin(way)) > cos(pi / 6):
         return say("The force acts mostly up and down")
-    if share >= STRETCHED and abs(cos(way)) > cos(pi / 6):
+    if abs(cos(way)) > cos(pi / 6):
         return say("The force acts mostly to and fro")
     return say("The force acts mostly along {angle} from the x axis", angle=angle(way))
 
@@ -139,9 +139,14 @@ def largest_joint(analysis: Analysis) -> tuple[str, Figures]:
 
 def largest_of(sizes: Mapping[str, float]) -> tuple[str, float]:
     """Name and size of the largest of some; of equal ones the first."""
+    names, top = all_largest(sizes)
+    return next(iter(names), ""), top
+
+
+def all_largest(sizes: Mapping[str, float]) -> tuple[list[str], float]:
+    """Names of all that are as large as the largest of some, and its size."""
     top = max(sizes.values(), default=0.0)
-    name = next((name for name, size in sizes.items() if size >= (1 - NOTHING) * top), "")
-    return name, top
+    return [name for name, size in sizes.items() if size >= (1 - NOTHING) * top], top
 
 
 def first_gauge(response: Response | None) -> str:
@@ -242,11 +247,11 @@ def counted(analysis: Analysis) -> str:
 def heaviest(analysis: Analysis) -> str:
     """Which link has most of the mass."""
     links = analysis.machine.links
-    name, mass = largest_of({name: link.mass or 0.0 for name, link in links.items()})
-    if not mass or any(link.mass is None for link in links.values()):
+    names, mass = all_largest({name: link.mass or 0.0 for name, link in links.items()})
+    if not mass or names[1:] or any(link.mass is None for link in links.values()):
         return ""
     share = percent(mass / analysis.machine.mass)
-    return say("{link} has {share} % of the mass of the links", link=named(name), share=share)
+    return say("{link} has {share} % of the mass of the links", link=named(*names), share=share)
 
 
 def longest(analysis: Analysis) -> str:
@@ -256,21 +261,27 @@ def longest(analysis: Analysis) -> str:
         name: float(np.sum(np.abs(point.place - np.roll(point.place, 1)))) / turns
         for name, point in analysis.motion.points.items()
     }
-    name, length = largest_of(lengths)
+    names, length = all_largest(lengths)
     size = format_quantity(length, "length", digits=3)
     in_turn = to_say("{point} goes farthest: {length} in a turn of the crank")
     in_cycle = to_say("{point} goes farthest: {length} in a cycle")
     template = in_turn if analysis.machine.crank_turns else in_cycle
-    return say(template, point=named(name), length=size)
+    if names[1:]:
+        in_turn = to_say("No point goes farther than {length} in a turn of the crank")
+        in_cycle = to_say("No point goes farther than {length} in a cycle")
+        return say(in_turn if analysis.machine.crank_turns else in_cycle, length=size)
+    return say(template, point=named(*names), length=size)
 
 
 def fastest(analysis: Analysis) -> str:
     """Which point moves fastest."""
     motion = analysis.motion
     speeds = ((name, np.abs(point.velocity)) for name, point in motion.points.items())
-    name, speed = largest_of({name: motion.figures(each).peak for name, each in speeds})
+    names, speed = all_largest({name: motion.figures(each).peak for name, each in speeds})
     size = format_quantity(speed, "speed", digits=3)
-    return say("{point} is the fastest point, at up to {speed}", point=named(name), speed=size)
+    if names[1:]:
+        return say("No point moves faster than {speed}", speed=size)
+    return say("{point} is the fastest point, at up to {speed}", point=named(*names), speed=size)
 
 
 def stroked(analysis: Analysis) -> str:
@@ -392,11 +403,14 @@ def peaked(analysis: Analysis, name: str, dimension: Dimension) -> str:
 
 
 def topped(what: str, figures: Figures, unit: Display) -> str:
-    """The value of something whose absolute value is largest, and at which crank angle."""
+    """The largest size of something, and at which crank angle, where that is one."""
+    size = unit.with_unit(unit.text(figures.peak, digits=3))
+    if figures.is_constant():
+        return say("{what}: {value} at every crank angle", what=capital(what), value=size)
     return say(
         "{what}: up to {peak}, at crank angle {angle}",
         what=capital(what),
-        peak=unit.with_unit(unit.text(figures.signed_peak, digits=3)),
+        peak=size,
         angle=angle(figures.peak_at),
     )
 
@@ -442,8 +456,10 @@ def carried(analysis: Analysis) -> str:
 
 
 def joint_peaked(analysis: Analysis) -> str:
-    """At which crank angle that joint carries most."""
+    """At which crank angle that joint carries most; empty where it always carries as much."""
     name, figures = largest_joint(analysis)
+    if figures.is_constant():
+        return ""
     at = angle(figures.peak_at)
     text = to_say("Joint {name} carries most at crank angle {angle}")
     return say(text, name=named(joint_named(name)), angle=at)

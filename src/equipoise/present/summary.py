@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import product
 from math import pi
 
 from equipoise.balancing.comparison import WORSE
@@ -11,6 +12,8 @@ from equipoise.balancing.sentences import capital, deterioration_sentences, list
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.outputs.declared import joint_named, named
+from equipoise.planting.blocks import LIMITED, is_over
+from equipoise.planting.names import FIGURES
 from equipoise.planting.summary import PlantingFigures
 from equipoise.present.findings import Findings
 from equipoise.present.headlines import Shaking, acting, largest_joint
@@ -31,6 +34,7 @@ from equipoise.results.joint_blocks import display_of_joints
 from equipoise.results.machine_blocks import pushed_named
 from equipoise.results.outputs import CAUSES, objective_named, shown_in
 from equipoise.results.scales import scale_of
+from equipoise.signals import Figures
 from equipoise.vibration.linear import resonance_note, within
 
 SMALL = 0.005
@@ -60,7 +64,7 @@ def answers(findings: Findings, stated: str = "") -> Iterator[SummaryAnswer]:
     if vibration := tuple(vibration_sentences(findings)):
         yield SummaryAnswer(say("What that does to the support"), vibration)
     if planting := tuple(planting_sentences(findings)):
-        yield SummaryAnswer(say("Planting"), planting)
+        yield SummaryAnswer(say("Planting"), planting, tuple(broken_limits(findings)))
 
 
 def tiles(findings: Findings) -> Iterator[Tile]:
@@ -71,7 +75,7 @@ def tiles(findings: Findings) -> Iterator[Tile]:
         return
     size = Shaking.of(findings).size
     after = None if later is None else Shaking.of(later).size.peak
-    note = _at(size.peak_at) if size.peak else ""
+    note = _at(size) if size.peak else ""
     force = display_of_totals(analysis, "shaking_force")
     template = to_say("all rows: {what}") if len(findings.machine.rows) > 1 else "{what}"
     label = say(template, what=say("shaking force, peak"))
@@ -86,7 +90,7 @@ def tiles(findings: Findings) -> Iterator[Tile]:
         name = analysis.whole(output)
         item, scale = analysis.summary[name], scale_of(analysis, kind)
         after = None if later is None else later.analysis.summary[name].signed_peak
-        note = _at(item.peak_at) if brief(item.peak, scale) != "0" else ""
+        note = _at(item) if brief(item.peak, scale) != "0" else ""
         unit = display_of_totals(analysis, name)
         yield _tile(say(template, what=label), item.signed_peak, unit, note, scale, after)
     if analysis.forces.joints:
@@ -128,8 +132,10 @@ def _tile(
     return Tile(label, before, unit.name, note, later if later != before else "", grown)
 
 
-def _at(crank_angle: float) -> str:
-    return say("at crank angle {angle}", angle=angle(crank_angle))
+def _at(figures: Figures) -> str:
+    if figures.is_constant():
+        return say("at every crank angle")
+    return say("at crank angle {angle}", angle=angle(figures.peak_at))
 
 
 # -- what shakes, and why --------------------------------------------------------------------------
@@ -150,6 +156,15 @@ def _shaking_sentences(findings: Findings, shaking: Shaking) -> Iterator[str]:
             "At {speed} rpm the linkage shakes its frame with a force of up to {peak} "
             "({rms} RMS), largest at a crank angle of {angle}."
         )
+        if size.is_constant():
+            of_rows = to_say(
+                "At {speed} rpm the {rows} rows together shake their frame with a force of {peak} "
+                "at every crank angle."
+            )
+            of_one = to_say(
+                "At {speed} rpm the linkage shakes its frame with a force of {peak} at every "
+                "crank angle."
+            )
         yield say(
             of_rows if rows > 1 else of_one,
             speed=speed,
@@ -292,6 +307,10 @@ def vibration_sentences(findings: Findings) -> Iterator[str]:
         template = to_say(
             "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm."
         )
+        if gauge.rotation:
+            template = to_say(
+                "{gauge}: the support turns by {size} {unit} peak to peak at {speed} rpm."
+            )
         if later is not None:
             after = float(later.gauges[name].displacement.peak_to_peak)
             words["after"] = unit.text(after, moved, 3)
@@ -299,6 +318,11 @@ def vibration_sentences(findings: Findings) -> Iterator[str]:
                 "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm, and by "
                 "{after} {unit} after that change."
             )
+            if gauge.rotation:
+                template = to_say(
+                    "{gauge}: the support turns by {size} {unit} peak to peak at {speed} rpm, and "
+                    "by {after} {unit} after that change."
+                )
         yield say(template, **words)
     if findings.sweep is None or not findings.sweep.resonances:
         return
@@ -335,6 +359,35 @@ def planting_sentences(findings: Findings) -> Iterator[str]:
     of_one = to_say("The tip moves at up to {speed} relative to the machine.")
     of_several = to_say("The tips move at up to {speed} relative to the machine.")
     yield say(of_several if several else of_one, speed=fastest)
+    yield from (sentence for sentence, _ in _tip_limits(findings.planting))
+
+
+def broken_limits(findings: Findings) -> Iterator[str]:
+    """Those of the sentences on planting that say that a limit is broken."""
+    if findings.planting is not None:
+        yield from (text for text, broken in _tip_limits(findings.planting) if broken)
+
+
+def _tip_limits(planting: PlantingFigures) -> Iterator[tuple[str, bool]]:
+    """Whether the tip keeps its limits of acceleration, up to which speed; and if one is broken."""
+    speed = abs(planting.machine.drive.speed)
+    for arm, (name, limited) in product(planting.arms, LIMITED.items()):
+        highest = arm.get(f"limits.{name}.highest_speed")
+        if highest is None:
+            continue
+        over = to_say(
+            "{what}, {size}, is over its limit of {limit}, which is kept up to {highest} rpm."
+        )
+        kept = to_say("{what}, {size}, keeps to its limit of {limit}, up to {highest} rpm.")
+        broken = is_over(speed, highest)
+        sentence = say(
+            over if broken else kept,
+            what=capital(say(FIGURES[limited].words)),
+            size=format_quantity(arm[limited], "acceleration", digits=3),
+            limit=format_quantity(arm[f"limits.{name}.limit"], "acceleration", digits=3),
+            highest=brief(highest / PER_RPM),
+        )
+        yield sentence, broken
 
 
 def _hills(planting: PlantingFigures) -> Iterator[str]:

@@ -204,6 +204,8 @@ _SHOWN: dict[Dimension, str] = {
     "inertia": "kg mm^2",
     "unbalance": "g mm",
     "volume": "cm^3",
+    "modulus": "MPa",
+    "pressure times speed": "MPa m/s",
 }
 """Unit that is shown usually; SI of every other dimension."""
 
@@ -225,6 +227,8 @@ _SCALES: tuple[tuple[str, ...], ...] = (
     ("N/m", "kN/m", "MN/m"),
     ("Hz", "kHz"),
     ("ms", "s"),
+    ("Pa", "kPa", "MPa", "GPa"),
+    ("Pa m/s", "MPa m/s"),
 )
 """Units of which the next is taken where numbers become too small or too large."""
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.i18n import say
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.strokes import SHARE, Dwell
 from equipoise.mechanism.outputs.declared import joint_named
 from equipoise.quantities import Dimension, Display, angle, display, percent
@@ -76,8 +76,9 @@ def question_blocks(analysis: Analysis) -> Iterator[Block]:
 def motion_blocks(analysis: Analysis) -> Iterator[Block]:
     """How links and points move."""
     if analysis.four_bar is not None:
+        carried = analysis.motion.linkage.shared is not None
         yield four_bar_table(analysis.four_bar)
-        yield Facts("", tuple(four_bar_facts(analysis.four_bar)))
+        yield Facts("", tuple(four_bar_facts(analysis.four_bar, carried)))
     if analysis.strokes:
         yield strokes_table(analysis)
         yield advantages_table(analysis)
@@ -153,11 +154,14 @@ def advantages_table(analysis: Analysis) -> Table:
         say("torque over crank torque"),
     )
     there = [k for k in range(5) if k < 3 or any(row[k] is not None for row in rows)]
-    title = say(
-        "Crank angle over which they rise; longest dwell within {share} % of the stroke; least "
-        "mechanical advantage, which has no bound towards dead positions",
-        share=percent(SHARE),
+    without = to_say(
+        "Crank angle over which they rise; longest dwell within {share} % of the stroke"
     )
+    pushing = to_say(
+        "Crank angle over which they rise; longest dwell within {share} % of the stroke; least "
+        "mechanical advantage, which has no bound towards dead positions"
+    )
+    title = say(pushing if there[3:] else without, share=percent(SHARE))
     return Table.of(title, [columns[k] for k in there], ([row[k] for k in there] for row in rows))
 
 

@@ -34,6 +34,11 @@ def worse_if(so: bool) -> Emphasis | None:
 # -- cells of tables -------------------------------------------------------------------------------
 
 
+FAINT, FAINT_IN_ROW = 1e-5, 1e-4
+"""Over the largest number of its kind in a table, and in a row, which has one subject: a smaller
+number has no meaning for a reader, since the large one has four digits, and is shown as 0."""
+
+
 @dataclass(frozen=True)
 class Value:
     """A number in a table, in SI units; a plain number where it has no dimension.

@@ -330,8 +330,17 @@ def four_bar_table(four_bar: FourBar) -> Table:
     return Table.of(title, ("", say("link"), say("between"), Column(say("length"), "length")), rows)
 
 
-def four_bar_facts(four_bar: FourBar) -> Iterator[str]:
-    """What else there is to say of it."""
+def four_bar_facts(four_bar: FourBar, carried: bool = False) -> Iterator[str]:
+    """What else there is to say of it.
+
+    carried : whether other links of the machine carry it through its change points.
+    """
+    if carried and not four_bar.condition_6:
+        yield say(
+            "Its links can all lie in one line; the other links of the machine carry it through "
+            "such change points"
+        )
+        return
     if four_bar.transmission_min is not None and four_bar.transmission_max is not None:
         yield say(
             "Transmission angle from {low} to {high}",

@@ -63,6 +63,9 @@ OF_CYCLES: Mapping[str, str] = {
         "Sliders and rockers: stroke between dead positions (where in the cycle), and time of the "
         "slower stroke over that of the faster"
     ),
+    "Crank angle over which they rise; longest dwell within {share} % of the stroke": to_say(
+        "Part of the cycle over which they rise; longest dwell within {share} % of the stroke"
+    ),
     "Crank angle over which they rise; longest dwell within {share} % of the stroke; least "
     "mechanical advantage, which has no bound towards dead positions": to_say(
         "Part of the cycle over which they rise; longest dwell within {share} % of the stroke; "

@@ -1,4 +1,4 @@
-"""The door: model files in TOML, tables in CSV, units.  Everything inside is SI and radians."""
+"""Files: models in TOML, tables in CSV, units.  Everything inside is SI and radians."""
 
 from __future__ import annotations
 

@@ -12,6 +12,7 @@ from equipoise.i18n import Note, coordinates, say, to_say
 from equipoise.quantities import PER_RPM, Dimension, display, format_quantity, number
 from equipoise.results.analysis_blocks import loud
 from equipoise.results.blocks import (
+    FAINT_IN_ROW,
     Block,
     Cell,
     Column,
@@ -171,10 +172,12 @@ def _orders(response: Response) -> Table:
     sizes = {name: gauge.displacement.sizes for name, gauge in response.gauges.items()}
     count = max(map(len, sizes.values()))
     padded = {name: np.pad(size, (0, count - len(size))) for name, size in sizes.items()}
-    places = loud(list(padded.values()))
+    tops = {name: float(np.max(size[1:], initial=0.0)) for name, size in padded.items()}
+    least = {name: max(FAINT_IN_ROW * top, ROUNDING * NOTHING) for name, top in tops.items()}
+    places = loud([np.where(size > least[name], size, 0.0) for name, size in padded.items()])
     rows: list[tuple[Cell, ...]] = []
     for name, size in padded.items():
-        scale = max(1e3 * float(np.max(size[1:], initial=0.0)), NOTHING)
+        scale = max(1e3 * tops[name], NOTHING)
         rotation = response.gauges[name].rotation
         rows.append((name, *(reading(float(size[k]), rotation, scale) for k in places)))
     columns = (say("order"), *(f"{k / response.turns:.4g}" for k in places))

@@ -24,10 +24,22 @@ from equipoise.figures.style import SMALL
 from equipoise.i18n.languages import KNOWN
 from equipoise.present import composition
 from equipoise.present import pages as composed
+from equipoise.present.cells import grid
 from equipoise.present.checks import machine_blocks
 from equipoise.present.composition import SHORT, build
 from equipoise.present.findings import Findings, ToolFindings, find
-from equipoise.present.headlines import Shaking, caused, kinematic, longest, ordered, pushed
+from equipoise.present.headlines import (
+    Shaking,
+    acting,
+    caused,
+    fastest,
+    heaviest,
+    kinematic,
+    longest,
+    ordered,
+    peaked,
+    pushed,
+)
 from equipoise.present.pages import ReportDocument, page, paired, pdf
 from equipoise.present.pictures import each
 from equipoise.present.summary import answers, tiles
@@ -88,10 +100,54 @@ def test_a_turn_is_told_only_where_a_crank_turns(name: str, length: str) -> None
     told, places = longest(analysis), [one.place for one in analysis.motion.points.values()]
     way = max(float(np.sum(np.abs(place - np.roll(place, 1)))) for place in places)
     turns = analysis.motion.turns if length == "in a turn" else 1
-    (size,) = re.findall(rf": ([\d.]+) mm {length}", told)
+    (size,) = re.findall(rf"([\d.]+) mm {length}", told)
     assert float(size) == pytest.approx(way / turns * 1e3, rel=5e-3)
     lines = [crank_angles_text(analysis), *(str(one) for one in machine_blocks(analysis.machine))]
     assert any(" turn" in line for line in lines) == (length == "in a turn")
+
+
+def test_what_is_alike_everywhere_has_no_place_of_its_own() -> None:
+    """Walkers whose throws cancel in part: a force of one size, and points that move alike."""
+    analysis = eq.analyze(eq.load("straw-walker"), 72)
+    assert (
+        peaked(analysis, "shaking_force", "force") == "Shaking force: 62.0 N at every crank angle"
+    )
+    assert fastest(analysis) == "No point moves faster than 1.05 m/s"
+    assert longest(analysis).startswith("No point goes farther than 314 mm")
+    assert heaviest(analysis) == ""
+    told = str([*analysis.blocks()])
+    assert "carry it through" in told and "may flip" not in told and "rocker is" not in told
+
+
+@pytest.mark.parametrize(
+    ("across", "along", "told"),
+    [(0.6, 1.0, "up and down"), (1.0, 0.5, "to and fro"), (1.0, 0.9, "in all directions")],
+)
+def test_a_force_acts_in_words_of_directions(across: float, along: float, told: str) -> None:
+    turned = np.linspace(0.0, 2 * np.pi, 36, endpoint=False)
+    assert told in acting(across * np.cos(turned) + 1j * along * np.sin(turned))
+
+
+def test_titles_name_no_column_that_is_not_there() -> None:
+    """A cylinder's rockers have a dwell and no advantage over a crank's torque."""
+    for name, there in (("hydraulic-loader", False), ("quick-return", True)):
+        blocks = eq.analyze(eq.load(name), 72).blocks()
+        (title,) = (one.title for one in blocks if isinstance(one, Table) and "dwell" in one.title)
+        assert ("mechanical advantage" in title) is there
+
+
+def test_a_gauge_without_motion_brings_no_orders_of_its_own() -> None:
+    """With rows against each other nothing rolls: what rounding leaves of it is not listed."""
+    machine = eq.load("riding-transplanter")
+    rows = [
+        replace(row, phase=phase)
+        for row, phase in zip(machine.rows, (0, np.pi, np.pi, 0), strict=True)
+    ]
+    (table,) = (one for one in eq.respond(replace(machine, rows=tuple(rows))).blocks()
+                if isinstance(one, Table) and one.title.startswith("Gauges by order"))  # fmt: skip
+    shown = grid(table)
+    for place in range(1, len(shown.heads)):
+        assert {row[place].text for row in shown.rows} > {"0"}, shown.heads[place].label
 
 
 def test_drives_that_only_swing_have_no_speed_in_rpm() -> None:

@@ -135,7 +135,7 @@ def shown_blocks(blocks: Iterable[Block | ReportSection]) -> Iterator[Block | Re
             yield from shown_blocks(block.blocks)
 
 
-DERIVED = (" goes farthest: ", " from the x axis")
+DERIVED = (" goes farthest: ", "No point goes farther than ", " from the x axis")
 """In titles that say what follows from the signals of the JSON by more than a figure of one."""
 
 

@@ -22,9 +22,16 @@ from equipoise.present.cells import grid, noted, printed
 from equipoise.present.composition import balance_blocks, report_page
 from equipoise.present.findings import Findings
 from equipoise.present.pictures import pictures
-from equipoise.present.summary import Shaking, answers, planting_sentences, tiles
+from equipoise.present.summary import (
+    Shaking,
+    answers,
+    broken_limits,
+    planting_sentences,
+    tiles,
+    vibration_sentences,
+)
 from equipoise.present.tool_summary import tool_answers
-from equipoise.quantities import brief
+from equipoise.quantities import PER_RPM, brief
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.blocks import Table
 from equipoise.schema.documents import dumps
@@ -152,6 +159,31 @@ def test_every_arm_is_told(ahead: float, hills: str):
     assert fastest.startswith("The tips move at up to")
 
 
+@pytest.mark.parametrize(("speed", "broken"), [(240.0, True), (200.0, False)])
+def test_limits_of_the_tip_are_said_to_be_kept_or_not(speed: float, broken: bool):
+    """At the speed of the file, and at one that keeps them; accelerations grow with its square."""
+    machine = eq.load("transplanter").with_drive(speed=speed * PER_RPM)
+    (arm,) = (figures := eq.plant(machine)).arms
+    told = SimpleNamespace(planting=figures)
+    (sentence,) = (one for one in planting_sentences(told) if "limit" in one)
+    highest = speed * np.sqrt(150.0 / arm["max_acceleration.value"])
+    assert sentence.startswith(
+        f"Largest acceleration of the tip, {brief(arm['max_acceleration.value'])}"
+    )
+    assert "limit of 150" in sentence and f"up to {brief(highest)} rpm" in sentence
+    assert ("is over its limit" in sentence) is broken
+    assert [*broken_limits(told)] == ([sentence] if broken else [])
+
+
+def test_a_support_turns_where_its_gauge_does():
+    """What reads an angle is not said to move."""
+    told = SimpleNamespace(
+        response=eq.respond(eq.load("riding-transplanter")), after=None, sweep=None
+    )
+    verbs = {one.partition(":")[0]: "support turns" in one for one in vibration_sentences(told)}
+    assert [*verbs.values()] == [False, False, True, True]
+
+
 def test_numbers_are_set_as_in_print():
     shown = printed("-0.01235 to 1.000e-09 m/s^2, a-1 and 2026-11-22, (-1, -2)")
     assert shown == "\u22120.01235 to 1.000×10⁻⁹ m/s², a-1 and 2026-11-22, (\u22121, \u22122)"
@@ -168,7 +200,7 @@ def test_where_balancing_brings_nothing_that_is_said_and_not_drawn():
     assert after == before
     told = text_of(found)
     assert (
-        "No counterweight that fits helps here: the trouble is drive torque, peak to peak." in told
+        "No counterweight that fits reduces what is large here: drive torque, peak to peak." in told
     )
     assert "add a counterweight" not in told
     assert [*tiles(found)][-1].note == "leave the masses as they are"

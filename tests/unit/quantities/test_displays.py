@@ -154,3 +154,10 @@ def test_a_wrong_unit_in_python() -> None:
     assert ShownUnits(length="in", angular_speed="rpm").by_dimension == {
         "length": "in", "angular speed": "rpm",
     }  # fmt: skip
+
+
+def test_stresses_are_in_the_unit_of_workshops() -> None:
+    """Of parts from a soft bearing to steel, and their wear."""
+    for stress, text in ((316_506.0, "0.3165 MPa"), (75.98e6, "75.98 MPa"), (206e9, "206.0 GPa")):
+        assert format_quantity(stress, "modulus") == text
+    assert format_quantity(1.623e6, "pressure times speed") == "1.623 MPa m/s"
