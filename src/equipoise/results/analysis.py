@@ -16,7 +16,6 @@ from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.dynamics.assessment import FourBar, four_bar
 from equipoise.mechanism.dynamics.bearing_life import BearingLife, bearing_lives
-from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.dynamics.link_stress import LinkStress, link_stresses
 from equipoise.mechanism.dynamics.losses import Losses, losses_of
@@ -34,7 +33,12 @@ from equipoise.mechanism.parts.machine import Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
 from equipoise.quantities import Dimension, column_heading
 from equipoise.results.declaring import OWN, Declarations, ResultOutput, values_of
-from equipoise.results.outputs import AnalysisOutput, AnalysisOutputs, figures_by_name
+from equipoise.results.outputs import (
+    AnalysisOutput,
+    AnalysisOutputs,
+    figures_by_name,
+    figures_of_kinds,
+)
 from equipoise.results.remarks import remarks_of
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, Periodic
@@ -106,9 +110,18 @@ class Analysis(Result):
         return strokes(self.motion.linkage)
 
     @cached_property
-    def cams(self) -> Mapping[str, CamFigures]:
-        """Figures of every cam, by name: how sharp it is, and when its follower lifts off."""
-        return cam_figures(self.motion, self.solved)
+    def part_figures(self) -> Mapping[str, Mapping[str, Any]]:
+        """Figures of parts by list of the file and name: of ``cams`` how sharp each is, and when
+        its follower lifts off.
+        """
+        kinds = figures_of_kinds(type(self.machine)).items()
+        return {table: figures.of_parts(self.motion, self.solved) for table, figures in kinds}
+
+    def __getattr__(self, name: str) -> Any:
+        """Figures of parts under the name of their list, such as `cams`."""
+        if not name.startswith("_") and name in figures_of_kinds(type(self.machine)):
+            return self.part_figures[name]
+        raise AttributeError(f"{type(self).__name__} has no {name!r}")
 
     def dwell(self, name: str, tolerance: float | None = None) -> Dwell:
         """Longest crank angle over which a slider, link or point moves by no more than a tolerance

@@ -10,8 +10,8 @@ from equipoise.i18n import say
 from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
 from equipoise.quantities import format_quantity
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
+from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.machine_blocks import largest, smallest
-from equipoise.results.remarks import remarks_of
 
 if TYPE_CHECKING:
     from equipoise.mechanism.assembly.joints import Structure
@@ -25,7 +25,7 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
     motion, solved = analysis.resolved.motion, analysis.resolved.solved
     limited = any(cam.lift_off_speed is not None for cam in analysis.cams.values())
     for name, item in analysis.cams.items():
-        steep = motion.figures(abs(motion.pressure_angles[name]))
+        steep = motion.figures(abs(analysis.outputs[f"cams.{name}.pressure_angle"].values))
         row: tuple[Cell, ...] = (
             name.replace(" to ", " → "),
             Value(item.least_radius),
@@ -48,7 +48,7 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
     shown = len(rows[0]) - (len(rows[0]) == len(columns) and not limited)
     title = say("Cams; largest and smallest with the crank angle")
     yield Table.of(title, columns[:shown], (row[:shown] for row in rows))
-    if lost := (*remarks_of(analysis, "cams"),):
+    if solved is not None and (lost := lost_contacts(solved)):
         yield Notes(lost)
 
 

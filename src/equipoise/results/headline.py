@@ -126,9 +126,8 @@ def _next(analysis: Analysis, first: FigureAssessment | None) -> Iterator[str]:
 
 
 def _output_of(analysis: Analysis, first: FigureAssessment | None) -> str:
-    """The output to look at: that of the verdict, of a cam its contact force."""
+    """The output to look at: that of the verdict, of a contact its force."""
     if first is None:
         return ""
     names = (first.output, f"{first.output}.normal")
-    contact = first.output.startswith("cams.")
-    return next((name for name in names[contact:] if name in analysis.outputs), "")
+    return next((name for name in names[first.is_contact :] if name in analysis.outputs), "")

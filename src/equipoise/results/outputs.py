@@ -14,9 +14,9 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
+from equipoise.keys import Frozen
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.bearing_life import BearingLife
-from equipoise.mechanism.dynamics.cam_contacts import CamFigures
 from equipoise.mechanism.dynamics.link_stress import LinkStress
 from equipoise.mechanism.dynamics.plain_bearing_duty import PlainBearingDuty
 from equipoise.mechanism.dynamics.reactions import refuse_unbounded
@@ -29,6 +29,8 @@ from equipoise.mechanism.outputs.declared import (
     declared,
     kept_until_declared,
 )
+from equipoise.mechanism.parts.element_kinds import named_function, part_kinds
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import SI, Dimension, Display, display
 from equipoise.signals import Array, Figures, Periodic
 
@@ -389,26 +391,39 @@ def tops_of(outputs: Iterable[tuple[AnalysisOutput, Array]]) -> dict[Dimension |
 
 
 NAMED_FIGURES: dict[str, type] = {
-    "cams": CamFigures,
     "rolling_bearings": BearingLife,
     "plain_bearings": PlainBearingDuty,
     "sections": LinkStress,
 }
-"""Classes with declared figures by attribute of an `Analysis`, which maps names to them, and key
-of the JSON object."""
+"""Those of joints and links for `named_figures`."""
+
+
+def figures_of_kinds(of: type[Frozen] = Machine) -> dict[str, Any]:
+    """Classes of figures that kinds of parts name, by their lists in a class of machines."""
+    kinds = part_kinds(of).items()
+    return {table: named_function(kind.figures) for table, kind in kinds if kind.figures}
+
+
+def named_figures(of: type[Frozen] = Machine) -> dict[str, type]:
+    """Classes with declared figures by attribute of an `Analysis`, which maps names to them, and
+    key of the JSON object.
+
+    of : class of the machine.
+    """
+    return figures_of_kinds(of) | NAMED_FIGURES
 
 
 def dimensions_by_path() -> dict[str, Dimension | None]:
     """Dimension of each figure by a regular expression for its path."""
     return {
         rf"{table}\..*\.{declared_figure.name}": declared_figure.metadata["dimension"]
-        for table, of in NAMED_FIGURES.items()
+        for table, of in named_figures().items()
         for declared_figure in declared_figures(of)
     }
 
 
 def figures_by_name(analysis: Any) -> Iterator[tuple[str, str, Any]]:
     """Key of the JSON object, name and figures of each part of an `Analysis` that has some."""
-    for table in NAMED_FIGURES:
+    for table in named_figures(type(analysis.machine)):
         for name, figures in getattr(analysis, table).items():
             yield table, name, figures

@@ -11,15 +11,15 @@ from equipoise.mechanism.dynamics.assessment import joint_remarks, mass_remarks,
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.reactions import idle_teeth_notes
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.element_kinds import named_function, part_kinds
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.results.braking import braking_motor
-from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.outputs import AnalysisOutputs
 from equipoise.results.slender_links import slender_links
 from equipoise.results.unreached_tables import unreached_tables
 
-Place = Literal["cams", "joints", "sections", "end"]
+Place = Literal["parts", "joints", "sections", "end"]
 
 
 class AnalyzedMachine(Protocol):
@@ -52,6 +52,14 @@ class RemarkKind(NamedTuple):
     of_linkage: Callable[[Linkage], Iterable[Note | str]] = lambda _: ()
 
 
+def part_remarks(forces: Forces) -> Iterator[Note]:
+    """What kinds of parts say of their own, which stands beside their tables."""
+    machine = forces.motion.machine
+    for table, kind in part_kinds(type(machine)).items():
+        if kind.remarks and getattr(machine, table):
+            yield from named_function(kind.remarks)(forces)
+
+
 KINDS = (
     RemarkKind("end", of_linkage=lambda linkage: mass_remarks(linkage.machine)),
     RemarkKind("joints", of_linkage=joint_remarks),
@@ -62,7 +70,7 @@ KINDS = (
     ),
     RemarkKind("end", of_linkage=questions),
     RemarkKind("end", lambda analysis: unreached_tables(analysis.motion)),
-    RemarkKind("cams", lambda analysis: lost_contacts(analysis.forces), of_forces=True),
+    RemarkKind("parts", lambda analysis: part_remarks(analysis.forces), of_forces=True),
     RemarkKind(
         "end", lambda analysis: braking_motor(analysis.motion, analysis.outputs), of_forces=True
     ),

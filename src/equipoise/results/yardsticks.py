@@ -56,15 +56,15 @@ from equipoise.quantities import SI, Dimension, angle, display, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.machine_blocks import pushing
 from equipoise.results.motor_torque import LEAST_MEAN, motor_torque
-from equipoise.results.outputs import FIGURES, AnalysisOutput
+from equipoise.results.outputs import FIGURES, AnalysisOutput, figures_by_name
 from equipoise.results.rotors import unbalances
 
 LARGE, NOTHING = 1.0, 1e-9
 """Ratio from which a figure is large, and up to which it is rounding."""
 LARGE_FROM: Mapping[str, float] = {"acting": 2.0, "effort": 1.5}
 """By yardstick, where it is another: a joint bears a load and what holds against it."""
-PRESSURE, SWINGING_PRESSURE, TRANSMISSION = radians(30), radians(45), radians(40)
-"""Largest pressure angles of a cam, and smallest transmission angle of a dyad, rad."""
+TRANSMISSION = radians(40)
+"""Smallest transmission angle of a dyad, rad."""
 NEARLY_DEAD = radians(20)
 """Of a transmission angle: below it play and friction of pins decide what moves, and forces in
 joints are three times those across, so that lengths come before what shakes."""
@@ -242,7 +242,7 @@ def assess(
         family = assessment.family[0]
         if family not in worst or assessment.ratio > worst[family].ratio:
             worst[family] = assessment
-    entries = [*worst.values(), *_of_cams(analysis), *capacities(analysis)]
+    entries = [*worst.values(), *_of_contacts(analysis), *capacities(analysis)]
     for name, reading in (readings or {}).items():
         entries += _of_gauge(analysis.machine, name, reading)
     return tuple(sorted(entries, key=lambda entry: -entry.excess))
@@ -582,9 +582,8 @@ def _acting(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
 
 
 def _pressure(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
-    (cam,) = (item for item in scales.machine.cams if item.name == output.item)
-    most = PRESSURE if cam.swing is None else SWINGING_PRESSURE
-    return _entry(output, "peak", most, Note("the usual limit"))
+    (coupling,) = (item for item in scales.machine.couplings if item.name == output.item)
+    return _entry(output, "peak", coupling.usual_pressure_angle, Note("the usual limit"))
 
 
 def _transmission(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
@@ -611,22 +610,26 @@ OF_OUTPUT: Mapping[str, Callable[[_Scales, AnalysisOutput], FigureAssessment | N
 """How an output is assessed, by the yardstick that it is declared with."""
 
 
-# -- figures of cams and gauges --------------------------------------------------------------------
+# -- figures of parts and gauges -------------------------------------------------------------------
 
 
-def _of_cams(analysis: Analysis) -> Iterator[FigureAssessment]:
-    """Speeds at which followers lift off, against the speed at which the crank turns."""
+def _of_contacts(analysis: Analysis) -> Iterator[FigureAssessment]:
+    """Speeds from which contacts are lost, against the speed at which the crank turns."""
+    if not analysis.machine.crank_turns:
+        return
     speed = abs(analysis.motion.speed)
-    for name, cam in analysis.cams.items():
-        if cam.lift_off_speed is None or not analysis.machine.crank_turns:
-            continue
-        ratio = speed / cam.lift_off_speed if cam.lift_off_speed else float("inf")
-        yield FigureAssessment(
-            f"cams.{name}.lift_off_speed", Note("lift-off speed of the crank"),
-            cam.lift_off_speed, "angular speed", speed, Note("the speed of the crank"), ratio,
-            f"cams.{name}", name, cam.lift_off_at, is_limit=True, is_contact=True,
-            shown_unit="rpm",
-        )  # fmt: skip
+    for table, name, figures in figures_by_name(analysis):
+        for item in declared_figures(type(figures)):
+            at, limit = item.metadata["limits_crank"], getattr(figures, item.name)
+            if not at or limit is None:
+                continue
+            ratio = speed / limit if limit else float("inf")
+            yield FigureAssessment(
+                f"{table}.{name}.{item.name}", Note(item.metadata["label"]), limit,
+                item.metadata["dimension"], speed, Note("the speed of the crank"), ratio,
+                f"{table}.{name}", name, getattr(figures, at), is_limit=True, is_contact=True,
+                shown_unit="rpm",
+            )  # fmt: skip
 
 
 def capacities(analysis: Analysis) -> Iterator[FigureAssessment]:

@@ -400,7 +400,7 @@ def analyzed(
     ways : to figures, whose outputs alone are in arrays and summary; None for all outputs.
     """
     from equipoise.results.analysis import LEAST_ANGLES, analyze, order_values
-    from equipoise.results.outputs import NAMED_FIGURES
+    from equipoise.results.outputs import named_figures
 
     analysis = analyze(machine, angles)
     split = analysis.solved is not None and (wanted is None or not SPLIT.isdisjoint(wanted))
@@ -413,7 +413,7 @@ def analyzed(
     further: list[str] = []
     if wanted is None or "outputs" in wanted:  # those that are had by their names alone
         further = [name for name in names if outputs[name].declared.unbounded]
-    figures = wanted is None or not {"strokes", *NAMED_FIGURES}.isdisjoint(wanted)
+    figures = wanted is None or not {"strokes", *named_figures(type(machine))}.isdisjoint(wanted)
     values = analysis.to_dict(split, further, figures, None if ways is None else names)
     ordered = analysis.solved is not None and angles >= LEAST_ANGLES
     if ordered and (wanted is None or "by_order" in wanted):

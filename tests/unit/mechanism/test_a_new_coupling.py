@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Set
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import radians, tan
 from pathlib import Path
@@ -22,12 +22,17 @@ from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note
 from equipoise.keys import Listing, Quantity, declared, key
 from equipoise.mechanism import Gear, Machine
-from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.outputs.declared import CONTACT, FORCES, GROUPS, of_coupling
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.strokes import figure
+from equipoise.mechanism.outputs.declared import CONTACT, FORCES, GROUPS, of_contacts, of_coupling
 from equipoise.mechanism.parts.couplings import LineOfAction, Pushed, Relation, Seat, Turning
 from equipoise.results.machine_blocks import model_blocks
+from equipoise.results.yardsticks import assess
 from equipoise.schema.writing import key_table
 from equipoise.symbols.pieces import pieces
 from equipoise.web.gallery import sections
@@ -60,6 +65,10 @@ class Rollers(Turning):
     heading = Note("Rollers")
     counted = "{count} pairs of rollers"
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"start", "lean"}}
+    contact_values = f"{__name__}:contact_values"
+    figures = f"{__name__}:RollerFigures"
+    questions = f"{__name__}:small_rollers"
+    remarks = f"{__name__}:heavy_rollers"
 
     radii: tuple[float, float] = key(
         Listing(Quantity("length"), (2,)), "of both", example=["20 mm", "40 mm"], above=0
@@ -100,6 +109,32 @@ class Rollers(Turning):
         declare("", "force", "contact force of rollers {name}", FORCES, **CONTACT)
         declare(".friction", "force", "friction of rollers {name}",
                 loop=lambda value: value("coupling part", "friction"))  # fmt: skip
+        of_contacts(table)("creep", "length", "creep of rollers {name}")
+
+
+def contact_values(motion: Motion, rollers: Rollers) -> Mapping[str, Array]:
+    return {"creep": rollers.radii[0] * motion.links[rollers.driver].angle}
+
+
+@dataclass(frozen=True)
+class RollerFigures:
+    slip_speed: float = figure("slip speed of the crank", "angular speed", limits_crank="slips_at")
+    slips_at: float = figure("slips at crank angle", "angle")
+
+    @classmethod
+    def of_parts(cls, motion: Motion, _: Forces | None) -> dict[str, RollerFigures]:
+        return {NAME: cls(2 * motion.speed, 0.5)}
+
+    def to_dict(self) -> dict[str, float]:
+        return vars(self)
+
+
+def small_rollers(_: Linkage) -> Iterator[Note]:
+    yield Note("small rollers")
+
+
+def heavy_rollers(_: Forces) -> Iterator[Note]:
+    yield Note("heavy rollers")
 
 
 Rolled = machine_with(Rollers)
@@ -156,6 +191,19 @@ def test_analysis_has_its_force_and_its_outputs(angle: float) -> None:
         np.testing.assert_allclose(values, force.friction)
     told = " ".join(str(block) for block in model_blocks(machine))
     assert f"Rollers: {GEAR.driver} drives {GEAR.driven} on frame" in told
+
+
+def test_what_it_says_of_its_own_is_found() -> None:
+    """Outputs of its motion, figures, limits of the crank's speed, yardsticks and remarks."""
+    found = eq.analyze(MACHINE, 90)
+    creep = found.outputs[f"rollers.{NAME}.creep"].values
+    np.testing.assert_allclose(creep, RADII[0] * found.motion.links[GEAR.driver].angle)
+    assert found.rollers[NAME].slips_at == 0.5
+    assert found.to_dict()["rollers"][NAME]["slip_speed"] == 2 * found.motion.speed
+    entries = {item.figure: item for item in assess(found)}
+    assert entries[f"rollers.{NAME}.slip_speed"].ratio == 0.5
+    assert f"rollers.{NAME}.peak" in entries
+    assert {"small rollers", "heavy rollers"} <= {*map(str, found.notes)}
 
 
 def test_its_cycle_and_its_share_of_mobility_follow() -> None:

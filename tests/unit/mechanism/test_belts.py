@@ -14,7 +14,7 @@ import equipoise as eq
 from equipoise.errors import ModelError, MotionError, UsageError
 from equipoise.mechanism import Belt, Position, Rack
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.kinematics.motion import crossings
+from equipoise.mechanism.kinematics.belt_crossings import crossings
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.results.analysis_blocks import analysis_blocks
 from equipoise.results.belt_blocks import slack

@@ -18,7 +18,7 @@ from equipoise.codegen.javascript import javascript
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism import Belt, Link, Machine
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.kinematics.motion import crossings
+from equipoise.mechanism.kinematics.belt_crossings import crossings
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.symbols.pieces import pieces

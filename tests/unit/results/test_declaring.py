@@ -22,10 +22,10 @@ from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
 from equipoise.results.blocks import Column, Table
 from equipoise.results.outputs import (
-    NAMED_FIGURES,
     documented,
     documented_figures,
     documented_strokes,
+    named_figures,
     unit_of,
 )
 from equipoise.schema.documents import dumps
@@ -41,7 +41,7 @@ from support.refusals import refused
 DOCS = Path(__file__).parents[3] / "docs" / "output.md"
 BEGIN, END = "<!-- declared {} -->\n", "<!-- end of declared {} -->\n"
 TABLES = {"outputs": documented, "strokes": documented_strokes} | {
-    name: partial(documented_figures, of) for name, of in NAMED_FIGURES.items()
+    name: partial(documented_figures, of) for name, of in named_figures().items()
 }
 POWER = "drive_power"
 

@@ -15,8 +15,8 @@ from equipoise.mechanism.dynamics.forces import assumed_masses, massless
 from equipoise.mechanism.dynamics.out_of_plane import statics
 from equipoise.mechanism.dynamics.reactions import indeterminate_reactions
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.kinematics.motion import crossings
 from equipoise.mechanism.parts.constraints import HOLDS
+from equipoise.mechanism.parts.element_kinds import named_function, part_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine, size_of
 from equipoise.quantities import format_quantity
 
@@ -220,7 +220,9 @@ def questions(linkage: Linkage) -> Iterator[Note | str]:
         weakest = linkage.weakest
     except (RangeError, ChangePointError, MotionError):
         return
-    yield from crossings(linkage)
+    for table, kind in part_kinds(type(machine)).items():
+        if kind.questions and getattr(machine, table):
+            yield from named_function(kind.questions)(linkage)
     yield from _jerks(machine)
     through = {group.joint for group in linkage.groups if group.through}
     for joint, (number, angle) in weakest.items():

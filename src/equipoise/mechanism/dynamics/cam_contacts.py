@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
-from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
+from equipoise.mechanism.assembly.cam_fits import fits_of, fitted, pressure_angle, sharpest
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.forces import forces as forces_of
@@ -43,7 +43,9 @@ class CamFigures:
 
     least_radius: float = figure(to_say("least radius of curvature"), "length")
     least_radius_at: float = figure(to_say("least radius of curvature at cam angle"), "angle")
-    lift_off_speed: float | None = figure(to_say("lift-off speed of the crank"), "angular speed")
+    lift_off_speed: float | None = figure(
+        to_say("lift-off speed of the crank"), "angular speed", limits_crank="lift_off_at"
+    )
     lift_off_at: float | None = figure(to_say("lifts off at crank angle"), "angle")
     lost: tuple[tuple[float, float], ...] = ()
 
@@ -51,20 +53,33 @@ class CamFigures:
         """As plain data."""
         return vars(self) | {"lost": [{"from": a, "to": b} for a, b in self.lost]}
 
+    @classmethod
+    def of_parts(cls, motion: Motion, forces: Forces | None) -> Mapping[str, CamFigures]:
+        """Figures of every cam, by name."""
+        whole = forces if motion.whole_cycle else None
+        lifts = {} if whole is None else {item.cam.name: item for item in let_go(whole)}
+        by_name = {}
+        for fit in fits_of(motion.machine, motion.linkage.joints):
+            entry = lifts.get(fit.cam.name)
+            limited = entry is not None and isfinite(entry.speed)
+            speed, at = (entry.speed, entry.at) if entry is not None and limited else (None, None)
+            lost = () if entry is None else entry.ranges
+            radius, where = sharpest(fit)
+            by_name[fit.cam.name] = cls(radius, where, speed, at, lost)
+        return by_name
 
-def cam_figures(motion: Motion, forces: Forces | None) -> Mapping[str, CamFigures]:
-    """Figures of every cam, by name."""
-    whole = forces if motion.whole_cycle else None
-    lifts = {} if whole is None else {item.cam.name: item for item in let_go(whole)}
-    by_name = {}
-    for fit in fits_of(motion.machine, motion.linkage.joints):
-        entry = lifts.get(fit.cam.name)
-        limited = entry is not None and isfinite(entry.speed)
-        speed, at = (entry.speed, entry.at) if entry is not None and limited else (None, None)
-        lost = () if entry is None else entry.ranges
-        radius, where = sharpest(fit)
-        by_name[fit.cam.name] = CamFigures(radius, where, speed, at, lost)
-    return by_name
+
+def contact_values(motion: Motion, cam: Cam) -> Mapping[str, Array]:
+    """Pressure angle, from the way in which its follower rises to the normal, rad, and curvature of
+    the surface where the follower touches, 1/m: arrays (N,).
+    """
+    links, fit = motion.links, fitted(motion.machine, motion.linkage.joints, cam)
+    ends = [links[body].angle if body in links else 0.0 for body in (cam.driver, cam.carrier)]
+    shape = fit.shape(np.asarray(ends[0] - ends[1]))
+    return {
+        "pressure_angle": pressure_angle(cam, motion.state),
+        "curvature": shape.surface_curvature,
+    }
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from math import degrees, pi
@@ -17,18 +17,14 @@ from equipoise.displays import Brief, Displayed
 from equipoise.errors import ChangePointError, ModelError, RangeError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Group
-from equipoise.mechanism.assembly.cam_fits import CamFit, fits_of, pressure_angle
-from equipoise.mechanism.assembly.joints import coupling_pins, place_in_file
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Array, State, along, p, plain_angle, running_angle, u
 from equipoise.mechanism.checks import NamedItems, Vector, bodies_at
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import PlaneCurve
-from equipoise.mechanism.formulas.kernels import cross
-from equipoise.mechanism.formulas.rolling import LEFT, RIGHT
 from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
-from equipoise.mechanism.parts.belts import Belt
-from equipoise.mechanism.parts.element_kinds import Element
+from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.element_kinds import Element, named_function
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Machine, Slider
 from equipoise.quantities import HUGE, Dimension, in_si
@@ -317,34 +313,18 @@ class Motion(Displayed):
         dyads = (group for group in self.linkage.groups if group.margin is not None)
         return NamedItems("dyad", ((group.joint, self._transmission(group)) for group in dyads))
 
-    @cached_property
-    def pressure_angles(self) -> Mapping[str, Array]:
-        """Angle (N,) of each cam, rad, from the way in which its follower rises to the normal."""
-        cams = self.machine.cams
-        return NamedItems(
-            "cam", ((cam.name, self._full(pressure_angle(cam, self.state))) for cam in cams)
-        )
-
-    @cached_property
-    def curvatures(self) -> Mapping[str, Array]:
-        """Curvature (N,) of each cam's surface where its follower touches, 1/m."""
-        fits = fits_of(self.machine, self.linkage.joints)
-        return NamedItems("cam", ((fit.cam.name, self._full(self._curvature(fit))) for fit in fits))
-
-    def _curvature(self, fit: CamFit) -> Array:
-        links, cam = self.links, fit.cam
-        ends = [links[body].angle if body in links else 0.0 for body in (cam.driver, cam.carrier)]
-        return fit.shape(np.asarray(ends[0] - ends[1])).surface_curvature
-
     def element_values(self, table: str, number: int) -> Mapping[str, Array]:
-        """Outputs (N,) of an element, by name.
+        """Outputs (N,) of an element, by name; of a coupling those of the motion at its contact.
 
         table, number : its list in the file, and its place there from 0.
         """
         known = self._element_values
         if (table, number) not in known:
-            element: Element = getattr(self.machine, table)[number]
-            values = element.values(PlacedBodies(self, f"{table}[{number + 1}]"))
+            part: Element | Coupling = getattr(self.machine, table)[number]
+            if isinstance(part, Element):
+                values = part.values(PlacedBodies(self, f"{table}[{number + 1}]"))
+            else:
+                values = named_function(part.contact_values)(self, part)
             known[table, number] = {name: self._full(value) for name, value in values.items()}
         return known[table, number]
 
@@ -706,58 +686,3 @@ def _rates(usual: Drive | Motion, *given: float | str | None) -> tuple[float, fl
             )
         rates.append(float(rate))
     return rates[0], rates[1]
-
-
-ANGLES = 72
-"""In a turn, at which it is looked."""
-
-
-def crossings(linkage: Linkage) -> Iterator[Note]:
-    """A sentence on each belt and link of its carrier that do not pass each other.
-
-    Links that turn about the pin of a pulley lie beside it anyway, and so do those in a plane of
-    their own.
-    """
-    machine, joints = linkage.machine, linkage.joints
-    if not machine.belts:
-        return
-    motion = move(machine, ANGLES)
-    for belt in machine.belts:
-        pulleys = [machine.links[item] for item in (belt.driver, belt.driven) if item != FRAME]
-        planes = {pulley.plane for pulley in pulleys}
-        for pin, bodies in joints.pins.items():
-            if belt.carrier not in bodies or pin in coupling_pins(joints, belt):
-                continue
-            for link in bodies:
-                if link in (belt.carrier, FRAME) or link in joints.riders:
-                    continue
-                if machine.links[link].plane not in planes:
-                    continue
-                at = motion.crank_angle[_across(motion, belt, pin, link)]
-                if at.size:
-                    yield Note(
-                        "{place}: a strand lies across {link!r} at crank angle {angle:.4g} deg; "
-                        "move {pin}, change the radii, or give {link!r} a plane of its own",
-                        place=place_in_file(joints, belt),
-                        link=link,
-                        angle=degrees(float(at[0])),
-                        pin=pin,
-                    )
-
-
-def _across(motion: Motion, belt: Belt, pin: str, link: str) -> Array:
-    """Whether a strand lies across the way from a link's pin to any other of its points (N,)."""
-    first, second = (
-        motion.point(coupling_pin).place
-        for coupling_pin in coupling_pins(motion.linkage.joints, belt)
-    )
-    strands = belt.strands(second - first)
-    root, values = motion.point(pin).place, np.zeros(motion.crank_angle.shape, bool)
-    for tip in motion.machine.links[link].points:
-        arm = motion.point(tip).place - root
-        for side in (LEFT, RIGHT):
-            begin, end = (first + end - root for end in strands.ends(side))
-            way = end - begin
-            apart = cross(arm, begin) * cross(arm, end) < 0
-            values |= apart & (cross(way, begin) * cross(way, begin - arm) < 0)
-    return values

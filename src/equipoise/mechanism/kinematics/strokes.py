@@ -38,15 +38,18 @@ def figure(
     default: Any = MISSING,
     at_least: float | str | None = None,
     unless: str = "",
+    limits_crank: str = "",
 ) -> Any:
     """A figure: its label for readers, and its dimension, or whether it has that of the stroke.
 
     at_least : what it has to be for a part not to fail, SI units, or the key of the part's table
         that gives it; None where there is no such value.
     unless : key of that table with which nothing is asked of this figure.
+    limits_crank : of a speed of the crank from which a contact is lost the field with the crank
+        angle of it.
     """
     text = {"label": label, "dimension": dimension, "own": own}
-    least = {"at_least": at_least, "unless": unless}
+    least = {"at_least": at_least, "unless": unless, "limits_crank": limits_crank}
     return field(metadata=text | least, default=default)
 
 

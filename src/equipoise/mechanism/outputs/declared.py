@@ -565,7 +565,11 @@ def of_coupling(table: str) -> Callable[..., None]:
 
 def of_contacts(table: str) -> Callable[..., None]:
     """A function that declares outputs of motion at the contacts of couplings of one list."""
-    read = lambda name, result, item: getattr(result.motion, name + "s")[item]  # noqa: E731
+
+    def read(name: str, result: Any, item: str) -> Any:
+        names = [coupling.name for coupling in getattr(result.motion.machine, table)]
+        return result.motion.element_values(table, names.index(item))[name]
+
     return alike(table + ".{}.", read, needs="motion", **_members_of(table))
 
 

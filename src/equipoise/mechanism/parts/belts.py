@@ -58,6 +58,7 @@ class Belt(Turning):
     loses = True
     heading = Note("Belt")
     tables: ClassVar[Mapping[str, str]] = {"joints": "equipoise.results.belt_blocks:belt_blocks"}
+    questions = "equipoise.mechanism.kinematics.belt_crossings:crossings"
     curves = (
         ("left", "right"),
         to_say("Tension of the strands of belts"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Set
 from fractions import Fraction
+from math import radians
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
@@ -24,6 +25,8 @@ from equipoise.mechanism.parts.laws import CAM, AngleLaw, Law, LengthLaw, wrong_
 RIDES = ("roller", "flat", "knife")
 CLOSURES = ("spring", "groove", "ribs")
 LEFT_RIGHT = ("left", "right")
+PRESSURE, SWINGING_PRESSURE = radians(30), radians(45)
+"""Usual limits of the pressure angle of sliding and of pinned followers, rad."""
 ROUND = LengthLaw(between=(0.0, 0.0))
 """Of a cam without a law."""
 
@@ -54,6 +57,9 @@ class Cam(Coupling):
     exports: ClassVar[Mapping[str, str]] = {"dxf": "equipoise.exchange.dxf:roller_paths"}
     legend = ("cam", to_say("cams"))
     tables: ClassVar[Mapping[str, str]] = {"motion": "equipoise.results.cam_blocks:cam_blocks"}
+    figures = "equipoise.mechanism.dynamics.cam_contacts:CamFigures"
+    remarks = "equipoise.results.lost_contacts:lost_contacts"
+    contact_values = "equipoise.mechanism.dynamics.cam_contacts:contact_values"
     counted = to_say("{count} cams")
     most = 100
     start: ClassVar[float] = 0.0
@@ -169,6 +175,11 @@ class Cam(Coupling):
     def radius(self) -> float:
         """Of the curve that roller or edge takes where the displacement is 0, m."""
         return self.base_radius + self.roller_radius
+
+    @property
+    def usual_pressure_angle(self) -> float:
+        """Up to which the pressure angle of its follower is usual, rad."""
+        return PRESSURE if self.swing is None else SWINGING_PRESSURE
 
     def backwards(self) -> Note:
         """Say that cam or carrier are not moved before the follower is."""

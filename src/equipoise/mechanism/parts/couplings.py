@@ -127,6 +127,8 @@ class Coupling(PartKind):
     contact : how it pushes: along the line of `line`, or square to a surface.
     grows : whether its pitch circles are as large as the distance of its pins sets them.
     loses : whether it may lose a share of what it passes on.
+    contact_values : ``module:function`` that gives outputs (N,) of the motion at its contact by
+        name, from that motion and the coupling.
     curves : outputs that have a picture of their own, what this shows, and its caption; None where
         there is none.
     columns : numbers that columns of designs may have, by what of the table holds them.
@@ -144,6 +146,7 @@ class Coupling(PartKind):
     contact: ClassVar[Literal["line", "surface"]] = "line"
     grows: ClassVar[bool] = False
     loses: ClassVar[bool] = False
+    contact_values: ClassVar[str] = ""
     curves: ClassVar[tuple[tuple[str, ...], str, str] | None] = None
     columns: ClassVar[Mapping[PathPattern, Set[str]]] = {}
 
@@ -292,6 +295,11 @@ class Coupling(PartKind):
     @abstractmethod
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Parts of its force by the names of their outputs, N."""
+
+    @property
+    def usual_pressure_angle(self) -> float:
+        """Up to which its pressure angle is usual, rad."""
+        return pi / 2
 
     def circles(self, distance: Callable[[], Any]) -> Iterator[tuple[str, Any]]:
         """Bodies with the radii of their pitch circles about their pins on the carrier, m; the mean

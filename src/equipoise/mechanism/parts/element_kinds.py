@@ -76,6 +76,10 @@ class PartKind(Frozen):
         the part is dragged on a drawing; empty where none is.
     tables : ``module:function`` that shows what an analysis says of all parts of the kind, by the
         chapter in which that stands, ``motion`` or ``joints``.
+    figures : ``module:class`` of the figures of a part; its `of_parts` computes those of all, by
+        name, from a motion and its forces, which are None without masses.
+    questions : ``module:function`` that says what may not be meant of parts of a linkage.
+    remarks : ``module:function`` that says, by the forces of a machine, where its parts fail.
     exports : ``module:function`` that writes all parts of the kind into a file, by the name of a
         format whose code knows kinds of parts.
     """
@@ -88,6 +92,9 @@ class PartKind(Frozen):
     sign: ClassVar[str] = ""
     dragged: ClassVar[str] = ""
     tables: ClassVar[Mapping[str, str]] = {}
+    figures: ClassVar[str] = ""
+    questions: ClassVar[str] = ""
+    remarks: ClassVar[str] = ""
     exports: ClassVar[Mapping[str, str]] = {}
     legend: ClassVar[tuple[str, str] | None] = None
 
