@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.figures.curves import draw_shapes, sample_of, signs_at
+from equipoise.figures.curves import UNIT, draw_shapes, sample_of, signs_at
 from equipoise.figures.panel import LEAD, draw, flag_height, frame
 from equipoise.figures.sheet import MIDDLE, Canvas, CanvasStroke, Words, lines_of, set_in, width_of
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL, look_of
@@ -508,8 +508,10 @@ def _settle(cell: Cell, width: float, most: float, small: bool) -> None:
     if not cell.panel.equal:
         return
     cell.drawn_ends = cell.drawn_ends or (cell.x_ends, cell.y_ends)
-    x, y = map(np.array, cell.drawn_ends)
+    x, y = np.array(cell.drawn_ends, float)
     fixed = cell.panel.height
+    if cell.panel.bare and cell.panel.signs:
+        most = max(most, _hold_signs(cell.panel, x, y, width))
     if small and not fixed:
         side = min(width, most)
         room = SMALL_ROOM * side
@@ -522,6 +524,27 @@ def _settle(cell: Cell, width: float, most: float, small: bool) -> None:
     half_x, half_y = point * width / 2, point * cell.height / 2
     cell.x_ends = (float(np.mean(x)) - half_x, float(np.mean(x)) + half_x)
     cell.y_ends = (float(np.mean(y)) - half_y, float(np.mean(y)) + half_y)
+
+
+ROUNDS = 4
+"""In which the ends and the scale of a drawing follow each other; they hardly change then."""
+
+
+def _hold_signs(panel: Panel, x: Any, y: Any, width: float) -> float:
+    """Move the ends x, y (2,) of a drawing without axes so that they hold its signs too, whose size
+    on paper is their own; its height then, points.
+    """
+    unit, factor = UNIT * panel.sign_size, panel.x.unit.factor
+    for _ in range(ROUNDS):
+        point = np.ptp(x) / width or 1.0
+        scale = factor / point
+        for part, ends in (("real", x), ("imag", y)):
+            every = np.concatenate([
+                getattr(shape.at(scale, unit), part) + side * shape.size(scale, unit)
+                for shape in panel.signs for side in (-1, 1)
+            ])  # fmt: skip
+            ends[:] = min(ends[0], point * np.min(every)), max(ends[1], point * np.max(every))
+    return float(np.ptp(y) / (np.ptp(x) / width))
 
 
 def _above(cell: Cell, width: float) -> None:

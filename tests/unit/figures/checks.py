@@ -225,10 +225,12 @@ def panels_left(laid: Laid) -> Iterator[Fault]:
             for item in items:
                 if not isinstance(item, Words) and item.clip is None and _outside(view, item):
                     yield "drawn outside of its axes", _told(view)
-        for places in _drawn_whole(view) if panel.equal else ():
-            if _beyond(view, places) > SLACK:
-                yield "cut by its axes", _told(view)
-                break
+        whole = [*_drawn_whole(view)] if panel.equal else []
+        if panel.bare:  # whose edges nobody sees
+            strokes = (one for one in items if isinstance(one, CanvasStroke) and one.clip)
+            whole += [line for stroke in strokes for line in stroke.lines]
+        if any(_beyond(view, places) > SLACK for places in whole):
+            yield "cut by its axes", _told(view)
 
 
 SMALLEST = 0.33
