@@ -278,34 +278,55 @@ def _stretch(cell: Cell, columns: int) -> None:
 
 
 NUMBERS = 15.0
-"""Points that a number takes above the highest bar, or below one that goes down."""
+"""Points that a number takes above the highest bar or a maximum, or below one that goes down."""
+UPWARD = 45.0
+"""deg from straight up or down, within which a text stands above or below its place."""
 
 
-def make_room(cell: Cell, over: float) -> None:
-    """Higher axes of the same scale, where numbers at bars or a word of their name need that.
+def make_room(row: list[Cell], over: float) -> None:
+    """Higher axes of the same scale, where numbers at bars, extremes or a word of their name need
+    that; alike for cells side by side.
 
     over : points by which a name may be longer than its axis.
     """
+    needs = [_room_for_words(cell, over) for cell in row]
+    above, below = (max(ends) for ends in zip(*needs, strict=True))
+    for cell in row:
+        if not _is_fixed(cell.panel):
+            low, high = cell.y_ends
+            rate = (high - low) / cell.height
+            begins = cell.panel.y.low is not None and low >= 0
+            own = 0.0 if begins else below
+            cell.height += above + below
+            cell.y_ends = (low - own * rate, high + (above + below - own) * rate)
+
+
+def _is_fixed(panel: Panel) -> bool:
+    """Whether its axis of values has the ends that it has."""
+    given = panel.y.ticks is not None or panel.y.high is not None or panel.y.scale == "log"
+    return panel.equal or panel.bare or given
+
+
+def _room_for_words(cell: Cell, over: float) -> tuple[float, float]:
+    """Points that are missing above and below what is drawn."""
     panel, factor = cell.panel, cell.panel.y.unit.factor
-    fixed = panel.y.ticks is not None or panel.y.high is not None or panel.y.scale == "log"
-    if panel.equal or panel.bare or fixed:
-        return
+    if _is_fixed(panel):
+        return 0.0, 0.0
     low, high = cell.y_ends
     rate = (high - low) / cell.height
     matching_bars = [bars for bars in panel.bars if bars.labelled and bars.across == "x"]
-    top = factor * max(
-        (float(np.max(bars.size, initial=0.0)) for bars in matching_bars), default=0.0
-    )
-    above = max(NUMBERS - (high - top) / rate, 0.0) if matching_bars else 0.0
-    bottom = factor * min(
-        (float(np.min(bars.size, initial=0.0)) for bars in matching_bars), default=0.0
-    )
-    under = max(NUMBERS - (bottom - low) / rate, 0.0) if bottom < 0 else 0.0
+    up = [float(np.max(bars.size, initial=0.0)) for bars in matching_bars]
+    sizes = [float(np.min(bars.size, initial=0.0)) for bars in matching_bars]
+    down = [size for size in sizes if size < 0]
+    for mark in panel.marks:
+        if mark.text and abs(abs(mark.wish) - 90.0) < UPWARD:
+            (up if mark.wish > 0 else down).append(mark.y)
+    above = max((NUMBERS - (high - factor * top) / rate for top in up), default=0.0)
+    below = max((NUMBERS - (factor * bottom - low) / rate for bottom in down), default=0.0)
+    above, below = max(above, 0.0), max(below, 0.0)
     longest = max((width_of(word, NORMAL) for word in panel.y.text.split()), default=0.0)
     extra = max(longest - over - cell.height - above, 0.0)
-    below = 0.0 if panel.bars else extra / 2
-    cell.height += above + extra + under
-    cell.y_ends = (low - (below + under) * rate, high + (above + extra - below) * rate)
+    return (above + extra, below) if panel.bars else (above + extra / 2, below + extra / 2)
 
 
 WIDE, HALF = 518.4, 262.0
@@ -422,8 +443,8 @@ def _cells(chart: Chart, wide: float, parted: bool = False, low: bool = False) -
     highest = usual if wide == HALF else np.inf
     cells = [cell_of(panel, min(panel.height or usual, highest)) for panel in chart.panels]
     share(cells, columns)
-    for cell in cells:
-        make_room(cell, OVER)
+    for start in range(0, len(cells), columns):
+        make_room(cells[start : start + columns], OVER)
     inner = _inner(wide, columns)
     for number, cell in enumerate(cells):
         later = cells[number + columns :: columns] if chart.stacked and not parted else []

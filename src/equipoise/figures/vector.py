@@ -122,7 +122,8 @@ def _signs(signs: Markers) -> str:
     look = f'fill="{signs.face}" stroke="{signs.edge}" stroke-width="{_number(signs.width)}"'
     half, whole = size / 2, _number(size)
     if signs.shape == "o":
-        arc = f"a{_number(half)},{_number(half)} 0 1,0"
+        radius = _number(round(size, 1) / 2, 2)  # of arcs that are no half circles a ring is oval
+        arc = f"a{radius},{radius} 0 1,0"
         ring = f"{arc} {whole},0{arc} {_number(-size)},0"
         path = "".join(f"M{_number(x - half)},{_number(y)}{ring}" for x, y in places.tolist())
     elif signs.shape == "x":

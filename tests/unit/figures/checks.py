@@ -26,6 +26,8 @@ Fault = tuple[str, str]
 """What is not kept, and where."""
 NUMBERS = 3
 """On each axis at least."""
+LOW_TEXT = 14.5
+"""Points from a dot to the edge of the axes between which a small text fits."""
 SLACK = 1.5
 """Points that a line may be off the axes, by its width."""
 LIGHTER, WIDER = 15.0, 0.8
@@ -72,6 +74,7 @@ class Laid:
             runs_back,
             bars_afloat,
             numbers_on_bars,
+            extremes_without_room,
             panels_left,
             supports_cut,
             machines_small,
@@ -201,6 +204,20 @@ def numbers_on_bars(laid: Laid) -> Iterator[Fault]:
                     beside = min(right, end) - max(left, start) > 1
                     if beside and view.box[1] < one.y and bottom - top > 2 * SLACK:
                         yield "number on a bar", f"{one.text} in {_told(view)}"
+
+
+def extremes_without_room(laid: Laid) -> Iterator[Fault]:
+    """Between an extreme and the end of its axis its number fits, however low the panel is."""
+    for view, _ in laid.panels:
+        panel, (_, top, _, bottom) = view.panel, view.box
+        if panel.equal or panel.y.scale == "log" or panel.y.high is not None:
+            continue
+        for mark in panel.marks:
+            y, up = float(view.y.at(mark.y)), mark.wish == 90.0
+            beyond = y - top if up else bottom - y
+            fixed = not up and panel.y.low is not None
+            if mark.text and mark.wish in (90.0, -90.0) and beyond < LOW_TEXT and not fixed:
+                yield "no room at an extreme", f"{mark.text} in {_told(view)}"
 
 
 def _is_number(text: str) -> bool:

@@ -17,8 +17,9 @@ from equipoise.figures.layout import HALF, lay_out
 from equipoise.figures.linkage import linkage
 from equipoise.figures.modes import mode_chart
 from equipoise.figures.points import hodograph, main_kinematics
-from equipoise.figures.sheet import Box, Markers, Words, box_of
+from equipoise.figures.sheet import Box, Canvas, Markers, Words, box_of
 from equipoise.figures.tool_shaft import mode_charts, weighted
+from equipoise.figures.vector import svg_of
 from equipoise.figures.vibration import spectra
 from equipoise.figures.view import View
 from equipoise.handheld.modes import vibrate_tool
@@ -249,3 +250,12 @@ def test_links_that_cover_each_other_are_shown_in_turn() -> None:
     assert len({panel.always_shown for panel in panels}) == 1  # at one scale
     for name in ("stephenson-six-bar", "cam-pusher", "twin-engine"):
         assert len(linkage(eq.analyze(eq.load(name), 72)).panels) == 1
+
+
+def test_rings_are_round() -> None:
+    """Each of two half circles, whose radius is half of their width as it is written."""
+    for size in (2.6, 3.0, 4.5, 7.5, 8.25):
+        sheet = Canvas(20.0, 20.0)
+        sheet.add(Markers(np.array([(10.0, 10.0)]), "o", size, "#000000", "#000000"))
+        (ring,) = re.findall(r"a([\d.]+),[\d.]+ 0 1,0 ([\d.]+),0a", svg_of(sheet))
+        assert 2 * float(ring[0]) == pytest.approx(float(ring[1]), rel=1e-9)
