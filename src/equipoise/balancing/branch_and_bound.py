@@ -28,7 +28,7 @@ from equipoise.dataclass import dataclass
 from equipoise.i18n import Note
 from equipoise.signals import Array
 
-MOST_EXCESS = 1e-8
+EXACT_SQUARE = 1e-8
 """Of a square, scaled numbers, that is taken for rounding."""
 CLOSE = 2e-9
 """Between the bounds, over the scale of the cost, at which the search ends."""
@@ -158,7 +158,7 @@ class _Search:
         self.nodes += 1
         intervals = tuple((square.low, square.high) for square in self.squares)
         root = _Node(intervals, self._solved(self.program))  # which keeps to the intervals already
-        exact = all(square.excess(root.solved.x) < MOST_EXCESS for square in self.squares)
+        exact = all(square.excess(root.solved.x) < EXACT_SQUARE for square in self.squares)
         if exact or root.solved.bound > above:
             return self._as_best(root.solved, self.program, root.solved.bound)
         if any(not isfinite(s.high - s.low) for s in self.squares):

@@ -44,7 +44,7 @@ CAP = 10.0
 would have an endless mass close to its axis."""
 NOTHING = 1e-6
 """Of a mass, scaled, that is none."""
-MOST_EXCESS = 3e-9
+ROUNDING_OF_MOMENT = 3e-9
 """Of a sector's moment, scaled, that is taken for rounding."""
 
 RADII = {
@@ -265,7 +265,7 @@ class AddedWeight(DesignVariables):
         m, sx, sy = (float(value) for value in x[places])
         m = min(max(m, 0.0), self._full)
         excess = float(np.hypot(sx, sy)) - self._bound(m)[0]
-        if excess <= MOST_EXCESS:
+        if excess <= ROUNDING_OF_MOMENT:
             return []
         cuts, moment = Program(), Affine(np.eye(2), places[1:], np.zeros(2))
         # Tangents a width apart miss by the bend times its square over 8.

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import equipoise
 from equipoise.balancing.blocks import outcome_blocks
-from equipoise.balancing.outcome import no_benefit_sentences
+from equipoise.balancing.outcome import benefit_sentences, no_benefit_sentences
 from equipoise.errors import UsageError, at_place
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
@@ -19,7 +19,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.headlines import seen_in
-from equipoise.present.pages import ReportDocument, SummaryAnswer, check_pdf, page, pdf
+from equipoise.present.pages import ReportDocument, check_pdf, page, pdf
 from equipoise.present.pictures import Drawings, drawings
 from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_summary import outstanding, tool_answers, tool_tiles
@@ -173,8 +173,10 @@ def _of_linkage(
         blocks["balance"] = [*balance_blocks(findings), *pictures.get("balance", [])]
     seens = {name: seen_in(name, findings) for name in blocks}
     summary = tuple(answers(findings, _stated(findings)))
-    if "balance" in blocks:
-        blocks["balance"] = [*_not_said(blocks["balance"], answers(findings))]
+    if findings.balanced is not None:
+        said_above = {sentence for answer in summary for sentence in answer.sentences}
+        said_above |= {*benefit_sentences(findings.balanced)}  # with what the verdict states
+        blocks["balance"] = [*_not_said(blocks["balance"], said_above)]
     return ReportDocument(
         language,
         said(machine.title),
@@ -191,12 +193,11 @@ def _of_linkage(
 
 
 def _not_said(
-    blocks: Iterable[Block | ReportSection], summary: Iterable[SummaryAnswer]
+    blocks: Iterable[Block | ReportSection], said_above: Collection[str]
 ) -> Iterator[Block | ReportSection]:
     """Blocks but for texts that the summary has already."""
-    said_there = {sentence for answer in summary for sentence in answer.sentences}
     for block in blocks:
-        if not (isinstance(block, Text) and block.text in said_there):
+        if not (isinstance(block, Text) and block.text in said_above):
             yield block
 
 

@@ -297,12 +297,11 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     of : the command.  value : the path, as in a study file.
     """
     whole = re.sub(r"\[[^\]]*\]", "", value).replace('"', "")
-    if of not in ("plant", "respond", "balance", "tool"):
-        of, whole = "analyze", whole.removeprefix("summary.").removeprefix("outputs.")
-    if of != "analyze":
-        kinds = (dimension_at(declaration, whole, model) for declaration in declarations(of))
-        return next((kind for kind in kinds if kind), None)
-    return _of_analysis(cast("Machine", model), _STATISTIC.sub("", whole))
+    if of not in COMMANDS:
+        whole = whole.removeprefix("summary.").removeprefix("outputs.")
+        return _of_analysis(cast("Machine", model), _STATISTIC.sub("", whole))
+    kinds = (dimension_at(declaration, whole, model) for declaration in declarations(of))
+    return next((kind for kind in kinds if kind), None)
 
 
 def _of_analysis(machine: Machine, path: str) -> str | None:

@@ -28,6 +28,7 @@ from equipoise.results.declaring import cells_of, headings, table_of
 from equipoise.results.machine_blocks import driven
 from equipoise.signals import Array
 from equipoise.vibration.hand_held import HandVibration
+from equipoise.vibration.headline import speeds_text
 from equipoise.vibration.response import MODELS, GaugeSignals, Joint, Model, MountForce, members_of
 
 if TYPE_CHECKING:
@@ -368,16 +369,7 @@ CRANK: tuple[Dimension, str] = ("angular speed", "rpm")
 
 def sweep_blocks(sweep: Sweep) -> Iterator[Block]:
     """Natural frequencies, resonances, and what each gauge reads at its peaks."""
-    low, high = (number(float(sweep.speed[k]) / PER_RPM) for k in (0, -1))
-    yield Text(
-        say(
-            "{link} driven at {low} to {high} rpm, {count} speeds",
-            link=sweep.machine.drive.link,
-            low=low,
-            high=high,
-            count=len(sweep.speed),
-        )
-    )
+    yield Text(speeds_text(sweep))
     yield Text(model_text(sweep.model))
     yield modes_table(sweep.modes)
     if sweep.resonances:

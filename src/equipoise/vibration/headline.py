@@ -146,16 +146,7 @@ def sweep_headline(sweep: Sweep, alone: bool = False) -> Iterator[Block]:
         yield Text(say("{sentence}.", sentence=lines[0]))
     if not alone:
         return
-    low, high = (brief(abs(float(sweep.speed[k])) / PER_RPM) for k in (0, -1))
-    yield Text(
-        say(
-            "{link} driven at {low} to {high} rpm, {count} speeds",
-            link=sweep.machine.drive.link,
-            low=low,
-            high=high,
-            count=len(sweep.speed),
-        )
-    )
+    yield Text(speeds_text(sweep))
     if lines[1:]:
         yield Facts(say("Where the other gauges read most"), lines[1:MOST_GAUGES])
     if met := tuple(_loud(sweep)):
@@ -165,6 +156,18 @@ def sweep_headline(sweep: Sweep, alone: bool = False) -> Iterator[Block]:
     if sweep.notes:
         yield Notes(sweep.notes[:MOST_NOTES])
     yield look_at_next("respond --speed")
+
+
+def speeds_text(sweep: Sweep) -> str:
+    """Over which speeds the crank is driven, as text."""
+    low, high = (brief(abs(float(sweep.speed[k])) / PER_RPM) for k in (0, -1))
+    return say(
+        "{link} driven at {low} to {high} rpm, {count} speeds",
+        link=sweep.machine.drive.link,
+        low=low,
+        high=high,
+        count=len(sweep.speed),
+    )
 
 
 def _peaks(sweep: Sweep) -> Iterator[str]:
