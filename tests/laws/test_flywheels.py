@@ -19,6 +19,8 @@ from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.running import tabulated
 from equipoise.running.blocks import run_headline
 from equipoise.running.drivers import Driver
+from equipoise.running.drives_blocks import run_headline as run_headline_of_drives
+from equipoise.running.drives_run import DrivesRun
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import (
     Flywheel,
@@ -309,3 +311,36 @@ def test_a_flywheel_is_added_to_the_one_that_there_is() -> None:
     running = eq.run(with_flywheel(machine, flywheel.total)).last_cycle
     assert running is not None and flywheel.speed == pytest.approx(running.mean_speed, rel=1e-4)
     assert flywheel.speed != pytest.approx(machine.drive.speed, rel=1e-2)
+
+
+@pytest.mark.parametrize("has_motor", [False, True])
+def test_a_heavy_support_is_a_fixed_frame(has_motor: bool) -> None:
+    """By the exact equations on the one, by the crank's own on the other."""
+    machine = eq.load("balance-rig")
+    motor = machine.drive.motor if has_motor else None
+    machine = replace(machine, drive=replace(machine.drive, motor=motor))
+    assert machine.support is not None and machine.support.pivot_inertia is not None
+    light = size_flywheel(machine, 0.05, support=True)
+    still = size_flywheel(machine, 0.05)
+    mass, inertia = 1e3 * machine.support.mass, 1e3 * machine.support.pivot_inertia
+    support = replace(machine.support, mass=mass, pivot_inertia=inertia)
+    supported = replace(machine, support=support)
+    sized = size_flywheel(supported, 0.05, support=True)
+    # a thousandth of what the light one, which sways, makes of it, and samples of the speed
+    assert sized.inertia == pytest.approx(still.inertia, rel=2e-4)
+    assert sized.speed == pytest.approx(still.speed, rel=1e-6)
+    assert abs(light.inertia - still.inertia) > 0.01 * still.inertia
+
+
+@pytest.mark.exhaustive  # the sentence runs with the steady state above
+def test_a_run_on_its_support_is_as_even_as_its_flywheel_was_sized_for() -> None:
+    machine = eq.load("balance-rig")
+    sized = eq.run(machine, "0.01 s", support=True, fluctuation="5 %")
+    assert isinstance(sized, DrivesRun) and sized.flywheel is not None
+    assert "flywheel of" in " ".join(str(block) for block in run_headline_of_drives(sized))
+    run = eq.run(with_flywheel(machine, sized.flywheel.inertia), support=True,
+                 speed=sized.flywheel.speed)  # fmt: skip
+    assert isinstance(run, DrivesRun) and run.last_cycle is not None
+    speed = run.drives["crank"].speed[run.last_cycle]
+    # after 30 turns the support still swings a little
+    assert np.ptp(speed) / sized.flywheel.speed == pytest.approx(0.05, rel=0.05)

@@ -200,5 +200,5 @@ def test_other_commands_name_the_run_on_a_support() -> None:
     for command in (eq.respond, lambda machine, **given: eq.simulate(machine, 1.0, **given)):
         with refused(EquipoiseError, by="chosen_model"):
             command(motors, drive=True)
-    with refused(EquipoiseError, by="_refuse_flywheel"):
-        on_support(eq.load("balance-rig"), "1 s", fluctuation="2 %")
+    with refused(EquipoiseError, by="SupportedCycles.__post_init__"):
+        on_support(eq.load("riding-transplanter"), "1 s", fluctuation="2 %")

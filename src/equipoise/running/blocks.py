@@ -55,7 +55,7 @@ def run_headline(run: Run, alone: bool = False) -> Iterator[Block]:
     if remark := _other_speed(run):
         yield Text(remark)
     if run.flywheel is not None:
-        yield Text(_flywheel(run.flywheel))
+        yield Text(flywheel_sentence(run.flywheel))
     if alone and (lines := tuple(_figures(run))):
         yield Facts(say("Last cycle"), lines)
 
@@ -146,7 +146,7 @@ def _stopped(run: Run) -> Iterator[str]:
         yield say("Switched off, it stops in {time} s and {turns} turns.", time=time, turns=turns)
 
 
-def _flywheel(flywheel: Flywheel) -> str:
+def flywheel_sentence(flywheel: Flywheel) -> str:
     """What flywheel the wanted fluctuation needs."""
     wanted = f"{100 * flywheel.wanted:.3g}"
     if not flywheel.inertia:

@@ -12,7 +12,14 @@ from equipoise.i18n import say, to_say
 from equipoise.quantities import PER_RPM, number
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
 from equipoise.running.blocks import EVENTS as OF_A_RUN
-from equipoise.running.blocks import MOST_EVENTS, NO_MOTOR, contacts_table, losses_table, lossiest
+from equipoise.running.blocks import (
+    MOST_EVENTS,
+    NO_MOTOR,
+    contacts_table,
+    flywheel_sentence,
+    losses_table,
+    lossiest,
+)
 from equipoise.running.drives_run import FREE, GIVEN, MOTOR
 from equipoise.running.friction import FRICTION
 from equipoise.running.support_equation import MOUNTS
@@ -58,6 +65,8 @@ def run_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
     yield Text(verdict(run), broken_if(run.end.kind in ("stall", "dead", "lever")))
     if run.machine.has_crank and run.machine.drive.motor is None:
         yield Text(say(NO_MOTOR))
+    if run.flywheel is not None:
+        yield Text(flywheel_sentence(run.flywheel))
     if alone and run.last_cycle is not None and (lines := (*_speeds(run), *lossiest(run))):
         yield Facts(say("Last cycle"), lines)
     if alone and run.support is not None:

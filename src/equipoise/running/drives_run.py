@@ -21,6 +21,7 @@ from equipoise.running.drives_integration import DriveEvent, DrivesIntegration, 
 from equipoise.running.drives_linkage import pose_of
 from equipoise.running.electric import Electric
 from equipoise.running.energy_balance import energy_error, losses_apart
+from equipoise.running.flywheel import Flywheel
 from equipoise.running.integration import Limits
 from equipoise.running.joint_forces import Passage
 from equipoise.running.run_contacts import (
@@ -111,6 +112,7 @@ class DrivesRun(Result):
     references : about what running angles (..., R, M), and unknowns of loops, are, by their names
         in the linkage.
     support : how the support moves; None on a fixed frame.
+    flywheel : the one that a wanted fluctuation needs, where it is asked for.
     """
 
     machine: Machine
@@ -126,6 +128,7 @@ class DrivesRun(Result):
     passage: Passage
     references: Mapping[str, Array]
     support: SupportMotion | None = None
+    flywheel: Flywheel | None = None
     blocks_in = "running.drives_blocks.run_blocks"
     pictures_in = "figures.running.drives_charts"
     headline_in: ClassVar[str] = "running.drives_blocks.run_headline"
@@ -220,6 +223,7 @@ class DrivesRun(Result):
             "end": self.end.kind,
             "turns": self.turned,
             "drives": {link: course.to_dict() for link, course in self.drives.items()},
+            "flywheel": None if self.flywheel is None else self.flywheel.to_dict(),
             "energy_error": self.energy_error,
             "events": [vars(event) for event in self.events],
             "contacts": [contact.to_dict() for contact in self.contacts],

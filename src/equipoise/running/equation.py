@@ -61,8 +61,9 @@ class CrankEquation:
         if not self.machine.has_crank:
             raise UsageError(
                 Note(
-                    "a flywheel is sized for one crank that a torque turns, not for several drives "
-                    "or one that follows a law; leave the fluctuation, or the others, out"
+                    "a flywheel is sized for one crank that a torque turns: several drives need "
+                    "not come to a common cycle, and what follows a law does not fluctuate; leave "
+                    "the fluctuation, or the others, out"
                 )
             )
         if missing := massless(self.machine):

@@ -29,6 +29,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Gained, Integration, Limits
+from equipoise.running.supported_flywheel import SupportedCycles
 from equipoise.running.tabulated import NODES, POINTS, TO_CHEBYSHEV, integral_to, polynomials
 from equipoise.signals import Array
 from equipoise.vibration.coupled import StallError, mean_stall_note
@@ -345,18 +346,22 @@ def share_of_mean(given: float | str) -> float:
 
 
 def size_flywheel(
-    machine: Machine, wanted: float, progress: Callable[[int, int], None] | None = None
+    machine: Machine,
+    wanted: float,
+    progress: Callable[[int, int], None] | None = None,
+    support: bool = False,
 ) -> Flywheel:
     """A flywheel on the crank for a wanted fluctuation, by the steady state itself.
 
     wanted : coefficient of fluctuation, highest less lowest speed over the mean; 0.02 is 2 %.
     progress : called with the turns of the crank that were followed towards a steady state, and the
         most there can be.
+    support : whether the support moves too, in the plane; else the frame is fixed.
 
     Raises
     ------
-    MassError, MotionError, UsageError, ResponseError : as `run.run`; or the wanted fluctuation is
-        not between 0 and 1.
+    MassError, MotionError, ModelError, UsageError, ResponseError : as `run.run`; or the wanted
+        fluctuation is not between 0 and 1.
     StallError : the motor is too weak at every speed, however large the flywheel.
     """
     wanted = share_of_mean(wanted)
@@ -367,19 +372,24 @@ def size_flywheel(
 
     if machine.drive.motor is not None:
         _check_mean_torque(SteadyCycle(equation))
+    supported = SupportedCycles(machine) if support else None
     motor = MotorCycles(machine, progress or (lambda done, most: None))
 
     @cache
     def fluctuation(added: float) -> float:
+        if supported is not None:
+            return supported.fluctuation(added)
         steady = SteadyCycle(equation, added)
         if machine.drive.motor is None or steady.fluctuation == inf:
             return steady.fluctuation
         return motor.fluctuation(steady)
 
     present = fluctuation(0.0)
-    about = max(needed * motor.slower**2, own)
+    slower = motor.slower if supported is None else supported.slower
+    about = max(needed * slower**2, own)
     least = 0.0 if present <= wanted else _least(fluctuation, wanted, about)
-    estimate, speed = max(needed - own, 0.0), machine.drive.speed / motor.slower
+    slower = motor.slower if supported is None else supported.slower
+    estimate, speed = max(needed - own, 0.0), machine.drive.speed / slower
     return Flywheel(wanted, present, least, estimate, work, speed, machine.drive.flywheel)
 
 

@@ -361,7 +361,7 @@ def run(
     MotionError : the crank cannot turn fully.
     ModelError : with `support`, there is none, or its mounts do not hold the machine.
     UsageError : a value cannot be used, or `fluctuation` is given of a machine that is not driven
-        by one crank on a fixed frame.
+        by one crank, or whose support leaves the plane.
     ResponseError : the motion cannot be followed.
     """
     plan = machine.run or RunPlan()
@@ -375,13 +375,14 @@ def run(
                                "off_turns": off_turns})  # fmt: skip
     on_support = plan.support if support is None else support
     if on_support or not machine.has_crank:
+        wheel = None
         if fluctuation is not None:
-            _refuse_flywheel(machine)
+            wheel = size_flywheel(machine, share_of_mean(fluctuation), progress, support=True)
         limits = _limits_of_drives(machine, limits)
         start = _start(machine.drive.speed, speed, angle)
         equation = (SupportedEquation if on_support else DrivesEquation)(machine, start[1])
         starts = _start_of_drives(machine, start, _turns_counted(limits, progress), speed is None)
-        return run_drives(equation, limits, starts)
+        return replace(run_drives(equation, limits, starts), flywheel=wheel)
     whole_turns = _turns_counted(limits, progress)
     first = 0.0 if machine.drive.motor is not None else machine.drive.speed
     start = _start(first, speed, angle)
@@ -392,14 +393,6 @@ def run(
     integration.follow(start[1], start[0])
     flywheel = None if wanted is None else size_flywheel(machine, wanted, progress)
     return _result(crank, integration, flywheel)
-
-
-def _refuse_flywheel(machine: Machine) -> None:
-    """Raise a `UsageError`: a flywheel is sized on one crank, on a fixed frame."""
-    CrankEquation(machine)  # which says that it takes one crank
-    raise UsageError(
-        Note("a flywheel is sized on a fixed frame; leave out the fluctuation or the support")
-    )
 
 
 def _limits(machine: Machine, given: Mapping[str, float | str | None]) -> Limits:
