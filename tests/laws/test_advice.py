@@ -298,6 +298,7 @@ ANSWERS = {
     "grain-cleaner": r"^First move the resonance at 750 rpm.* 435 rpm.* other mounts bring more",
     "inline-3": r"Rocking moment, RMS: 3240 → .* z = -111.5 mm.* z = 111.5 mm",
     "inline-3-rows": r"All rows: roll moment, RMS: 1665 → ",
+    "jaw-crusher": r"^Reading at feed, .* 2\.02 mm .* with 540 mm, .* shaft .* 98 %.* First",
     "press": r"drive torque.* 3 times as fast as crank, which .* 5 %; .* 20 %.* motor .* 100 N m",
     "pump-jack": r"A weight of 9\d\d kg m \(1\d{3} kg at 700 mm\) on crank.* off the swing of",
     "sieve-eccentric": r"Shaking force, RMS: 547 → .* eccentric: add a ",

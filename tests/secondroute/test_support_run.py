@@ -107,7 +107,7 @@ def against_exact(machine: eq.Machine, duration: float, close: float) -> DrivesR
 
 def test_one_crank_and_its_motor_as_the_exact_model() -> None:
     run = against_exact(rig(), 0.4, 3e-9)
-    assert run.support is not None
+    assert run.support is not None and run.driven_back is None
     assert np.all(np.ptp(run.support.place[[0, 1, PITCH]], axis=1) > 1e-4)
 
 
@@ -353,6 +353,18 @@ def test_motor_as_curve_on_its_support_starts_and_is_switched_off() -> None:
     assert run.energy_error < BALANCE
     late = run.time > 0.2
     assert not np.any(run.drives["left crank"].effort[late])
+
+
+def test_a_motor_that_is_too_weak_swings_on_its_support() -> None:
+    """It does not lift the links over, which the run knows, and where it turns back."""
+    base = rig()
+    weak = Motor(40.0, 0.2, inertia=1e-4, mean_speed="free")
+    run = eq.run(replace(base, drive=replace(base.drive, motor=weak)), 0.8, support=True)
+    assert isinstance(run, DrivesRun)
+    course, (first, second) = run.drives["crank"], run.reversals("crank")
+    speeds = np.interp([first.time, second.time], run.time, course.speed)
+    np.testing.assert_allclose(speeds, 0.0, atol=1e-2 * np.max(np.abs(course.speed)))
+    assert run.driven_back == "crank" and abs(course.turns) < 1
 
 
 # -- in space --------------------------------------------------------------------------------------

@@ -269,5 +269,8 @@ def test_topics_are_listed_and_unknown_ones_refused() -> None:
     ):
         assert f"\n\n{meaning}" in succeeded(equipoise_runs("explain", term))
     assert known_topic("links.crank.section.width") == "links.NAME.section"
+    gravity = succeeded(equipoise_runs("explain", "gravity"))  # a key of a whole file
+    assert "linkage" in gravity and "two accelerations" in gravity
+    assert "drive.motor.servo" in succeeded(equipoise_runs("explain", "speed"))
     said = refused(equipoise_runs("explain", "sprngs"))
     assert said == "no topic is called 'sprngs'; did you mean 'springs'?"

@@ -127,6 +127,8 @@ def why_nothing(balanced: Balanced) -> Iterator[str]:
     first = [*first_sentences(balanced)]
     yield from first
     yield from reasons_beside_weights(balanced) if first else reasons_to_leave(balanced)
+    if _is_wanted(balanced.advice):
+        yield from with_more_room(balanced)
 
 
 def good_already(balanced: Balanced) -> str:
@@ -191,11 +193,14 @@ def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
     if (largest is None or not largest.is_large) and not requested:
         yield say("Leave the machine as it is: no figure is large relative to its reference value.")
     elif balanced.changes:
-        yield say(
+        leave = to_say(
             "Leave the masses as they are: the best change within the assumed space, {remedy}, "
-            "reduces {aims} by {gain} %; {why}.",
-            **_best_tried(balanced),
+            "reduces {aims} by {gain} %; {why}."
         )
+        alike = to_say(
+            "The best change within the assumed space, {remedy}, reduces {aims} by {gain} %; {why}."
+        )
+        yield say(leave if balanced.with_room is None else alike, **_best_tried(balanced))
     elif requested or (largest is not None and largest.is_shaking):
         yield say(
             "Leave the masses as they are: within the assumed space, no change of a mass about a "
@@ -207,6 +212,11 @@ def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
             "No counterweight that fits reduces what is large here: {figure}.",
             figure=largest.label.said(),
         )
+
+
+def _is_wanted(advice: Advice) -> bool:
+    """Whether a change is asked for, or something is large."""
+    return advice.requested or any(item.is_large for item in advice.before[:1])
 
 
 def _best_tried(balanced: Balanced) -> dict[str, str]:
@@ -233,6 +243,8 @@ def sentences_beyond_masses(balanced: Balanced) -> Iterator[str]:
     """What helps beyond masses, with the change that is offered, if one is; without one, other
     mounts stand before that masses are best left.
     """
+    if balanced.helps:  # else it is part of why nothing is advised
+        yield from with_more_room(balanced)
     yield from preloads(balanced)
     yield from mounts_beside_change(balanced)
     yield from beside_mounts(balanced)
@@ -274,7 +286,6 @@ def beside_mounts(balanced: Balanced) -> Iterator[str]:
     """What helps beyond masses and mounts, but for what stands first."""
     if balanced.advice is not None:
         yield from _beyond(balanced, first=False)
-        yield from _with_more_room(balanced)
 
 
 def _beyond(balanced: Balanced, first: bool) -> Iterator[str]:
@@ -371,7 +382,7 @@ def _from_to(was: FigureAssessment, new: FigureAssessment) -> str:
     )
 
 
-def _with_more_room(balanced: Balanced) -> Iterator[str]:
+def with_more_room(balanced: Balanced) -> Iterator[str]:
     """What a counterweight would do where there is more room than is assumed."""
     if (with_room := balanced.with_room) is not None:
         assumed, wanted = display("length", [with_room.assumed, with_room.wanted]), with_room.wanted

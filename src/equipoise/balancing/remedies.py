@@ -278,7 +278,7 @@ def best_sectors(
 
     opposite : of two planes of one link, whether the second sector points the other way: a couple.
     """
-    coarse = [*_coarse(comparison.rooms)]
+    coarse = [*coarse_sectors(comparison.rooms)]
     for _, shapes in _finer(comparison, coarse, most_mass, opposite):
         yield shapes
 
@@ -336,7 +336,7 @@ def _turned(degrees: int) -> int:
     return 180 - (180 - degrees) % 360
 
 
-def _coarse(rooms: Sequence[Room]) -> Iterator[Sector]:
+def coarse_sectors(rooms: Sequence[Room]) -> Iterator[Sector]:
     """Sectors that are tried first, in the smallest of some rooms."""
     largest = min(room.largest for room in rooms)
     thickest = min(room.most_thick for room in rooms)
@@ -344,9 +344,12 @@ def _coarse(rooms: Sequence[Room]) -> Iterator[Sector]:
     steps = floor(largest / grid * (1 + NEARLY))
     if steps < 2:
         return
+    hub = ceil(max(room.hub for room in rooms) / grid * (1 - NEARLY))
     thick = sorted({plate_of(thickest * share) for share in PLATE_SHARES}, reverse=True)
     for outer in dict.fromkeys(max(2, floor(steps * share)) for share in OUTER_SHARES):
-        inner = max(1, round(outer * HUB))
+        inner = max(1, round(outer * HUB), hub)
+        if inner >= outer:
+            continue
         for plate, way, width in product(thick, DIRECTIONS, WIDTHS):
             yield Sector(outer * grid, inner * grid, plate, _turned(way), width)
 

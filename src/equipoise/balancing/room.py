@@ -87,6 +87,16 @@ class Room:
         """Largest radius that is free in any direction, m."""
         return float(np.max(self.reach))
 
+    @property
+    def hub(self) -> float:
+        """Radius about the pivot, m, that own pins fill around it, as eccentrics do; 0 without."""
+        around = (
+            abs(pin) + clearance
+            for pin, clearance in zip(self.own_pins, self.own_clearances, strict=True)
+            if abs(pin) < clearance
+        )
+        return max(around, default=0.0)
+
     def is_free(self, inner: float, outer: float, direction: Array, width: Array) -> Array:
         """Whether sectors (...) between two radii (m) lie in the room; their middle and width are
         in degrees, in the link's axes.

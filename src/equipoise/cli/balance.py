@@ -82,7 +82,8 @@ def balance(
         if freed.any or objective or limit:
             machine = machine.with_balance(plan)
         frees = freed.any or ((objective or limit) and not plan.changes_nothing)
-        balanced = solve(machine, plan) if frees else advice.advise(machine, solve)
+        stated = frees and plan.objectives  # else the advice finds which figure is large
+        balanced = solve(machine, plan) if stated else advice.advise(machine, solve)
     for option, path in {"--out": out, "--drawing": drawing}.items():
         if path is not None and not balanced.helps:
             _refuse(balanced, option)

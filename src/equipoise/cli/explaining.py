@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
@@ -12,6 +12,7 @@ from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError, unknown
 
 if TYPE_CHECKING:
+    from equipoise.keys import Key
     from equipoise.results.blocks import Block
     from equipoise.schema.topics import FileTable
 
@@ -26,8 +27,8 @@ def explain(topic: Annotated[str | None, Parameter(name="TOPIC")] = None, /) -> 
     Parameters
     ----------
     topic
-        As below an error, such as change-point; a table or key, such as springs or drive.speed; or
-        a term, such as shaking-moment. All topics are listed if not given.
+        As below an error, such as change-point; a table or key, such as springs, drive.speed or
+        gravity; or a term, such as shaking-moment. All topics are listed if not given.
     """
     from equipoise.schema import topics
 
@@ -37,8 +38,10 @@ def explain(topic: Annotated[str | None, Parameter(name="TOPIC")] = None, /) -> 
     if not known and (term := topics.terms().get(topics.slug_of(topic))):
         words = [term.title, "", *topics.paragraphs(term.text, WIDEST)]
         return CommandResult(lines=lambda: "\n".join(words).splitlines())
+    if not known and (places := topics.keys_by_name().get(topic)):
+        return CommandResult(lambda: _key(topic, places), title=topic)
     if not known:
-        every = [*topics.errors(), *topics.tables(), *topics.terms()]
+        every = [*topics.errors(), *topics.tables(), *topics.terms(), *topics.keys_by_name()]
         raise UsageError(unknown(topic, every, "topic"))
     if known in topics.errors():
         return CommandResult(lines=lambda: _page(*topics.errors()[known]).splitlines())
@@ -78,6 +81,19 @@ def _keys(table: FileTable, path: str) -> Iterator[Block]:
     below = [name for name in topics.tables() if name.startswith(f"{path}.")]
     if below:
         yield Text(f"Tables in it: {', '.join(below)}.")
+
+
+def _key(name: str, places: Mapping[str, Key]) -> Iterator[Block]:
+    """A key in each table, or file, that has it."""
+    from equipoise.results.blocks import Table
+    from equipoise.schema import writing
+
+    rows = [
+        (place, *(cell.replace("`", "") for cell in cells[1:]))
+        for place, key in places.items()
+        for cells in writing.rows({name: key})
+    ]
+    yield Table.of("", ("in", *writing.HEADINGS[1:]), rows)
 
 
 def _page(title: str, text: str) -> str:

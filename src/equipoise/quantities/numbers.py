@@ -244,16 +244,11 @@ _EXTRA_UNITS = {
     "ng": 1e12,
     "nN": 1e9,
     "uN": 1e6,
-    "MN": 1e-6,
     "nN m": 1e9,
     "uN m": 1e6,
     "nJ": 1e9,
     "uJ": 1e6,
     "mN m": 1e3,
-    "MN m": 1e-6,
-    "MW": 1e-6,
-    "MJ": 1e-6,
-    "MN/m": 1e-6,
 }
 """Units that are shown but not read: how many are one SI unit."""
 

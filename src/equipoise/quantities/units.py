@@ -170,6 +170,7 @@ KINDS: dict[Dimension, QuantityKind] = {
         {
             "N": "1",
             "kN": "1000",
+            "MN": "1000000",
             "mN": "0.001",
             "kgf": "9.80665",
             "gf": "0.00980665",
@@ -184,6 +185,7 @@ KINDS: dict[Dimension, QuantityKind] = {
             "N mm": "0.001",
             "N cm": "0.01",
             "kN m": "1000",
+            "MN m": "1000000",
             "kgf m": "9.80665",
             "kgf cm": "0.0980665",
             "gf cm": "0.0000980665",
@@ -218,6 +220,8 @@ KINDS: dict[Dimension, QuantityKind] = {
             "N/m": "1",
             "N/mm": "1000",
             "kN/m": "1000",
+            "kN/mm": "1000000",
+            "MN/m": "1000000",
             "kgf/m": "9.80665",
             "kgf/cm": "980.665",
             "kgf/mm": "9806.65",
@@ -258,7 +262,7 @@ KINDS: dict[Dimension, QuantityKind] = {
         example="3 N m s/rad",
     ),
     "power": QuantityKind(
-        to_say("a power"), {"W": "1", "mW": "0.001", "kW": "1000"}, example="40 W"
+        to_say("a power"), {"W": "1", "mW": "0.001", "kW": "1000", "MW": "1000000"}, example="40 W"
     ),
     "density": QuantityKind(
         to_say("a density"),
@@ -285,7 +289,9 @@ KINDS: dict[Dimension, QuantityKind] = {
         usual=("cm^3", "mm^3", "m^3"),
     ),
     "energy": QuantityKind(
-        to_say("an energy"), {"J": "1", "mJ": "0.001", "kJ": "1000"}, example="12 J"
+        to_say("an energy"),
+        {"J": "1", "mJ": "0.001", "kJ": "1000", "MJ": "1000000"},
+        example="12 J",
     ),
     "bending stiffness": QuantityKind(
         to_say("a bending stiffness"),

@@ -62,7 +62,8 @@ def run_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
 
     alone : whether nothing follows, as on a terminal.
     """
-    yield Text(verdict(run), broken_if(run.end.kind in ("stall", "dead", "lever")))
+    broken = run.end.kind in ("stall", "dead", "lever") or run.driven_back is not None
+    yield Text(verdict(run), broken_if(broken))
     if run.machine.has_crank and run.machine.drive.motor is None:
         yield Text(say(NO_MOTOR))
     if run.flywheel is not None:
@@ -75,6 +76,14 @@ def run_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
 
 def verdict(run: DrivesRun) -> str:
     """What came of the run, in a sentence."""
+    if (link := run.driven_back) is not None:
+        return say(
+            "In {time} s {link} turns back {count} times and completes no further turn: its motor "
+            "gives too little torque; give a stronger motor, a higher ratio or a larger flywheel.",
+            time=number(run.end.time),
+            link=link,
+            count=len(run.reversals(link)),
+        )
     values = {"time": number(run.end.time), "turns": number(abs(run.turned)), "of": run.end.of}
     return say(ENDS.get(run.end.kind, OTHER_END), **values)
 

@@ -161,6 +161,30 @@ class DrivesRun(Result):
         )
         return energy_error(self.kinetic_energy, self.work.values(), circuits)
 
+    def reversals(self, link: str) -> tuple[DriveEvent, ...]:
+        """Where a driven link turns back while motors are on."""
+        off = next((event.time for event in self.events if event.kind == "off"), inf)
+        return tuple(
+            event
+            for event in self.events
+            if event.kind == "reversal" and event.of == link and event.time < off
+        )
+
+    @cached_property
+    def driven_back(self) -> str | None:
+        """Link that turns back against its motor, and completes no turn in the rest of the run;
+        None where there is none.
+        """
+        for course, driver in zip(self.drives.values(), self.equation.drivers(), strict=True):
+            back, sense = self.reversals(course.link), driver.sense
+            if course.moved_by != MOTOR or not back:
+                continue
+            from_there = course.angle[-1] - np.interp(back[0].time, self.time, course.angle)
+            swings = len(back) > 1 or sense * course.speed[-1] < 0  # else it may begin to turn
+            if swings and sense * from_there < 2 * pi:
+                return course.link
+        return None
+
     def motion_at(self, places: Array, row: int = 0) -> Motion:
         """Poses of a row, from 0, in the axes of its frame at some of the M instants, by their
         places (K,), where derivatives by the crank angle are those by time.

@@ -253,11 +253,12 @@ def _named(kind: keys.Named, given: Any, place: KeyPath, context: Context) -> An
             keys.Listing(keys.TextKind(), right=Note("names in quotes")), given, place, context
         )
     if not isinstance(given, dict):
-        return context.wrong(
-            place,
-            given,
-            Note("give a table, or a list of names") if kind.listed else Note("give a table"),
-        )
+        right = Note("give a table")
+        if kind.listed:
+            right = Note("give a table, or a list of names")
+        elif isinstance(given, list) and isinstance(kind.item, keys.KeyTable):
+            right = Note("write each as a table [{header}.NAME]", header=place.shown)
+        return context.wrong(place, given, right)
     read, item = READERS[type(kind.item)], kind.item
     return {name: read(item, entry, place / name, context) for name, entry in given.items()}
 

@@ -112,6 +112,19 @@ def _below(
             yield from _below(item, here, (of, *above))
 
 
+@cache
+def keys_by_name() -> Mapping[str, Mapping[str, keys.Key]]:
+    """Every key that holds no table, by its name and then by the table, or file, that has it."""
+    files = [("", document_of(kind), kind) for kind in FILES]
+    places = [*files, *((path, table.of, table.kind) for path, table in tables().items())]
+    named: dict[str, dict[str, keys.Key]] = {}
+    for path, of, kind in places:
+        for name, key in keys.all_keys(of).items():
+            if not isinstance(keys.innermost(key.kind), keys.KeyTable | keys.Tables):
+                named.setdefault(name, {})[path or kind] = key
+    return named
+
+
 def table_at(place: Sequence[str]) -> str:
     """The path of the table that a place of a file is in; empty where it is in none.
 

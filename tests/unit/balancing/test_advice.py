@@ -5,27 +5,37 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from math import pi
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import equipoise as eq
-import support.findings
 from equipoise.balancing.advice import advise, running_speeds
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.first_order import end_weights_for
 from equipoise.balancing.headlines import Saving, assessed, watched_of, worse_headlines
-from equipoise.balancing.outcome import benefit_sentences, why_not
+from equipoise.balancing.outcome import (
+    benefit_sentences,
+    sentences_beyond_masses,
+    why_not,
+    why_nothing,
+)
 from equipoise.balancing.policy import (
     HEADLINE_GROWTH,
+    LEAST_CLEARANCE,
     LEAST_GAIN,
     LEAST_GAIN_OF_ADDED,
     SMALL_FIGURE,
 )
 from equipoise.balancing.remedies import Sector as SectorShape
-from equipoise.balancing.remedies import is_worth, plate_of, sectors, with_sectors
+from equipoise.balancing.remedies import (
+    coarse_sectors,
+    is_worth,
+    plate_of,
+    sectors,
+    with_sectors,
+)
 from equipoise.balancing.room import pivots_of, room_about, rooms_about
 from equipoise.balancing.sentences import deterioration_sentences, objectives_text, proof_sentences
 from equipoise.balancing.spaced_arms import spaced_arms_for
@@ -33,13 +43,14 @@ from equipoise.balancing.workshop import in_short, sentences
 from equipoise.errors import EquipoiseError, MassError
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objective, Phases, Weight
 from equipoise.mechanism.parts.bodies import Body
+from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.links import Bearing
 from equipoise.mechanism.parts.machine import Drive, Link, Slider
 from equipoise.results.blocks import Text as TextBlock
 from equipoise.results.yardsticks import assess
 from equipoise.signals import Array
 from equipoise.vibration.linear import Linear
-from support.findings import advice_for
+from support.findings import ADVISED, advice_for
 from support.refusals import refused
 
 RIG, RIDING = eq.load("yamashita-rig"), eq.load("riding-transplanter")
@@ -298,6 +309,30 @@ def test_what_more_room_would_allow_is_said() -> None:
     told = " ".join(benefit_sentences(found))
     assert f"The space about {more.at} is assumed, from the lengths of the links" in told
     assert advice_for("balance-shafts").with_room is None
+
+
+def test_more_room_is_named_where_the_assumed_space_is_too_small() -> None:
+    """As of a heavy jaw on a short eccentric; beside it nobody is told to leave the masses."""
+    crusher = replace(eq.load(ADVISED / "jaw-crusher.toml"), support=None)
+    balanced = advise(
+        crusher.with_balance(Balance(objectives=(Objective("shaking_force", "peak"),)))
+    )
+    assert not balanced.helps and balanced.with_room is not None
+    assert balanced.with_room.remedy.gain > 3 * balanced.gain
+    tried, room = why_nothing(balanced)
+    assert "Leave" not in tried
+    assert room.startswith(f"The space about {balanced.with_room.at} is assumed")
+    assert room not in sentences_beyond_masses(balanced)
+
+
+def test_a_weight_on_an_eccentric_begins_outside_of_it() -> None:
+    """A pin of a large radius about a small throw fills the hub, in all directions."""
+    crusher = eq.load(ADVISED / "jaw-crusher.toml")
+    pins = tuple(JointProperties(f"joints.{pin}", radius=0.11) for pin in "AB")
+    room = room_about(replace(crusher, joints=pins, support=None), "shaft")
+    assert room.hub == pytest.approx(0.012 + 0.11 + LEAST_CLEARANCE)
+    inner = {shape.inner for shape in coarse_sectors([room])}
+    assert inner and min(inner) >= room.hub
 
 
 @pytest.mark.parametrize(("name", "mass", "gain"), [("kim-chung-b", 0.298, 0.209)])
@@ -667,8 +702,6 @@ def test_mounts_without_a_steady_state_leave_what_shakes() -> None:
 
 
 # -- machines of other trades ----------------------------------------------------------------------
-
-ADVISED = Path(support.findings.__file__).parent / "advised"
 
 
 def advised(name: str) -> eq.Machine:

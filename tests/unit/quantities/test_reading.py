@@ -51,6 +51,8 @@ usual = numbers.filter(lambda x: x == 0 or abs(x) > 1e-29)
         ("36 km/h", "speed", 10.0),
         ("50 Hz", "frequency", 50.0),
         ("1 kgf/mm", "stiffness", 9806.65),
+        ("4 kN/mm", "stiffness", 4e6),
+        ("4 MN/m", "stiffness", 4e6),
         ("7.85 g/cm^3", "density", 7850.0),
         ("7.85 kg/dm**3", "density", 7850.0),
         ("7850 kg/m\N{SUPERSCRIPT THREE}", "density", 7850.0),

@@ -243,7 +243,7 @@ OF_SUPPORTS: Refusals = {
     "freedom twice": (INERTIA, f'{INERTIA}\nfreedoms = ["pitch", "pitch"]', "support.freedoms[2]",
                       "'pitch' is given twice"),
     "mounts as a list": ("[support.mounts.m]", "[[support.mounts]]", "support.mounts",
-                         "got a list of 1; give a table"),
+                         "got a list of 1; write each as a table [support.mounts.NAME]"),
     "mount as text": (INERTIA, f'{INERTIA}\nmounts.x = "1 kN/m"', "support.mounts.x",
                       "got '1 kN/m'; give a table"),
     "unit of stiffness": (STIFF, 'stiffness = "20 N"', f"{M}.stiffness",
