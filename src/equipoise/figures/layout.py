@@ -349,7 +349,10 @@ MOST_OF_HALF, ONE_OF_HALF, LEAST_OF_HALF = 300.0, 150.0, 90.0
 MOST_OF_ROWS = 220.0
 """Height of all rows of drawings in a picture, so that a page has room for two such pictures."""
 MOST_ALONE = 4
-"""Small panels below each other on a telephone; of more two stand side by side."""
+"""Rows of drawings in half of a page that share its height; more have `LEAST_OF_HALF` each."""
+PAIRED = 4
+"""Drawings without names of axes that stand in pairs on a telephone; fewer below each other, but
+for those without axes, such as dials."""
 
 
 def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Canvas:
@@ -364,11 +367,13 @@ def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Canvas:
 
 def on_telephone(chart: Chart) -> Canvas:
     """A wide chart without its heading on a sheet of half that width: panels below each other, but
-    for many small ones without names of axes, which stand in pairs.
+    for small ones without names of axes, which stand in pairs.  It is as high as it needs.
     """
     panels = chart.panels
-    many = len(panels) > MOST_ALONE and all(panel.equal and not panel.y.label for panel in panels)
-    return lay_out(replace(chart, columns=2 if many else 1), HALF, headed=False)
+    small = all(panel.equal and not panel.y.label for panel in panels)
+    paired = small and (len(panels) >= PAIRED or all(panel.bare for panel in panels))
+    chart = replace(chart, columns=2 if paired else 1)
+    return _sheet(chart, _cells(chart, HALF, scrolled=True), HALF, headed=False)
 
 
 def lay_out_rows(chart: Chart, wide: float) -> Iterator[Canvas]:
@@ -426,11 +431,14 @@ def _inner(wide: float, columns: int) -> float:
     return (wide - 2 * EDGE - (columns - 1) * GAP) / columns
 
 
-def _cells(chart: Chart, wide: float, parted: bool = False, low: bool = False) -> list[Cell]:
+def _cells(
+    chart: Chart, wide: float, parted: bool = False, low: bool = False, scrolled: bool = False
+) -> list[Cell]:
     """Panels with their axes, in one scale.
 
     parted : whether each row stands alone, so that all axes have numbers.
     low : whether rows of drawings have `MOST_OF_ROWS` at most.
+    scrolled : whether each of several drawings may be as high as one alone in half of a page.
     """
     columns = _columns(chart, wide)
     rows = -(-len(chart.panels) // columns)
@@ -439,6 +447,8 @@ def _cells(chart: Chart, wide: float, parted: bool = False, low: bool = False) -
         high, most = HIGH_OF_HALF, min(MOST_OF_HALF / rows, ONE_OF_HALF)
         if rows > MOST_ALONE:
             most = LEAST_OF_HALF
+        if scrolled:
+            most = ONE_OF_HALF
     usual = high[min(rows, max(high))]
     highest = usual if wide == HALF else np.inf
     cells = [cell_of(panel, min(panel.height or usual, highest)) for panel in chart.panels]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations
 from xml.etree import ElementTree
@@ -45,6 +45,15 @@ class Laid:
 
     @classmethod
     def of(cls, chart: Chart, wide: float = layout.WIDE, headed: bool = True) -> Laid:
+        return cls.by(chart, lambda: lay_out(chart, wide, headed))
+
+    @classmethod
+    def on_telephone(cls, chart: Chart) -> Laid:
+        """As telephones show a wide one."""
+        return cls.by(chart, lambda: layout.on_telephone(chart))
+
+    @classmethod
+    def by(cls, chart: Chart, lay: Callable[[], Canvas]) -> Laid:
         found: list[tuple[View, tuple[Item, ...]]] = []
         draw = layout.draw
 
@@ -55,7 +64,7 @@ class Laid:
 
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(layout, "draw", seen)
-            sheet = lay_out(chart, wide, headed)
+            sheet = lay()
         return cls(chart, sheet, tuple(found))
 
     @classmethod
@@ -269,7 +278,8 @@ LOWEST_DRAWING = 72.0
 
 def drawings_low(laid: Laid) -> Iterator[Fault]:
     """Machines and paths are large enough for the words at them, also in half of a page."""
-    for view, _ in laid.panels if laid.chart.columns == 1 else ():
+    alone = len({view.y.start for view, _ in laid.panels}) == len(laid.panels)
+    for view, _ in laid.panels if alone else ():
         low = min(view.x.length, view.y.length) < LOWEST_DRAWING
         if view.panel.equal and not view.panel.bare and low:
             yield "drawing too low", f"{_told(view)}: {view.y.length:.0f} points"

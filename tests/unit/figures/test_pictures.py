@@ -80,13 +80,16 @@ def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
         charts = [(picture, picture.draw()) for picture in each(told)]
         drawn = [(picture, Laid.of(chart)) for picture, chart in charts]
         small = [(picture, Laid.in_report(chart)) for picture, chart in charts]
+        on_telephone = [
+            (picture, Laid.on_telephone(chart)) for picture, chart in charts if is_wide(chart)
+        ]
         kept = [Kept(picture.name, picture.caption, svg_of(laid.sheet)) for picture, laid in drawn]
     if isinstance(told, Findings):
         moving = tmp_path / "animation.svg"
         assert run(["animate", name, "--out", str(moving)]) == 0
         kept.append(Kept(moving.stem, "The linkage moves.", moving.read_text(encoding="utf-8")))
     keep(name, kept)
-    for pictures in (drawn, small):
+    for pictures in (drawn, small, on_telephone):
         assert not [(picture.name, *fault) for picture, laid in pictures for fault in laid.faults]
     for language in ("ja", "ko") if name in TRANSLATED else ():
         with speaking(language), in_own_words(told.owner):
