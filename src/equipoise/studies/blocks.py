@@ -231,7 +231,7 @@ def searched_blocks(
         parts = [say("{count} designs in {generations} generations, seed {seed}", **counted)]
     parts += [say("{count} failed", count=failed)] if failed else []
     if searched.proof is None:
-        still, growing = say("the front has converged"), say("the front has not converged")
+        still, growing = say("the search has converged"), say("the search has not converged")
         parts.append(still if searched.stood_still else growing)
     yield Text("; ".join(parts))
     yield from _limits(searched.study.outputs, units)
