@@ -121,7 +121,7 @@ class Analysis(Result):
         """Figures of parts under the name of their list, such as `cams`."""
         if not name.startswith("_") and name in figures_of_kinds(type(self.machine)):
             return self.part_figures[name]
-        raise AttributeError(f"{type(self).__name__} has no {name!r}")
+        raise AttributeError(name, name=name, obj=self)
 
     def dwell(self, name: str, tolerance: float | None = None) -> Dwell:
         """Longest crank angle over which a slider, link or point moves by no more than a tolerance
