@@ -20,6 +20,7 @@ from equipoise.figures.chart_parts import (
     numbered_angles,
     numbers,
     speed_text,
+    without_empty,
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
@@ -153,7 +154,7 @@ def row_keys(analysis: Analysis) -> tuple[tuple[str, str], ...]:
     if not analysis.rows_total:
         return ()
     count = len(analysis.machine.rows)
-    return (SINGLE, say("one row")), (ALL, say("all {count} rows", count=count))
+    return (SINGLE, say("one row")), (ALL, say("{rows} rows together", rows=count))
 
 
 # -- joints ----------------------------------------------------------------------------------------
@@ -215,8 +216,11 @@ def joints(analysis: Analysis) -> Iterator[Chart]:
     every = list(result)
     for suffix, names in groups(every, columns=2):
         what = title(analysis, say("Force in each joint") + continued(names, every), "", True)
-        panels = tuple(_over_angle(analysis, result[name], result.values()) for name in names)
-        yield Chart(f"joints{suffix}", analysis.machine.title, what, panels, columns=2)
+        panels, words = without_empty(
+            _over_angle(analysis, result[name], result.values()) for name in names
+        )
+        own = f"joints{suffix}"
+        yield Chart(own, analysis.machine.title, what, panels, columns=2, words=words)
 
 
 def _over_angle(analysis: Analysis, joint: JointCurve, every: Iterable[JointCurve]) -> Panel:

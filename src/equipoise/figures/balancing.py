@@ -113,7 +113,7 @@ class Aim:
         unit = GAUGES["displacement", True][1] if dimension == "angle" else None
         named = first if with_speed else replace(first, speeds=())
         title = objective_named(named, len(self.machine.rows), measured=False)
-        label = say("size") if self.output.is_vector else say(LABELS[str(dimension)])
+        label = say("magnitude") if self.output.is_vector else say(LABELS[str(dimension)])
         turn = len(self.after.start) // self.after.turns
         angles = np.arange(len(self.pair["after"])) * (2 * np.pi / turn)
         ends = {"unit": unit, "low": 0.0 if self.output.is_vector else None}
@@ -308,7 +308,7 @@ def phases(original: Machine | None, machine: Machine) -> Chart:
     hands = {"after": machine} if original is None else {"before": original, "after": machine}
     panels = tuple(_dial(hands, machine, k) for k in order)
     what = say("Direction of {link} in each row at one instant", link=short(machine.drive.link))
-    foot = say("from left to right of who looks forward, with their lateral places")
+    foot = say("from left to right, looking forward, with lateral positions")
     keyed = tuple((role, say(WHEN[role])) for role in hands)
     return Chart("phases", machine.title, what, panels, columns=IN_LINE, keys=keyed, foot=foot)
 

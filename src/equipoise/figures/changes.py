@@ -13,12 +13,18 @@ import numpy as np
 
 from equipoise.balancing.workshop import is_ring
 from equipoise.dataclass import dataclass
-from equipoise.figures.linkage import crank_angle_text, joint_names, panel_content, plane_axes
+from equipoise.figures.linkage import (
+    crank_angle_text,
+    joint_names,
+    keys_of,
+    panel_content,
+    plane_axes,
+)
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.results.charts import Array, Arrow, Chart, Curve, Mark, Outline, Panel, quantity
-from equipoise.symbols.scene import Scene, called, clear_angle
+from equipoise.symbols.scene import Scene, clear_angle
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -88,6 +94,7 @@ class Addition:
     kind : key of `NAMES`.
     outline : of what has an area, a line, or one place.  holes : inner edges.
     at, text : where its label stands, and what it says.  away : where to from there.
+    arm : where its link turns, from which a line leads to what is one place.
     """
 
     kind: str
@@ -96,11 +103,13 @@ class Addition:
     text: str = ""
     away: complex = 1j
     holes: tuple[Array, ...] = ()
+    arm: complex | None = None
 
     def in_meters(self) -> Addition:
         """Addition with places in metres, as charts have them."""
         holes = tuple(hole / MM for hole in self.holes)
-        return replace(self, outline=self.outline / MM, at=self.at / MM, holes=holes)
+        arm = None if self.arm is None else self.arm / MM
+        return replace(self, outline=self.outline / MM, at=self.at / MM, holes=holes, arm=arm)
 
 
 def changes(balanced: Balanced) -> Chart:
@@ -123,7 +132,7 @@ def changes(balanced: Balanced) -> Chart:
     what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=text)
     panel = _panel(scene, posed.number, new)
     keys = [("added", say(NAMES["spring"]))] if any(item.kind == "spring" for item in new) else []
-    keys += [("wheel", called(scene.wheels))] if scene.wheels else []
+    keys += keys_of(replace(scene, planned=()))
     return Chart("changes", original.title, what, (panel,), keys=tuple(keys))
 
 
@@ -180,7 +189,8 @@ def _pieces(posed: Posed, change: Change) -> Iterator[Addition]:
         link = short(change.link, SHORT)
         text = say("{mass} on {link}", mass=grams(piece["mass"]), link=link)
         outline, holes, edge = _shape(posed.angle(change.link), piece, center, place)
-        yield Addition("mass", outline, edge, text, _way(place - center), holes)
+        arm = center if len(outline) == 1 else None
+        yield Addition("mass", outline, edge, text, _way(place - center), holes, arm)
 
 
 def _with_labels_apart(items: Sequence[Addition]) -> Iterator[Addition]:
@@ -210,7 +220,8 @@ def _cut(posed: Posed, change: Change) -> Addition:
     text = say("{mass} off {link}", mass=grams(values["mass"]), link=short(change.link, SHORT))
     hole = values.get("hole_radius")
     outline = np.array([place]) if hole is None else circle(place, MM * hole)
-    return Addition("cut", outline, place, text, _way(place - pivot))
+    arm = pivot if len(outline) == 1 else None
+    return Addition("cut", outline, place, text, _way(place - pivot), arm=arm)
 
 
 def _shape(
@@ -328,6 +339,11 @@ def _panel(scene: Scene, k: int, new: list[Addition]) -> Panel:
             Curve.of(item.outline, say(NAMES[item.kind]), CURVES.get(item.kind, item.kind))
             for item in new
             if item.kind in ("room", "gear") or (item.kind == "cut" and len(item.outline) > 1)
+        )
+        + tuple(
+            Curve.of(np.array([item.arm, item.outline[0]]), "", "arm")
+            for item in new
+            if item.arm is not None
         ),
         (*_dots(new), *_texts(new, COINCIDENT * size), *joint_names(scene, k, optional=True)),
         arrows=tuple(Arrow(complex(old), complex(at), "move") for old, at in moves if old != at),

@@ -133,6 +133,24 @@ def groups(
         yield f"-{number}" if number > 1 else "", names[start : start + rows * columns]
 
 
+def without_empty(panels: Iterable[Panel]) -> tuple[tuple[Panel, ...], tuple[str, ...]]:
+    """Panels in which something is drawn, and which of the others are left out for what reason, in
+    words; where nothing is drawn in any, all of them.
+    """
+    every = tuple(panels)
+    shown = tuple(panel for panel in every if not panel.message)
+    if not shown:
+        return every, ()
+    left_out: dict[str, list[str]] = {}
+    for panel in every:
+        if panel.message:
+            left_out.setdefault(panel.message, []).append(panel.title)
+    return shown, tuple(
+        say("not drawn, {reason}: {names}", reason=reason, names=say("; ").join(titles))
+        for reason, titles in left_out.items()
+    )
+
+
 # -- signals ---------------------------------------------------------------------------------------
 
 

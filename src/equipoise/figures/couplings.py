@@ -37,7 +37,7 @@ def ratios(analysis: Analysis) -> Iterator[Chart]:
             label = say("angular velocity ratio, {link} / {drive}", **names)
             signal = {ALL: with_figures(analysis, driven / driver)}
             panel = compared(angle_axis(analysis), label, None, signal)
-            what = say("Speed ratio on the carrier")
+            what = say("Speed ratio relative to the carrier")
             name = f"{item.list_name}-{item.driven.translate(FORBIDDEN)}"
             yield Chart(name, analysis.machine.title, title(analysis, what), (panel,))
 

@@ -28,6 +28,7 @@ from equipoise.figures.chart_parts import (
     extent,
     numbered_angles,
     numbers,
+    without_empty,
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
@@ -80,7 +81,7 @@ def over_crank(
             extent=np.concatenate(
                 [v for item, values in every if item == dimension for v in values]
             ),
-            low=0.0 if label == say("size") else None,
+            low=0.0 if label == say("magnitude") else None,
             unit=unit,
         )
         for label, dimension, signals in panels
@@ -102,7 +103,7 @@ def force(analysis: Analysis) -> Chart:
     parts: dict[str, Callable[[Array], Array]] = {
         say("along {axis}", axis="x"): np.real,
         say("along {axis}", axis="y"): np.imag,
-        say("size"): np.abs,
+        say("magnitude"): np.abs,
     }
     panels: list[Signals] = [
         (label, "force", {role: part(values) for role, values in result.items()})
@@ -249,7 +250,7 @@ def _size_marks(
         text = say("peak {value} at {angle}", value=axis.quantity(abs(peak)), angle=at)
         add_mark(peak, text, "stress")
     away = found.mean * complex(np.exp(1j * (np.angle(peak) + 2.4)))
-    add_mark(away, say("mean size {value}", value=axis.quantity(found.mean)), "mean size")
+    add_mark(away, say("mean magnitude {value}", value=axis.quantity(found.mean)), "mean size")
     return marks, [Curve.of(circle, "", "mean size")], arrows, ""
 
 
@@ -284,13 +285,13 @@ def spectrum(analysis: Analysis) -> Chart:
     ]
     last = max(FEWEST, *(last_order(bars) for bars in read))
     most = MOST_NUMBERED[bool(analysis.rows_total)]
-    panels = tuple(
+    panels, notes = without_empty(
         order_panel(text, dimension, bars, last, most)
         for (text, dimension, _), bars in zip(signals, read, strict=True)
     )
     what = title(analysis, say("Amplitude of each order"))
     keys = tuple((BAR_ROLES[role], name) for role, name in row_keys(analysis))
-    return Chart("spectrum", analysis.machine.title, what, panels, keys=keys)
+    return Chart("spectrum", analysis.machine.title, what, panels, keys=keys, words=notes)
 
 
 BAR_ROLES = {SINGLE: "bar before", ALL: "bar after"}

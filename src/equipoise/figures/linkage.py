@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.figures.points import moving
-from equipoise.figures.stage import beyond, row_legend, rows_named
+from equipoise.figures.stage import beyond, beyond_text, row_legend, rows_named
 from equipoise.figures.style import short
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import FRAME
@@ -343,6 +343,7 @@ def centrodes(analysis: Analysis, links: Sequence[str]) -> Chart:
     k = clear_angle(scene)
     machine = _pose_box(scene, k)
     panels, cut = [], False
+    far, still = dict[complex, list[str]](), list[str]()
     for name in names:
         link, base = motion.links[name], motion.points[motion.linkage.anchors[name]].place
         fixed = _fixed_centrode(motion, name)
@@ -355,6 +356,15 @@ def centrodes(analysis: Analysis, links: Sequence[str]) -> Chart:
         marks = [*joint_names(scene, k, optional=True)]
         if box is None or _inside(fixed[k], box):
             marks.append(Mark.of(fixed[k], say("instant centre"), "several 1", 60.0))
+        elif np.isfinite(fixed[k]):
+            of_link = say("instant centre of {name}", name=short(name))
+            far.setdefault(complex(fixed[k]), []).append(of_link)
+        else:
+            still.append(
+                say(
+                    "{link} does not turn here: its instant centre is at infinity", link=short(name)
+                )
+            )
         panel = Panel(
             *plane_axes(scene),
             (
@@ -372,9 +382,11 @@ def centrodes(analysis: Analysis, links: Sequence[str]) -> Chart:
         panels.append(panel)
     text = {"link": short(analysis.machine.drive.link), "angle": pose_text(scene, k)}
     what = say("Centrodes of links in the frame; angle of {link}: {angle}", **text)
-    words = (say("Centrodes that run far away are drawn near the machine only."),) if cut else ()
+    words = [say("Centrodes that run far away are drawn near the machine only.")] if cut else []
+    words += [*beyond_text(far), *still]
     columns = 1 if len(panels) == 1 else 2
-    return Chart("centrodes", analysis.machine.title, what, tuple(panels), columns, words=words)
+    title, notes = analysis.machine.title, tuple(words)
+    return Chart("centrodes", title, what, tuple(panels), columns, words=notes)
 
 
 def keys_of(scene: Scene) -> Iterator[tuple[str, str]]:

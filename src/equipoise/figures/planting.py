@@ -46,7 +46,11 @@ QUANTITIES: dict[str, tuple[str, str, Dimension, str]] = {
     ),
 }
 """Name -> title, label, dimension, and what the figures call its size."""
-PARTS = {"": ("", ""), "-x": (to_say("part along x"), " x"), "-y": (to_say("part along y"), " y")}
+PARTS = {
+    "": ("", ""),
+    "-x": (to_say("component along x"), " x"),
+    "-y": (to_say("component along y"), " y"),
+}
 
 
 def charts(figures: PlantingFigures) -> dict[str, Chart]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
 from math import ceil
@@ -29,6 +30,8 @@ IN_A_TURN = 240
 """Points of a path in a turn of the crank."""
 SIZE, LEAST = 12.0, 11.0
 """Of type, in pixels: in a picture 640 pixels wide, and in small ones."""
+ROUNDING = 1e-9
+"""Over a distance: coordinates that are less are zeros."""
 RULER = 0.22
 """Most length of the ruler, in widths of the picture."""
 SOME = 24
@@ -306,13 +309,18 @@ def beyond(scene: Scene) -> list[str]:
     for items in (carrier.support.mounts, carrier.support.gauges):
         for place, names in carrier.named(items).items():
             places[place] = places.get(place, []) + names
+    return beyond_text({place: names for place, names in places.items() if not scene.shows(place)})
+
+
+def beyond_text(places: Mapping[complex, Sequence[str]]) -> list[str]:
+    """What is at places, m, that a drawing does not reach, in one line; or no line."""
     text = []
     for place, names in places.items():
-        if not scene.shows(place):
-            axis = Axis.of("", "length", [place])
-            x, y = axis.format_value(place.real), axis.format_value(place.imag)
-            at = f"({x}, {y}) {axis.unit_name}"
-            text.append(f"{', '.join(names)} {at}")
+        axis = Axis.of("", "length", [place])
+        least = ROUNDING * abs(place)
+        parts = (part if abs(part) > least else 0.0 for part in (place.real, place.imag))
+        x, y = map(axis.format_value, parts)
+        text.append(f"{', '.join(names)} ({x}, {y}) {axis.unit_name}")
     return [say("Beyond the drawing: {items}", items="; ".join(text))] if text else []
 
 

@@ -186,6 +186,7 @@ LOOKS: dict[str, DrawingStyle] = {
     "room": DrawingStyle(LINES, 0.9, (5.5, 3.3), order=2.3),
     "gear": DrawingStyle(STRESS, 0.9, (9.0, 2.2, 1.7, 2.2), order=2.3),
     "added mass": DrawingStyle(MAIN, 1.0, fill=MAIN, opacity=0.45, order=3.1),
+    "arm": DrawingStyle(LINES, 0.7, order=2.4),
     "point mass": DrawingStyle(MAIN, 1.0, sign="o", size=7.5, order=3.4),
     "move": DrawingStyle(STRESS, 1.4, sign="o", size=4.5, order=3.6),
     "old center": DrawingStyle(STRESS, 1.0, sign="o", size=4.5, hollow=True, order=3.6),

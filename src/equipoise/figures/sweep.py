@@ -236,7 +236,7 @@ def _keys(sweep: Sweep, meeting: str) -> list[tuple[str, str]]:
     """Entries of the legend on resonances; meeting : role of an order that meets a mode."""
     keys = [(meeting, say("order meets mode"))] if sweep.resonances else []
     if any(resonance.avoid is not None for resonance in sweep.resonances):
-        keys.append(("loud band", say("keep away (pale: quiet)")))
+        keys.append(("loud band", say("speeds to avoid (pale: weak resonance)")))
     return keys
 
 
@@ -279,7 +279,9 @@ def resonance_map(sweep: Sweep) -> Chart:
         height=240.0,
     )
     keys = _keys(sweep, "meeting")
-    what = say("Orders of the crank's speed, natural frequencies, and how loud they meet (size)")
+    what = say(
+        "Orders of the crank speed and natural frequencies; larger circle: stronger resonance"
+    )
     return Chart("resonance-map", sweep.machine.title, what, (panel,), keys=tuple(keys))
 
 

@@ -84,6 +84,7 @@ class Laid:
             bars_afloat,
             numbers_on_bars,
             extremes_without_room,
+            signs_without_names,
             panels_left,
             supports_cut,
             machines_small,
@@ -227,6 +228,18 @@ def extremes_without_room(laid: Laid) -> Iterator[Fault]:
             fixed = not up and panel.y.low is not None
             if mark.text and mark.wish in (90.0, -90.0) and beyond < LOW_TEXT and not fixed:
                 yield "no room at an extreme", f"{mark.text} in {_told(view)}"
+
+
+def signs_without_names(laid: Laid) -> Iterator[Fault]:
+    """The edge of a seedling tray, a bare line, is named in every picture that has it; blades of
+    tools look alike.
+    """
+    named = any(say("tray") in words.text for words in laid.sheet.words)
+    for view, _ in laid.panels:
+        if not (named or view.panel.bare) and any(
+            shape.role == "tray" for shape in view.panel.signs
+        ):
+            yield "sign without a name", "tray"
 
 
 def _is_number(text: str) -> bool:

@@ -151,7 +151,7 @@ def test_peak_and_mean_size_are_the_summary() -> None:
     told = words(charts_of("yamashita-1")["polar"])
     size = analysis_of("yamashita-1").summary["shaking_force"]
     assert f"peak {size.peak:.4g} N at {np.degrees(size.peak_at):.1f}°" in told
-    assert f"mean size {size.mean:.4g} N" in told
+    assert f"mean magnitude {size.mean:.4g} N" in told
 
 
 def test_bars_are_the_orders() -> None:
@@ -184,13 +184,16 @@ def test_rows_together() -> None:
         np.testing.assert_allclose(values, expected, atol=1e-9 * np.max(np.abs(expected)))
     found = places(forces.polar(analysis).panels[0])
     assert has(found, force) and has(found, view.each(analysis, "shaking_force")["one"])
-    assert "all 3 rows" in words(forces.spectrum(analysis))
+    assert "3 rows together" in words(forces.spectrum(analysis))
 
 
 def test_what_is_rounding_is_told_to_be_zero() -> None:
     charts = charts_of("planetary-planting-arm")
     assert "zero at every crank angle" in words(charts["moment"])
     assert "zero at every order" in words(charts["spectrum"])
+    assert not any(panel.message for panel in charts["spectrum"].panels)
+    piston = charts_of("slider-crank-engine")["joints"]
+    assert len(piston.panels) == 4 and "piston on frame: couple on piston" in words(piston)
     opposed = replace(staggered(), rows=(Row(0.0), Row(np.pi)), planting=None)
     force = view.each(eq.analyze(opposed, 360), "shaking_force")["all"]
     orders = np.abs(np.fft.fft(force))
@@ -238,6 +241,13 @@ def test_centrodes_roll_on_each_other(name: str) -> None:
             touching = int(np.nanargmin(np.abs(fixed - complex(mark.x, mark.y))))
             assert fixed[touching] == pytest.approx(center[k], abs=1e-12)
             assert np.nanmin(np.abs(moving - center[k])) < 1e-12
+        else:
+            assert f"instant centre of {panel.title} (" in words(charts_of(name)["centrodes"])
+
+
+def test_an_instant_centre_at_infinity_is_said_to_be_there() -> None:
+    """Of a connecting rod that is drawn with its crank across the cylinder."""
+    assert "at infinity" in words(charts_of("slider-crank-engine")["centrodes"])
 
 
 def test_centrodes_are_cut_where_they_leave_a_box() -> None:

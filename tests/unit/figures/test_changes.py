@@ -102,6 +102,8 @@ def test_points_and_moved_centres() -> None:
     for piece in by_kind["added massrocker"].values["pieces"]:
         place = at_pose("one of each", "rocker", piece["place"])
         assert min(abs(place - dot) for dot in dots) < 1e-6
+    arms = curves(changes_of("one of each"), "arm")  # which say of which link each of them is
+    assert [arm[1] for arm in arms] == pytest.approx(dots) and len(arms) > 0
     assert f"coupler, {MM * move['mass']:.4g} g" in words(changes_of("one of each"))
 
 
