@@ -40,6 +40,8 @@ TWO_WAYS = re.compile(
     re.MULTILINE,
 )
 """A file or a command, and the same in Python."""
+WIDE = re.compile(r"(?<=\S) {3,}# ")
+"""Space before comments that stand below each other, which half of a page has not."""
 EXTRA = "extra"
 """Folder of what Sphinx takes over as it is."""
 SITE_ONLY = re.compile(r"<!-- site only\n(.*?)-->\n", re.DOTALL)
@@ -129,11 +131,15 @@ def lay_out(source: Path, *, draft: bool) -> None:
 
 def side_by_side(text: str) -> str:
     """A page on which a file or a command stands beside the same in Python, where there is room."""
-    return TWO_WAYS.sub(
-        "::::{grid} 1 1 2 2\n:gutter: 2\n:class-container: two-ways\n\n"
-        ":::{grid-item}\n\\1\n:::\n\n:::{grid-item}\n\\2\n:::\n::::\n",
-        text,
-    )
+
+    def halves(both: re.Match[str]) -> str:
+        first, second = (WIDE.sub("  # ", half) for half in both.groups())
+        return (
+            "::::{grid} 1 1 2 2\n:gutter: 2\n:class-container: two-ways\n\n"
+            f":::{{grid-item}}\n{first}\n:::\n\n:::{{grid-item}}\n{second}\n:::\n::::\n"
+        )
+
+    return TWO_WAYS.sub(halves, text)
 
 
 def scripts() -> str:

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from browser.live import FITS, Live
-from browser.test_looks import SCHEMES, WIDTHS
+from browser.test_looks import SCHEMES, WIDTHS, brightness
 from support.chosen import few
 
 
@@ -108,6 +108,9 @@ ASKED = {
     "gear ratio": "model-file/gears.html",
     "how accurate is it": "trust.html",
     "run many designs in parallel": "tour.html",
+    "how do I install it": "README.html",
+    "which units can I use": "model-file/units-1.html",
+    "how to make a video": "animation.html",
 }
 """What an engineer asks in words of the trade, and the page that answers."""
 
@@ -146,6 +149,19 @@ def test_the_first_page_has_a_machine_that_can_be_dragged(page: Page, site: Path
     page.mouse.move(x + 15, y + 10, steps=4)
     page.mouse.up()
     expect(figures).not_to_have_text(before)
+
+
+@pytest.mark.exhaustive
+def test_pictures_are_as_dark_as_the_page_that_is_chosen(page: Page, site: Path) -> None:
+    """Whatever the system is; a picture of another shape than its place has no frame of white."""
+    for system, chosen in (("light", "dark"), ("dark", "light")):
+        page.emulate_media(color_scheme=system)
+        page.goto((site / "examples.html").as_uri())
+        page.evaluate("chosen => { document.body.dataset.theme = chosen; }", chosen)
+        picture = page.locator("img[src*='plunger-pump']").first
+        picture.scroll_into_view_if_needed()
+        assert picture.evaluate("one => one.complete || one.decode()") is not False
+        assert (brightness(picture) > 128) == (chosen == "light")
 
 
 READABLE = (

@@ -1,7 +1,7 @@
 // The search of the site: ranks the sections of search/sections.js by MiniSearch, and shows where in each the words stand.
 // Words are split, stemmed and left out as Sphinx's index does it (language_data.js: splitQuery, stopwords, Stemmer).
 
-const ASKING = new Set(["how", "what", "which", "when", "where", "why", "do", "does", "can", "i", "my", "one", "you", "about"]);
+const ASKING = new Set(["how", "what", "which", "when", "where", "why", "do", "does", "can", "i", "my", "one", "you", "about", "use", "make", "get"]);
 const SHOWN = 30;
 const LENGTH = 220; // signs of an excerpt
 const EAST = /^[\u3005\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]/u;
@@ -9,7 +9,7 @@ const EAST = /^[\u3005\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]/u;
 const KINDS = [
   [/^(recipes|errors)\//, 2],
   [/^theory/, 0.4],
-  [/^(CHANGELOG|README|SECURITY|CONTRIBUTING|api\/|scripts|conformance|architecture)/, 0.3],
+  [/^(CHANGELOG|SECURITY|CONTRIBUTING|api\/|scripts|conformance|architecture)/, 0.3],
 ];
 const WHOLE = 1.1; // weight of a page, over that of a section of a page that has the same title
 const TITLE = 0.5; // by how much a section weighs more whose title has nothing but what is sought
