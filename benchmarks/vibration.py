@@ -27,7 +27,7 @@ AGREE = 1e-6
 
 def system() -> Coupled:
     """The exact equations, put together anew."""
-    linear = Linear.of(MACHINE, "moment")
+    linear = Linear.of(MACHINE)
     return Coupled.on_support(linear.body, linear.rest, SPEED)
 
 

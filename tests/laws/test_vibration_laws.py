@@ -20,6 +20,7 @@ from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import respond
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.response import MODELS, Model, Response
+from equipoise.vibration.simplified import linear_of
 from laws.transforms import mirrored_in_x, shifted
 from support.chosen import EXHAUSTIVE, few, few_together
 from support.machines import make
@@ -224,7 +225,7 @@ def test_multipliers_of_a_machine_of_next_to_no_mass(damping_ratio: float, speed
 def test_multipliers_of_damping_multiply_to_what_damping_takes() -> None:
     """Their product is exp of minus the damping's trace over a turn, on a support that is heavy."""
     machine = supported(load_free(eq.load("yamashita-1")), 5, heavy=1e6)
-    linear = Linear.of(machine, "moment")
+    linear = Linear.of(machine)
     trace = float(np.trace(np.linalg.solve(linear.mass, linear.damping)))
     found = respond(machine, model="exact").multipliers
     assert found is not None
@@ -501,7 +502,7 @@ def test_mounts_carry_what_momentum_asks_for(model: Model) -> None:
     Rotation moves the common centre of mass, wherever it is.
     """
     machine = cart().with_rows(ROWS[2])
-    linear = Linear.of(machine, model)  # type: ignore[arg-type]
+    linear = linear_of(machine, model)
     found, speed = respond(machine, 17.0, model), 17.0
     theta = np.linspace(0, 6, 40)
     support = machine.support
@@ -521,11 +522,8 @@ def test_forces_of_the_rows_add_up(model: Model) -> None:
     """What two rows do to the support is the sum of what each does alone."""
     machine = springs()
     rows = [Row(), Row(phase=1.3, offset=(0.2, 0.1))]
-    both = Linear.of(machine.with_rows(rows), model)  # type: ignore[arg-type]
-    alone = [
-        Linear.of(machine.with_rows([row]), model).excitation.at(17.0)  # type: ignore[arg-type]
-        for row in rows
-    ]
+    both = linear_of(machine.with_rows(rows), model)
+    alone = [linear_of(machine.with_rows([row]), model).excitation.at(17.0) for row in rows]
     theta = np.linspace(0, 6, 40)
     wanted = alone[0] + alone[1]
     close(both.excitation.at(17.0).values(theta), wanted.values(theta), 1e-12)

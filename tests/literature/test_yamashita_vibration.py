@@ -37,8 +37,9 @@ import equipoise as eq
 from equipoise.mechanism.parts.support import Gauge, Mount, Row
 from equipoise.signals import Periodic
 from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import Linear, resonances
+from equipoise.vibration.linear import resonances
 from equipoise.vibration.response import Model
+from equipoise.vibration.simplified import linear_of
 from equipoise.vibration.sweep import sweep_speed
 from literature.yamashita import (
     TYPE_1,
@@ -317,7 +318,7 @@ def test_natural_frequency() -> None:
 )
 def test_resonances(row: Printed) -> float:
     """The highest peak at beta, the second at 6.2 rad/s, as orders 1, 2 ... meet it."""
-    met = resonances(Linear.of(RIG, "linear"), 2.0, 30.0)
+    met = resonances(linear_of(RIG, "linear"), 2.0, 30.0)
     assert [one.order for one in met][:5] == [1, 2, 3, 4, 5]
     return met[row.of - 1].speed
 

@@ -24,7 +24,7 @@ from equipoise.running.drives_run import DrivesRun
 from equipoise.running.linkage_rows import LinkageRows
 from equipoise.running.support_equation import SupportedEquation
 from equipoise.vibration.body import SupportBody
-from equipoise.vibration.linear import SupportExcitation
+from equipoise.vibration.excitation import WholeExcitation
 from secondroute.test_drives_run import (
     JOINTS,
     ROWS,
@@ -495,7 +495,7 @@ def test_what_links_exert_on_a_support_in_space_is_as_of_orders() -> None:
         for name in equation.references_at_start()
     }  # fmt: skip
     state = equation.at(np.zeros(12), 0.0, equation.placed(np.zeros(12), angles, speeds), near)
-    excitation = SupportExcitation(SupportBody(machine), "moment")
+    excitation = WholeExcitation(SupportBody(machine))
     wanted = excitation.samples(crank, machine.drive.speed)
     found = -equation.rows.total(state.pose.bias)[1:]
     np.testing.assert_allclose(found, wanted, atol=1e-9 * np.max(np.abs(wanted)))

@@ -33,8 +33,9 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, output_of, wrong_objective
 from equipoise.results.analysis import Analysis
 from equipoise.signals import AT_ONCE, Array, Periodic, present
+from equipoise.vibration.excitation import motion_of
 from equipoise.vibration.forced import chosen_model, steady_speed
-from equipoise.vibration.linear import Linear, gauges_of, motion_of
+from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 
 Combine = Literal["sum", "squares"]

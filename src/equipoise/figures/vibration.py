@@ -33,9 +33,8 @@ from equipoise.results.charts import (
     Panel,
     shown,
 )
-from equipoise.vibration.forced import excitation_model_of
-from equipoise.vibration.linear import Linear
 from equipoise.vibration.response import members_of
+from equipoise.vibration.simplified import linear_of
 
 if TYPE_CHECKING:
     from equipoise.signals import Figures, Periodic
@@ -219,7 +218,7 @@ def mounts(response: Response) -> Iterator[Chart]:
 def _at_rest(response: Response) -> dict[str, float]:
     """What each mount carries at rest, N or N m; 0 where it does not touch."""
     machine = response.machine
-    rest = Linear.of(machine, excitation_model_of(response.model)).rest
+    rest = linear_of(machine, response.model).rest
     assert machine.support is not None
     return {
         name: rest.preload[name] if rest.carries(name, mount) else 0.0

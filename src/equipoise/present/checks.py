@@ -36,7 +36,7 @@ from equipoise.studies.searching import LEAST_POPULATION, breeding_time, search_
 from equipoise.studies.study import SLOW_CHUNK, samples
 from equipoise.studies.tolerances import machines_of
 from equipoise.vibration.body import SupportBody, at_rest
-from equipoise.vibration.linear import SupportExcitation as Shaking
+from equipoise.vibration.excitation import WholeExcitation
 
 if TYPE_CHECKING:
     from equipoise.handheld.design_plan import DesignPlan
@@ -249,7 +249,7 @@ def _uncarried(machine: Machine) -> Iterator[Note]:
     if machine.support is None or massless(machine):
         return
     try:
-        at_rest(SupportBody(machine), Shaking(SupportBody(machine), "moment").weights)
+        at_rest(SupportBody(machine), WholeExcitation(SupportBody(machine)).weights)
     except ModelError as error:
         yield Note("{problem}; respond and modes need that", problem=error.note)
 

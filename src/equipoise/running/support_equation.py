@@ -56,7 +56,7 @@ class SupportedEquation(DrivesEquation):
     @cached_property
     def rest(self) -> Rest:
         """What holds the machine in the drawn position, as of the exact model."""
-        return Linear.of(self.machine, "moment").rest
+        return Linear.of(self.machine).rest
 
     @property
     def coordinates(self) -> int:

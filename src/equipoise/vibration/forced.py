@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import cast, get_args
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note, key_names, to_say
@@ -20,9 +19,9 @@ from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import HUGE, in_si
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.exact import solve_exact
-from equipoise.vibration.linear import DEFAULT_EXCITATION_MODEL, ExcitationModel, Linear, warned
+from equipoise.vibration.linear import warned
 from equipoise.vibration.response import MODELS, GaugeSignals, Model, Response, range_shown
-from equipoise.vibration.small_motion import respond_coupled, respond_linear
+from equipoise.vibration.simplified import check_model, linear_of, response_by
 
 STANDSTILL = Note("a crank that stands still shakes nothing; give another speed")
 FREE = Note(
@@ -31,24 +30,11 @@ FREE = Note(
 )
 WITH_CRANK = {"torque", "coupled", "exact"}
 """Models in which the crank's torque acts on the support, or the support on the crank."""
-EXCITATION_OF: dict[str, ExcitationModel] = {
-    "linear": "linear",
-    "torque": "torque",
-    "moment": "moment",
-    "coupled": "torque",
-    "exact": "moment",
-}
-"""The linear system that each model stands on or is compared with: modes, rest, resonances."""
 
 
-def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
+def chosen_model(machine: Machine, model: Model | None, drive: bool) -> Model:
     """The model asked for, or the default one; refused where the machine has no part for it."""
-    if model is not None and model not in MODELS:
-        raise UsageError(
-            Note(
-                "got the model {model!r}; give one of {names}", model=model, names=", ".join(MODELS)
-            )
-        )
+    check_model(model)
     if drive and machine.drive.motor is None:
         names = key_names("no_load_speed", "stall_torque")
         note = Note("missing; give its {no_load_speed} and {stall_torque}", **names)
@@ -90,7 +76,7 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
         )
     if model is not None:
         return model
-    return "exact" if drive else DEFAULT_EXCITATION_MODEL
+    return "exact" if drive else "moment"
 
 
 def check_moving(machine: Machine) -> None:
@@ -140,24 +126,6 @@ def left_out(machine: Machine) -> list[Note | str]:
         )
         sentences.append(Note(said))
     return sentences
-
-
-def excitation_model_of(model: str | None) -> ExcitationModel:
-    """The linear system that belongs to a model; the default one where no model is given.
-
-    Raises
-    ------
-    UsageError : there is no such model.
-    """
-    if model is None:
-        return DEFAULT_EXCITATION_MODEL
-    if model not in MODELS:
-        raise UsageError(
-            Note(
-                "got the model {model!r}; give one of {names}", model=model, names=", ".join(MODELS)
-            )
-        )
-    return EXCITATION_OF[model]
 
 
 def models_of(machine: Machine) -> tuple[Model, ...]:
@@ -314,17 +282,13 @@ def respond(
     model = chosen_model(machine, model, drive)
     if missing := massless(machine):
         raise MassError(missing)
-    speed, linear = steady_speed(machine, speed, drive), None
-    if model in get_args(ExcitationModel):
-        linear = Linear.of(machine, cast(ExcitationModel, model))
-        response = respond_linear(linear, speed)
-    elif model == "coupled":
-        response = respond_coupled(Linear.of(machine, "torque"), speed)
-    else:
+    speed = steady_speed(machine, speed, drive)
+    linear = None if machine.support is None else linear_of(machine, model)
+    if linear is None or model == "exact":
         response = respond_exact(machine, speed, drive)
-    if machine.support is None:
-        return replace(response, notes=(*left_out(machine), *response.notes))
-    notes = warned(linear or Linear.of(machine, excitation_model_of(model)), response.speed)
+    else:
+        response = response_by(model)(linear, speed)
+    notes = [] if linear is None else warned(linear, response.speed)
     return replace(response, notes=(*left_out(machine), *notes, *response.notes))
 
 

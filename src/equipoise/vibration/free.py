@@ -22,9 +22,10 @@ from equipoise.signals import Array
 from equipoise.vibration.body import MISSING, SupportBody
 from equipoise.vibration.coupled import Coupled, follow
 from equipoise.vibration.exact import solve_exact
-from equipoise.vibration.forced import chosen_model, excitation_model_of, steady_speed
+from equipoise.vibration.forced import chosen_model, steady_speed
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.response import Mode, members_of
+from equipoise.vibration.simplified import linear_of
 from equipoise.vibration.steady import equations, motor_setting
 from equipoise.vibration.support_motion import SupportMotion
 from equipoise.vibration.support_place import SpatialMounts, in_plane
@@ -147,7 +148,7 @@ def modes(machine: Machine, model: str | None = None) -> FreeVibration:
         raise ModelError("support", MISSING)
     if missing := massless(machine):
         raise MassError(missing)
-    linear = Linear.of(machine, excitation_model_of(model))
+    linear = linear_of(machine, model)
     return FreeVibration(linear, linear.modes, linear.rest.preload, tuple(linear.unsettled))
 
 

@@ -18,9 +18,10 @@ from equipoise.results.machine_blocks import driven
 from equipoise.results.outputs import shown_in
 from equipoise.results.rotors import rotor_sentence
 from equipoise.results.yardsticks import assess, sentence, verdict
-from equipoise.vibration.forced import excitation_model_of, readings_of
-from equipoise.vibration.linear import Linear, around, resonance_note, resonances
+from equipoise.vibration.forced import readings_of
+from equipoise.vibration.linear import around, resonance_note, resonances
 from equipoise.vibration.response import MODELS, members_of
+from equipoise.vibration.simplified import linear_of
 
 if TYPE_CHECKING:
     from equipoise.vibration.response import DriveSignals, Response
@@ -127,7 +128,7 @@ def _size(value: float) -> float:
 def _resonances(response: Response) -> Iterator[str]:
     """The nearest loud resonance of small motion."""
     try:
-        linear = Linear.of(response.machine, excitation_model_of(response.model))
+        linear = linear_of(response.machine, response.model)
         met = resonances(linear, *around(response.machine.drive, response.speed))
     except EquipoiseError:  # without a small-motion description there are no resonances
         return

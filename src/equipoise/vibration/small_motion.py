@@ -1,34 +1,20 @@
-"""Small motion of the support: by orders, and with the torque it takes from the drive (54).
-
-    M q.. + C q. + K q = W(theta) - T_r on pitch,   T_r = sum s'(theta) . a_A
-
-W is force and torque on a support that stands still, as in (57), and a_A the acceleration of each
-row's drive pivot, on a support that is not taken as turned, (53).  Its coefficients change with the
-crank angle, so that it is no linear equation with constant coefficients.
-"""
+"""Small motion of the support, by orders: what its gauges read, and how its mounts push."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import cached_property, reduce
-from math import copysign, pi
+from functools import reduce
 from operator import add
 
 import numpy as np
 
-from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.dynamics.forces import forces
-from equipoise.mechanism.kinematics.motion import move
 from equipoise.signals import Array, Periodic
-from equipoise.vibration.body import IN_PLANE, PITCH
-from equipoise.vibration.collocation import BoundaryConditions, Rates
 from equipoise.vibration.hand_held import hand_vibration
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
-from equipoise.vibration.response import DriveSignals, GaugeSignals, MountForce, Response, in_words
-from equipoise.vibration.steady import ROUGH, SAMPLES, steady
+from equipoise.vibration.response import DriveSignals, GaugeSignals, MountForce, Response
 
 NEUTRAL = 1e-9
 """Growth of a mode, beside its frequency, up to which it is rounding."""
@@ -39,7 +25,7 @@ def respond_linear(linear: Linear, speed: float) -> Response:
     body = linear.body
     moved = linear.motion(speed)
     moving = moved.derivative() * speed
-    mounts, notes = _mounts(linear, moved, moving, speed)
+    mounts, notes = mount_forces(linear, moved, moving, speed)
     notes.extend(linear.unsettled)
     if any(mode.eigenvalue.real > NEUTRAL * mode.natural_frequency for mode in linear.modes):
         said = to_say("the support is unstable: the drawn position is no stable equilibrium")
@@ -49,7 +35,7 @@ def respond_linear(linear: Linear, speed: float) -> Response:
         linear.excitation.model,
         speed,
         moved.turns,
-        _gauges(linear, (moved, moving, moving.derivative() * speed), speed),
+        gauge_signals(linear, (moved, moving, moving.derivative() * speed), speed),
         mounts,
         linear.modes,
         DriveSignals(_torque(linear, speed), grounded=(body.machine, speed)),
@@ -58,13 +44,13 @@ def respond_linear(linear: Linear, speed: float) -> Response:
     )
 
 
-def _gauges(
+def gauge_signals(
     linear: Linear, motion: tuple[Periodic, Periodic, Periodic], speed: float
 ) -> dict[str, GaugeSignals]:
     """What gauges read of displacements, velocities and accelerations (D, K + 1), at a speed of
     the crank, rad/s.
     """
-    gauge_signals, body = {}, linear.body
+    signals, body = {}, linear.body
     for name, gauge in gauges_of(linear.body).items():
         row = linear.body.row(gauge)
         moved, moving, change = (linear.seen_by(row, item) for item in motion)
@@ -73,11 +59,11 @@ def _gauges(
             for axis in (() if gauge.exposure is None else np.eye(3))
         )
         hand = hand_vibration(along, speed, gauge.exposure)
-        gauge_signals[name] = GaugeSignals(moved, moving, change, gauge.axis is not None, hand)
-    return gauge_signals
+        signals[name] = GaugeSignals(moved, moving, change, gauge.axis is not None, hand)
+    return signals
 
 
-def _mounts(
+def mount_forces(
     linear: Linear, moved: Periodic, moving: Periodic, speed: float
 ) -> tuple[dict[str, MountForce], list[Note]]:
     """Forces of the mounts at small displacements and velocities (D, K + 1); and what to say."""
@@ -137,112 +123,3 @@ def _torque(linear: Linear, speed: float) -> Periodic:
     motion = linear.excitation.motion.at(speed)
     periodic = motion.periodic(forces(motion).drive_torque)
     return reduce(add, (periodic.shifted(row.phase) for row in rows_of(linear.body.machine)))
-
-
-# -- with the torque that the motion of the support takes from the drive ---------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class Reduced:
-    """States: free displacements (m, rad), then their velocities, of a planar support.
-
-    linear : the system of step ``torque``.
-    """
-
-    linear: Linear
-    speed: float
-
-    @property
-    def count(self) -> int:
-        return 2 * len(self.free)
-
-    @cached_property
-    def free(self) -> tuple[int, ...]:
-        """Which of surge, heave and pitch."""
-        return tuple(IN_PLANE.index(number) for number in self.linear.body.free)
-
-    @property
-    def sense(self) -> float:
-        """1 for a crank that turns counterclockwise, -1 for clockwise."""
-        return copysign(1.0, self.speed)
-
-    def rates(self, s: Array) -> Rates:
-        """Derivatives of the states by s, the crank's turning, at s (P,)."""
-        accelerations = self.accelerations(self.sense * s)
-
-        def rates(states: Array) -> Array:
-            moving = states[len(self.free) :]
-            return np.concatenate([moving, accelerations(states)]) / abs(self.speed)
-
-        return rates
-
-    def accelerations(self, theta: Array) -> Rates:
-        """Those of the free coordinates (D, ..., P) in m/s2 and rad/s2, by the states.
-
-        theta : (P,) crank angles.
-        """
-        d, linear = len(self.free), self.linear
-        wrench = linear.wrench_at(theta, self.speed)
-        pull, inward = self._coupling(theta)
-
-        def accelerations(states: Array) -> Array:
-            place, rate = states[:d], states[d:]
-            right = wrench.reshape(d, *(1,) * (states.ndim - 2), -1)
-            right = right - np.einsum("ab,b...->a...", linear.stiffness, place)
-            right = right - np.einsum("ab,b...->a...", linear.damping, rate)
-            mass = np.broadcast_to(linear.mass, (*states.shape[1:], d, d)).astype(states.dtype)
-            if PITCH in self.free:
-                k = self.free.index(PITCH)
-                mass[..., k, :] += pull.T
-                right[k] = right[k] + inward * rate[k] ** 2
-            solved = np.linalg.solve(mass, np.moveaxis(right, 0, -1)[..., None])[..., 0]
-            return np.moveaxis(solved, -1, 0)
-
-        return accelerations
-
-    def _coupling(self, theta: Array) -> tuple[Array, Array]:
-        """T_r = pull (D, P) . q.. - inward (P,) * pitch.^2."""
-        machine = self.linear.body.machine
-        reference = complex(*self.linear.body.reference[:2])
-        pull, inward = np.zeros((3, len(theta))), np.zeros(len(theta))
-        for row in rows_of(machine):
-            motion = move(machine, theta + row.phase, self.speed, 0.0)
-            first = sum(
-                (link.mass or 0.0) * motion.mass_centers[name].place_1
-                for name, link in machine.links.items()
-            )
-            arm = complex(*machine.frame[motion.linkage.pivot]) + complex(*row.offset) - reference
-            pull += np.stack([first.real, first.imag, (np.conj(1j * arm) * first).real])
-            inward += (np.conj(arm) * first).real
-        return pull[list(self.free)], inward
-
-
-def respond_coupled(linear: Linear, speed: float) -> Response:
-    """Response by (54)."""
-    system = Reduced(linear, speed)
-    rough = linear.motion(speed).upto(ROUGH)
-
-    def guess(s: Array) -> Array:
-        theta = system.sense * s
-        return np.concatenate([rough.values(theta), (rough.derivative() * speed).values(theta)])
-
-    turns = rough.turns
-    result = steady(system, [guess], turns, BoundaryConditions.periodic(system.count))
-    theta = np.arange(SAMPLES * turns) * (2 * pi / SAMPLES)
-    states = result.orbit.at(np.mod(system.sense * theta, 2 * pi * turns))
-    moved, moving, change = (
-        Periodic.of(part, turns)
-        for part in (*np.split(states, 2), system.accelerations(theta)(states))
-    )
-    multipliers = result.multipliers(system.count)
-    plain = respond_linear(linear, speed)
-    return replace(
-        plain,
-        model="coupled",
-        gauges=_gauges(linear, (moved, moving, change), speed),
-        mounts=_mounts(linear, moved, moving, speed)[0],
-        motion=linear.body.whole(moved),
-        residual=result.residual,
-        multipliers=multipliers,
-        notes=(*plain.notes, *in_words(multipliers)),
-    )

@@ -302,7 +302,7 @@ def equations(machine: Machine, speed: float, drive: bool) -> tuple[Coupled, Lin
     if machine.support is None:
         assert torque is not None
         return replace(Coupled.on_ground(machine, speed, torque), loaded_at=loaded_at), None
-    linear = Linear.of(machine, "moment")
+    linear = Linear.of(machine)
     system = Coupled.on_support(linear.body, linear.rest, speed, torque)
     return replace(system, loaded_at=loaded_at), linear
 

@@ -22,7 +22,6 @@ from equipoise.vibration.body import MISSING
 from equipoise.vibration.forced import (
     Progress,
     chosen_model,
-    excitation_model_of,
     follow_speeds,
     left_out,
     steady_speed,
@@ -36,7 +35,7 @@ from equipoise.vibration.response import (
     of_support,
     range_shown,
 )
-from equipoise.vibration.small_motion import respond_coupled, respond_linear
+from equipoise.vibration.simplified import linear_of, response_by
 
 SPEEDS = 200
 """In a sweep, besides those about resonances and where curves bend."""
@@ -243,12 +242,12 @@ def sweep_speed(
                 most_speeds=MOST_SPEEDS,
             )
         )
-    linear = Linear.of(machine, excitation_model_of(model))
+    linear = linear_of(machine, model)
     met = resonances(linear, slowest, fastest)[:MOST_RESONANCES]
     text = progress or _silent
-    respond = respond_coupled if model == "coupled" else respond_linear
     first = about(slowest, fastest, speeds, met, linear)
-    by_speed = answered(partial(respond, linear), first, _silent if model == "exact" else text)
+    respond = partial(response_by(model), linear)
+    by_speed = answered(respond, first, _silent if model == "exact" else text)
     grid, answers = np.array([*by_speed]), [*by_speed.values()]
     names: list[str] = []
     if model == "exact":  # one speed after the other, where that by orders bends

@@ -147,7 +147,7 @@ def test_turning_stiffness_against_finite_rotations(seed: int) -> None:
 def potential_of(machine: eq.Machine) -> Callable[[Array], float]:
     """Energy of mounts and weights of a support that has moved far, linkages where they are on
     average."""
-    linear = Linear.of(machine, "moment")
+    linear = Linear.of(machine)
     body, rest = linear.body, linear.rest
 
     def potential(place: Array) -> float:
@@ -174,7 +174,7 @@ def potential_of(machine: eq.Machine) -> Callable[[Array], float]:
 @pytest.mark.parametrize("machine", [springs(), cart()], ids=["planar", "spatial"])
 def test_stiffness_is_that_of_the_potential(machine: eq.Machine) -> None:
     """Mounts keep their direction, so do weights; preloads and weights stiffen by how they turn."""
-    linear = Linear.of(machine, "moment")
+    linear = Linear.of(machine)
     potential, free = potential_of(machine), linear.body.free
 
     def along_free(part: Array) -> float:
@@ -205,7 +205,7 @@ def preloads(
         )
         for name, x in places.items()
     }
-    linear = Linear.of(block(center_of_mass=(center, 0.0, 0.0), mounts=mounts), "moment")
+    linear = Linear.of(block(center_of_mass=(center, 0.0, 0.0), mounts=mounts))
     np.testing.assert_allclose(linear.rest.unbalance, 0, atol=1e-9)
     return {name: force / (10 * G) for name, force in linear.rest.preload.items()}
 
@@ -259,9 +259,9 @@ def test_letting_go_counts_for_the_stiffness_of_small_motion() -> None:
         for name, x in (("a", -0.5), ("b", 0.0), ("c", 0.5))
     }
     machine = block(center_of_mass=(0.4, 0.0, 0.0), mounts=mounts, freedoms=("heave",))
-    assert Linear.of(machine, "moment").stiffness == pytest.approx(3 * 5e3)
+    assert Linear.of(machine).stiffness == pytest.approx(3 * 5e3)
     machine = machine.with_support(freedoms=("heave", "pitch"))
-    linear = Linear.of(machine, "moment")
+    linear = Linear.of(machine)
     assert linear.stiffness[0, 0] == pytest.approx(2 * 5e3)
     assert linear.damping[0, 0] == pytest.approx(2 * 10)
     assert not linear.rest.carries("a", mounts["a"])
@@ -274,7 +274,7 @@ def test_given_preloads_are_kept_and_the_others_bear_the_rest() -> None:
         "a": Mount((-0.5, 0.0, 0.0), stiffness=5e3),
         "b": Mount((0.5, 0.0, 0.0), stiffness=5e3),
     }
-    rest = Linear.of(block(mounts=mounts), "moment").rest
+    rest = Linear.of(block(mounts=mounts)).rest
     each = (10 * G - 40) / 2
     assert rest.preload == pytest.approx({"lift": 40, "a": each, "b": each})
     np.testing.assert_allclose(rest.unbalance, 0, atol=1e-10)
@@ -286,7 +286,7 @@ def test_given_preloads_may_leave_a_load_over() -> None:
         "a": Mount((-0.5, 0.0, 0.0), stiffness=500.0, preload=50.0),
         "b": Mount((0.5, 0.0, 0.0), stiffness=500.0, preload=50.0),
     }
-    linear = Linear.of(block(mounts=mounts), "moment")
+    linear = Linear.of(block(mounts=mounts))
     assert linear.rest.unbalance[1] == pytest.approx(100 - 10 * G)
     assert linear.motion(10.0).mean[1] == pytest.approx((100 - 10 * G) / 1000)
 
@@ -298,13 +298,13 @@ def test_given_preloads_may_leave_a_load_over_beside_mounts_without_any() -> Non
         "b": Mount((0.5, 0.0, 0.0), stiffness=500.0, preload=50.0),
         "across": across,
     }
-    linear = Linear.of(block(mounts=mounts), "moment")
+    linear = Linear.of(block(mounts=mounts))
     assert linear.rest.preload == pytest.approx({"a": 50, "b": 50, "across": 0})
     assert linear.rest.unbalance[1] == pytest.approx(100 - 10 * G)
     assert "do not balance the weight" in " ".join(map(str, linear.unsettled))
     sideways = {"across": across, "preloaded": replace(across, preload=3.0)}
     with refused(ModelError, "support.mounts", loose="heave"):
-        _ = Linear.of(block(mounts=sideways), "moment").rest
+        _ = Linear.of(block(mounts=sideways)).rest
 
 
 @pytest.mark.parametrize(
@@ -317,7 +317,7 @@ def test_given_preloads_may_leave_a_load_over_beside_mounts_without_any() -> Non
 )
 def test_a_pivot_bears_the_weight(mount: Mount, wanted: float) -> None:
     """Only the moment about the pivot, 1 m aside, is borne by the mount."""
-    linear = Linear.of(block(pivot=(-1.0, 0.0), mounts={"a": mount}), "moment")
+    linear = Linear.of(block(pivot=(-1.0, 0.0), mounts={"a": mount}))
     assert linear.rest.preload["a"] == pytest.approx(wanted)
 
 
@@ -328,7 +328,7 @@ def test_weight_in_space() -> None:
     values = {"inertia": (1.0, 1.0, 1.0), "freedoms": ("heave", "roll", "pitch")}
     body = block(center_of_mass=(-0.2, 0.2, 0.1), mounts=mounts, **values)
     wanted = {n: 10 * G * (0.25 - 0.2 * x + 0.1 * z) for n, (x, _, z) in places.items()}
-    assert Linear.of(body, "moment").rest.preload == pytest.approx(wanted)
+    assert Linear.of(body).rest.preload == pytest.approx(wanted)
 
 
 # -- what does not hold ----------------------------------------------------------------------------
@@ -347,7 +347,7 @@ def test_weight_in_space() -> None:
 )
 def test_mounts_that_do_not_carry_the_weight(mounts: dict[str, Mount], coordinates: str) -> None:
     with pytest.raises(ModelError) as caught:
-        _ = Linear.of(block(mounts=mounts), "moment").rest
+        _ = Linear.of(block(mounts=mounts)).rest
     assert str(caught.value) == (
         f"support.mounts: they do not carry the weight in {coordinates}; add a mount there, or "
         "give the mounts a preload"
@@ -355,7 +355,7 @@ def test_mounts_that_do_not_carry_the_weight(mounts: dict[str, Mount], coordinat
 
 
 def test_without_gravity_nothing_needs_to_be_carried() -> None:
-    rest = Linear.of(replace(block(), gravity=(0.0, 0.0)), "moment").rest
+    rest = Linear.of(replace(block(), gravity=(0.0, 0.0))).rest
     assert not any(rest.preload.values())
 
 
@@ -495,7 +495,7 @@ def test_contacts_of_a_support() -> None:
     machine = springs()
     assert machine.support is not None
     machine = machine.with_support(mounts={**machine.support.mounts, "turn": turn})
-    linear = Linear.of(machine, "moment")
+    linear = Linear.of(machine)
     contacts = contacts_of(linear.body, linear.rest)
     assert [c.name for c in contacts] == ["front", "back", "along", "slant", "turn"]
     assert [c.preload for c in contacts] == list(linear.rest.preload.values())

@@ -19,10 +19,11 @@ from equipoise.results.blocks import Text
 from equipoise.vibration.blocks import disagreement
 from equipoise.vibration.coupled import StallError
 from equipoise.vibration.exact import solve_exact
-from equipoise.vibration.forced import chosen_model, excitation_model_of, respond
+from equipoise.vibration.forced import chosen_model, respond
 from equipoise.vibration.headline import response_headline
 from equipoise.vibration.linear import around
 from equipoise.vibration.response import MODELS, Model
+from equipoise.vibration.simplified import linear_of
 from equipoise.vibration.sweep import sweep_speed
 from support.chosen import few
 from support.refusals import has_value, refused
@@ -66,9 +67,9 @@ def test_the_default_model(machine: eq.Machine, drive: bool, model: str) -> None
 
 def test_the_linear_system_of_a_model() -> None:
     for model, own in (("exact", "moment"), ("moment", "moment"), ("coupled", "torque")):
-        assert excitation_model_of(model) == own
-    assert excitation_model_of(None) == "moment"
-    assert excitation_model_of("linear") == "linear"
+        assert linear_of(rig(), model).excitation.model == own
+    assert linear_of(rig(), None).excitation.model == "moment"
+    assert linear_of(rig(), "linear").excitation.model == "linear"
 
 
 def test_a_support_that_rocks_about_the_crank_answers_to_the_moment() -> None:

@@ -16,16 +16,17 @@ from equipoise.mechanism.parts.field import Planting, Soil
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic
+from equipoise.vibration.excitation import SupportExcitation
 from equipoise.vibration.forced import respond
 from equipoise.vibration.linear import (
     AMPLIFIED,
     Linear,
     Resonance,
-    SupportExcitation,
     find_modes,
     resonances,
 )
 from equipoise.vibration.response import Mode, Model
+from equipoise.vibration.simplified import linear_of
 from equipoise.vibration.sweep import sweep_speed
 from support.machines_planes import set_apart
 from support.printing import printed
@@ -293,13 +294,13 @@ def test_refusals() -> None:
 
 
 def found(machine: eq.Machine, slowest: float, fastest: float) -> list[Resonance]:
-    return resonances(Linear.of(machine, "moment"), slowest, fastest)
+    return resonances(Linear.of(machine), slowest, fastest)
 
 
 @pytest.mark.parametrize("machine", [rig(), springs(), cart()], ids=["rig", "planar", "spatial"])
 def test_an_order_meets_a_mode(machine: eq.Machine) -> None:
     """Order times speed is the frequency of the mode; the fastest comes first."""
-    modes = Linear.of(machine, "moment").modes
+    modes = Linear.of(machine).modes
     met = found(machine, 2.0, 40.0)
     assert met
     for resonance in met:
@@ -314,7 +315,7 @@ def test_an_order_meets_a_mode(machine: eq.Machine) -> None:
 
 
 def test_both_ends_belong_to_the_range() -> None:
-    natural = Linear.of(rig(), "moment").modes[0].natural_frequency
+    natural = Linear.of(rig()).modes[0].natural_frequency
     assert [r.order for r in found(rig(), natural / 3, natural)] == [1, 2, 3]
     assert [r.order for r in found(rig(), natural / 2.99, natural / 1.01)] == [2]
     assert not found(rig(), natural * 1.01, natural * 3)
@@ -333,7 +334,7 @@ def test_a_reversed_crank_meets_the_same() -> None:
 def test_edges_of_what_to_avoid_amplify_three_times(damping: float) -> None:
     """1 / sqrt((1 - r^2)^2 + (2 D r)^2) = 3 there, more between."""
     machine = with_damping(damping)
-    mode = Linear.of(machine, "moment").modes[0]
+    mode = Linear.of(machine).modes[0]
     assert mode.damping_ratio == pytest.approx(damping, rel=1e-9)
     for resonance in found(machine, 2.0, 30.0):
         assert resonance.avoid is not None
@@ -355,7 +356,7 @@ def test_much_damping_leaves_nothing_to_avoid(damping: float) -> None:
 def with_damping(ratio: float) -> eq.Machine:
     """Return the rig with a damping ratio of its mode."""
     machine = rig()
-    linear = Linear.of(machine, "moment")
+    linear = Linear.of(machine)
     damping = float(2 * ratio * np.sqrt(linear.stiffness * linear.mass)[0, 0])
     spring = Mount(axis="pitch", torsional_stiffness=STIFFNESS, torsional_damping=damping)
     return rig(mounts={"spring": spring})
@@ -494,7 +495,7 @@ def test_orders_of_a_machine_in_soil_solve_joint_forces_a_few_times(
     model: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At each of some hundred resonances they took a page a minute: a machine of many turns."""
-    excitation = Linear.of(planted_rig(), model).excitation
+    excitation = linear_of(planted_rig(), model).excitation
     speeds = np.array([3.0, -7.0, 40.0, 0.4, 11.0])
     places = np.array([1, 4, 2, 30, 0])
     wholes = [excitation.at(speed).amplitudes for speed in speeds.tolist()]
@@ -511,7 +512,7 @@ def test_orders_of_a_machine_in_soil_solve_joint_forces_a_few_times(
 
 def test_resonances_take_one_order_each(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of some thousand that orders of many turns meet, whole wrenches would take minutes."""
-    linear = Linear.of(rig(), "moment")
+    linear = Linear.of(rig())
     speeds, places = np.array([3.0, -7.0, 40.0]), np.array([1, 4, 2])
     wrenches = linear.excitation.at_orders(speeds, places)
     for k, (speed, place) in enumerate(zip(speeds.tolist(), places.tolist(), strict=True)):

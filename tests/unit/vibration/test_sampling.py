@@ -22,6 +22,7 @@ from equipoise.vibration.linear import (
     levels_of,
 )
 from equipoise.vibration.response import Response
+from equipoise.vibration.simplified import linear_of
 from equipoise.vibration.small_motion import respond_linear
 from equipoise.vibration.sweep import Sweep, sweep_speed
 from support.chosen import few
@@ -36,7 +37,7 @@ def drawn(name: str) -> tuple[Sweep, Linear]:
     machine = eq.load(name)
     found = respond(machine)
     sweep = sweep_speed(machine, *around(machine.drive, found.speed), speeds=COARSE)
-    return sweep, Linear.of(machine, "linear" if sweep.model == "linear" else "moment")
+    return sweep, linear_of(machine, sweep.model)
 
 
 @pytest.mark.exhaustive(but=["exudyn-slider-crank"])
@@ -70,7 +71,7 @@ def test_speed_of_the_machine_is_one_of_them(name: str) -> None:
 
 def of_rig() -> tuple[Callable[[float], Response], Response]:
     machine = eq.load("yamashita-rig")
-    linear = Linear.of(machine, "linear")
+    linear = linear_of(machine, "linear")
     return lambda speed: respond_linear(linear, speed), respond_linear(linear, 20.0)
 
 
