@@ -339,7 +339,7 @@ LINE, OVER, TOP = 12.0, 16.0, 8.0
 """Points: height of a line of words; by how much the name of an axis may be longer than that; free
 above a picture without a heading."""
 HIGH = {1: 190.0, 2: 132.0, 3: 106.0, 4: 92.0}
-HIGH_OF_HALF = {1: 110.0, 2: 64.0, 3: 42.0, 4: 34.0}
+HIGH_OF_HALF = {1: 110.0, 2: 64.0, 3: 42.0, 4: 38.0}
 """Height of one of so many panels above each other; the last of more."""
 LEAST, MOST, ROOM, SMALL_ROOM = 110.0, 345.0, 26.0, 0.13
 """Height of panels of one scale at least and at most; free in them around what is drawn, points

@@ -180,7 +180,7 @@ LOOKS: dict[str, DrawingStyle] = {
     "point path": DrawingStyle(POINTS, 0.8, order=1.2),
     "path in soil": DrawingStyle(STRESS, 2.8, order=3.1),
     "other unit": DrawingStyle(FAINT, 0.9, MEDIUM, order=2),
-    "tick": DrawingStyle(MAIN, 0.6, order=3),
+    "tick": DrawingStyle(MAIN, 0.6, order=2.9),
     "dimension": DrawingStyle(INK, 0.7, order=4),
     "crossing": DrawingStyle(INK, 1.2, sign="x", size=5, order=4),
     "room": DrawingStyle(LINES, 0.9, (5.5, 3.3), order=2.3),
