@@ -82,7 +82,7 @@ def test_a_planet_on_a_standing_ellipse_is_an_antiparallelogram(
 def test_the_ratio_of_ellipses() -> None:
     """i = -(1 - k^2) / (1 + k^2 + 2 k cos x), where the shortest radius begins at x = 0."""
     x = np.linspace(-8, 8, 100)
-    _, ratio, bend = ellipses("crank", "wheel", FRAME, 0.7, 0.0).law(x)  # type: ignore[misc]
+    _, ratio, bend = ellipses("crank", "wheel", FRAME, 0.7, 0.0).rolling_law(x)  # type: ignore[misc]
     under = 1 + FOCI**2 + 2 * FOCI * np.cos(x - 0.7)
     np.testing.assert_allclose(ratio, -(1 - FOCI**2) / under, rtol=1e-14)
     slope = -(1 - FOCI**2) * 2 * FOCI * np.sin(x - 0.7) / under**2

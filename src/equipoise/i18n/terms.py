@@ -77,33 +77,19 @@ TERMS = {
 }
 """Terms of mechanisms, vibration and balancing."""
 
-MEANINGS = {
+MEANINGS: dict[str, str] = {
     "acceleration of the common centre of mass": to_say(
         "Acceleration of the centre of mass of all moving links together; the shaking force is "
         "the total mass times its negative."
     ),
     "acceleration of {name}": to_say("Acceleration of a point in the frame."),
-    "angle in circular slot {name}": to_say("Angle of the pin about the centre of the slot."),
-    "angle of torsion spring {name}": to_say(
-        "Angle between the two bodies that a torsion spring joins."
-    ),
     "angle of {name}": to_say(
         "Angle of the axes of a link from those of the frame, anticlockwise."
     ),
     "angular acceleration of {name}": to_say("Rate of change of the angular velocity of a link."),
     "angular velocity of {name}": to_say("Rate of change of the angle of a link."),
-    "contact force along the normal {name}": to_say(
-        "Component of the force between cam and follower along their common normal."
-    ),
     "contact force times sliding speed in joint {name}": to_say(
         "Contact force times sliding speed; wear grows with its integral over time."
-    ),
-    "contact force {name}": to_say("Force between cam and follower."),
-    "curvature of the cam {name}": to_say(
-        "Curvature of the surface of a cam at the contact, the inverse of its radius."
-    ),
-    "distance along curved slot {name}": to_say(
-        "Distance of the pin along the centre line of a slot from its first point."
     ),
     "drive force": to_say(
         "Force that a cylinder or linear motor needs to move the machine as prescribed."
@@ -115,10 +101,6 @@ MEANINGS = {
         "drives the motor."
     ),
     "drive torque of {name}": to_say("Torque that one of several drives needs."),
-    "effective pull {name}": to_say(
-        "Difference of the tensions of both strands of a belt, which transmits the torque."
-    ),
-    "energy of torsion spring {name}": to_say("Energy stored in a torsion spring."),
     "force in joint {name}": to_say("Force that one link puts on another in a joint."),
     "force of bearing {name}": to_say(
         "Force of a bearing of a shaft that is held in several planes."
@@ -145,39 +127,6 @@ MEANINGS = {
     "largest stress along {name}": to_say(
         "Largest normal stress along a link, of bending and axial force."
     ),
-    "deflection along bushing {name}": to_say(
-        "How far a point is from that of its bushing along the direction of this."
-    ),
-    "deflection across bushing {name}": to_say(
-        "How far a point is from that of its bushing across the direction of this."
-    ),
-    "force along bushing {name}": to_say("Force of a bushing on its link along its direction."),
-    "force across bushing {name}": to_say("Force of a bushing on its link across its direction."),
-    "torque of bushing {name}": to_say("Torque of a bushing on its link about its pin."),
-    "loss of bushing {name}": to_say("Power that a bushing turns into heat."),
-    "force of stop {name}": to_say("Force with which a stop pushes a point back."),
-    "gap of stop {name}": to_say(
-        "Distance of a point from the line of its stop; below 0 it presses the stop in."
-    ),
-    "loss of stop {name}": to_say("Power that a stop turns into heat while it is pressed."),
-    "force of resistance {name}": to_say("Force with which a resistance holds a point back."),
-    "speed of resistance {name}": to_say(
-        "Speed of a point that a resistance holds back, along its direction where it has one."
-    ),
-    "loss of resistance {name}": to_say("Power that a resistance takes from the machine."),
-    "loss of damper {name}": to_say("Power that a damper turns into heat."),
-    "loss of torsion damper {name}": to_say("Power that a torsion damper turns into heat."),
-    "pull of damper {name}": to_say(
-        "Force with which a damper pulls its two ends together; below 0 it holds them apart."
-    ),
-    "speed of damper {name}": to_say("Speed with which the ends of a damper move apart."),
-    "speed of torsion damper {name}": to_say(
-        "Angular speed of a link relative to the body that a torsion damper ties it to."
-    ),
-    "torque of torsion damper {name}": to_say(
-        "Torque with which a torsion damper holds a link back."
-    ),
-    "length of spring {name}": to_say("Distance between the ends of a spring."),
     "mechanical advantage of {name}": to_say(
         "Torque or force on a link that a unit of crank torque balances, without losses."
     ),
@@ -190,18 +139,11 @@ MEANINGS = {
         "Component of the force in a sliding joint across its guide."
     ),
     "position of {name}": to_say("Coordinates of a point in the frame."),
-    "pressure angle {name}": to_say(
-        "Angle between the normal of the contact and the motion of the follower."
-    ),
     "pressure in joint {name}": to_say(
         "Force in a plain bearing over its projected area, diameter times width."
     ),
     "pressure times sliding speed in joint {name}": to_say(
         "Pressure times sliding speed of a plain bearing, which limits its heating."
-    ),
-    "pull of spring {name}": to_say("Force with which a spring pulls its ends together."),
-    "radial tooth force {name}": to_say(
-        "Component of the force between teeth towards the axes, which pushes the gears apart."
     ),
     "reading at {name}": to_say(
         "What a gauge on the support reads: displacement, velocity or acceleration."
@@ -218,30 +160,9 @@ MEANINGS = {
         "drive if no other point is given."
     ),
     "sliding acceleration of {name}": to_say("Rate of change of the sliding velocity."),
-    "sliding speed in circular slot {name}": to_say("Speed of the pin along the slot."),
-    "sliding speed in curved slot {name}": to_say(
-        "Speed of the pin along the centre line of the slot."
-    ),
     "sliding velocity of {name}": to_say("Velocity of a slider along its guide."),
-    "tangential tooth force {name}": to_say(
-        "Component of the force between teeth along the pitch circles, which transmits the torque."
-    ),
-    "tension of the left strand {name}": to_say(
-        "Tension of the strand of a belt on the left, seen from the driving "
-        "towards the driven pulley."
-    ),
-    "tension of the right strand {name}": to_say(
-        "Tension of the strand of a belt on the right, seen from the driving "
-        "towards the driven pulley."
-    ),
     "tilting moment in joint {name}": to_say(
         "Moment in a joint of links in different planes, which tilts its pin."
-    ),
-    "tooth force {name}": to_say(
-        "Force between the teeth of two gears at the pitch point, along the line of action."
-    ),
-    "torque of torsion spring {name}": to_say(
-        "Torque with which a torsion spring turns its bodies towards its free angle."
     ),
     "transmission angle at {name}": _TRANSMISSION,
     "travel of {name}": to_say(
@@ -251,4 +172,10 @@ MEANINGS = {
     "weight": to_say("Force of gravity on all moving links."),
     "yaw moment": to_say("Moment of all rows together about the vertical."),
 }
-"""Outputs by their labels, each with what it means."""
+"""Outputs by their labels, each with what it means; kinds of parts add theirs by `with_meaning`."""
+
+
+def with_meaning(label: str, meaning: str) -> str:
+    """The label of an output of a kind of parts, whose meaning the glossary has from here on."""
+    MEANINGS[label] = meaning
+    return label

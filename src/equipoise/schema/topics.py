@@ -42,6 +42,10 @@ class FileTable(NamedTuple):
     kind: FileKind
 
 
+OF_MEMBER = re.compile(r"( of| at)? \{name\}$")
+"""What the label of an output says of which member of a family it is."""
+
+
 def slug_of(title: str) -> str:
     """What a heading is called in links, as on GitHub."""
     return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
@@ -144,13 +148,11 @@ def table_at(place: Sequence[str]) -> str:
 @cache
 def terms() -> Mapping[str, Explained]:
     """Every term of the glossary that is no topic otherwise, with its meaning, by its topic."""
-    every = {slug_of(term): Explained(term, text) for term, text in (TERMS | MEANINGS).items()}
-    others = {*errors(), *tables()}
-    return {
-        topic: item
-        for topic, item in every.items()
-        if "{" not in item.title and topic not in others
-    }
+    topics: dict[str, Explained] = {}
+    for label, text in (TERMS | MEANINGS).items():
+        term = OF_MEMBER.sub("", label)
+        topics.setdefault(slug_of(term), Explained(term, text))
+    return {topic: item for topic, item in topics.items() if topic not in {*errors(), *tables()}}
 
 
 def known_topic(topic: str) -> str:

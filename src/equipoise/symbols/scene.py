@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from itertools import combinations, pairwise, repeat
-from math import dist
+from math import copysign, dist
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +21,6 @@ from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.bodies import Outline, outlines, place_of
 from equipoise.mechanism.parts.couplings import Coupling, Law
-from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Link
 from equipoise.symbols.carrier import MOUNT, Carrier, SupportSwing
 from equipoise.symbols.constraints import constraint_marks
@@ -43,6 +42,7 @@ class Wheel:
 
     link : what turns with it, maybe the frame.  center : the point on its axis.
     radius : of a circle, or the largest, m.  part : list and name of the coupling that has it.
+    legend : what circles of its kind are called.
     curve : (n,) of what is no circle: from the center, in the link's axes, complex, m.
     """
 
@@ -50,6 +50,7 @@ class Wheel:
     center: str
     radius: float
     part: tuple[str, str]
+    legend: str
     curve: Array | None = None
 
 
@@ -57,9 +58,8 @@ def called(wheels: Sequence[Wheel]) -> str:
     """What these are called together."""
     if any(wheel.curve is not None for wheel in wheels):
         return say("pitch curves of gears")
-    if any(wheel.part[0] == Gear.list_name for wheel in wheels):
-        return say("pitch circles of gears")
-    return say("pitch circles of pulleys and pinions")
+    others = (wheel.legend for wheel in wheels if wheel.legend != Coupling.wheels)
+    return say(next(others, Coupling.wheels))
 
 
 def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) -> Iterator[Wheel]:
@@ -74,12 +74,13 @@ def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) ->
             continue  # a sketch may lack a pin
         pins = [points[0] for points in shared]
         curves: Iterable[Array | None] = repeat(None)
-        if isinstance(coupling, Gear) and coupling.law is not None:
+        if (law := coupling.rolling_law) is not None:
             driver, driven = (complex(*bodies[coupling.carrier][pin]) for pin in pins)
-            curves = _curves(coupling, coupling.law, driver - driven, angles)
+            curves = _curves(coupling, law, driver - driven, angles)
         for (body, radius), pin, curve in zip(wheels, pins, curves, strict=False):
             size = radius if curve is None else float(np.max(np.abs(curve)))
-            yield Wheel(body, pin, size, (coupling.list_name, coupling.name), curve)
+            part = (coupling.list_name, coupling.name)
+            yield Wheel(body, pin, size, part, coupling.wheels, curve)
 
 
 def _distance(joints: Structure, bodies: Bodies, coupling: Coupling) -> float:
@@ -88,7 +89,7 @@ def _distance(joints: Structure, bodies: Bodies, coupling: Coupling) -> float:
     return dist(*(points[pin] for pin in coupling_pins(joints, coupling)))
 
 
-def _curves(gear: Gear, law: Law, centres: complex, angles: Mapping[str, float]) -> Curves:
+def _curves(gear: Coupling, law: Law, centres: complex, angles: Mapping[str, float]) -> Curves:
     """Corners of driver's and driven gear's curve, in their axes: where the pitch point comes."""
     turned = {FRAME: 0.0, **angles}
     driver, driven = (turned[item] - turned[gear.carrier] for item in (gear.driver, gear.driven))
@@ -536,7 +537,8 @@ def _solids(link: Link) -> Iterator[Outline]:
 
 
 def _guides(motion: Motion) -> Iterator[GuideSign]:
-    meshing = {(rack.rack, rack.carrier): rack.left for rack in motion.machine.racks}
+    couplings = (item for item in motion.machine.couplings if item.slides)
+    teeth = {(item.slides, item.carrier): int(copysign(1, -item.foot.imag)) for item in couplings}
     for slider in motion.machine.sliders:
         place = motion.points[slider.point].place
         angle = 0 * motion.crank_angle
@@ -546,7 +548,7 @@ def _guides(motion: Motion) -> Iterator[GuideSign]:
         way = np.exp(1j * (angle + slider.direction))
         along = (place * way.conj()).real
         ends = along - along.min(), along.max() - along
-        side = meshing.get((slider.link, slider.on), 0)
+        side = teeth.get((slider.link, slider.on), 0)
         yield GuideSign(slider.name, slider.point, way, slider.on, *ends, side)
 
 

@@ -8,7 +8,7 @@ from equipoise.mechanism.outputs.declared import DECLARED
 
 
 def test_every_output_has_a_meaning() -> None:
-    """In `i18n/terms.py`, by its label; parts of machines declare outputs when they are loaded."""
+    """By its label; parts of machines declare outputs, and their meanings, when they are loaded."""
     eq.analyze(eq.load("yamashita-1"))
     labels = {one.label for one in DECLARED.values()}
     assert labels - MEANINGS.keys() == set()

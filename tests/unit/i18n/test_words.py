@@ -52,8 +52,10 @@ def said() -> set[str]:
         for node in nodes(path):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 first = node.args[0] if node.args else None
-                if node.func.id == "to_say":
+                if node.func.id in ("to_say", "with_meaning"):
                     assert isinstance(first, ast.Constant), f"{path}:{node.lineno}"
+                if node.func.id == "with_meaning":  # a label and its meaning
+                    found.update(one.value for one in node.args if isinstance(one, ast.Constant))
                 if node.func.id == "unknown" and len(node.args) > 2:  # what kind of name it is
                     first = node.args[2]
                 if node.func.id == "needed" and len(node.args) > 1:  # what it is needed for

@@ -82,9 +82,11 @@ def test_a_table_that_nearly_closes_is_closed() -> None:
     angles = tuple(np.arange(36) * radians(10))
     exact = 1 + 0.2 * np.cos(angles)
     gear = shaped(kind="ratio", angle=angles, ratio=tuple(np.round(exact * 1.00004, 4)))
-    assert gear.law is not None
-    assert gear.law(2 * pi)[0] - gear.law(0.0)[0] == pytest.approx(-2 * pi, abs=1e-13)
-    np.testing.assert_allclose(gear.law(np.array(angles))[1], -exact, atol=1e-4)
+    assert gear.rolling_law is not None
+    assert gear.rolling_law(2 * pi)[0] - gear.rolling_law(0.0)[0] == pytest.approx(
+        -2 * pi, abs=1e-13
+    )
+    np.testing.assert_allclose(gear.rolling_law(np.array(angles))[1], -exact, atol=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -117,10 +119,10 @@ def test_force_between_teeth_where_curves_lean(torque: float, lean: int) -> None
 
 def test_a_series_and_a_table_of_the_same_curve() -> None:
     waves = shaped(kind="radius", cosines=(-0.2,))
-    assert waves.law is not None
+    assert waves.rolling_law is not None
     limacon = shaped(kind="limacon", eccentricity=0.2)
-    assert limacon.law is not None
+    assert limacon.rolling_law is not None
     x = np.linspace(-9, 9, 50)
-    for one, other in zip(waves.law(x), limacon.law(x), strict=True):
+    for one, other in zip(waves.rolling_law(x), limacon.rolling_law(x), strict=True):
         np.testing.assert_allclose(one - one[0], other - other[0], atol=1e-12)
     assert waves.ratios == pytest.approx(limacon.ratios, rel=1e-6)

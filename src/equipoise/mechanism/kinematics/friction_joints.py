@@ -14,7 +14,6 @@ from equipoise.mechanism.assembly.steps import Array, Reaction, planar, size_of_
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.couplings import Coupling
-from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.joint_properties import JOINTS, JointProperties
 from equipoise.mechanism.parts.machine import FRAME, Slider
@@ -91,10 +90,10 @@ class RubbingJoint:
         """
         if not self.centres:
             return np.ones(())
-        assert isinstance(self.mesh, Gear) and self.mesh.law is not None
+        assert self.mesh is not None and self.mesh.rolling_law is not None
         ends = (self.mesh.driver, self.mesh.carrier)
         driver, carrier = (0.0 if end == FRAME else motion.links[end].angle for end in ends)
-        _, ratio, _ = self.mesh.law(driver - carrier)
+        _, ratio, _ = self.mesh.rolling_law(driver - carrier)
         return np.asarray(np.abs(self.centres / (1 - ratio)))
 
     @property
@@ -230,7 +229,7 @@ def _passing_on(
     joint = RubbingJoint(mesh.name, reaction, entry, guide, still, mesh, pitch_radius=1.0)
     if joint.slides:
         return joint
-    if isinstance(mesh, Gear) and mesh.law is not None:
+    if mesh.rolling_law is not None:
         return replace(joint, centres=_centres(linkage, mesh))
     return replace(joint, still=STILL, pitch_radius=_pitch_radius(linkage, mesh))
 

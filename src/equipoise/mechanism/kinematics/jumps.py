@@ -21,6 +21,7 @@ from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move, move_again
 from equipoise.mechanism.kinematics.tip import crossings, roots, surface_of
 from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.force_kinds import rated_elements
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.signals import JumpSampling
 
@@ -160,22 +161,22 @@ def _beyond(coupling: Coupling, knot: float, read: Callable[[Any], Any], motion:
 
 
 def resisted_back(linkage: Linkage) -> Array:
-    """Crank angles (B,) of the first row, rising, rad, at which in any row a point with a dry
-    resistance turns back, or comes to a corner of its force by the way.
+    """Crank angles (B,) of the first row, rising, rad, at which in any row the point of a dry force
+    element turns back, or comes to a corner of its force by the way.
     """
     machine = linkage.machine
-    dry = [(number, item) for number, item in enumerate(machine.resistances) if item.speed]
+    dry = [entry for entry in rated_elements(machine) if entry[2].dry]
     if not dry:
         return np.empty(0)
     still = STILL * size_of_links(machine)
 
     def signals(motion: Motion) -> Array:
         turning, values = motion.at(1.0, 0.0), []
-        for number, item in dry:
-            ways = item.ways(PlacedBodies(turning, f"resistances[{number + 1}]"))
-            rates = [rate for _, rate in ways[: 1 if item.axed else 2]]
+        for table, number, item in dry:
+            ways = item.ways(PlacedBodies(turning, f"{table}[{number + 1}]"))
+            rates, corners = item.sign_changes(ways)
             values += [np.where(np.abs(rate) > still, rate, 0.0) for rate in rates]
-            values += [ways[0][0] - place for place in item.positions]
+            values += corners
         return np.array([np.broadcast_to(value, motion.crank_angle.shape) for value in values])
 
     turns = linkage.cycle.turns

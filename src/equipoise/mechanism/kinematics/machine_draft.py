@@ -18,7 +18,7 @@ from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.joints import Structure, joined
 from equipoise.mechanism.assembly.linkage import assemble, sides_at_position
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.parts.couplings import Turning, coupling_kinds
+from equipoise.mechanism.parts.couplings import Coupling, Turning, coupling_kinds
 from equipoise.mechanism.parts.element_kinds import Element, element_kinds
 from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.machine import (
@@ -30,7 +30,6 @@ from equipoise.mechanism.parts.machine import (
     Slider,
     Vector,
 )
-from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean, clean_place
 
 TITLE = "Untitled machine"
@@ -196,8 +195,8 @@ class MachineDraft:
         pushed = {pusher.link: self.pose(pusher.link).angle for pusher in machine.pushers}
         turning = Standing(pushed) if pushed else None
         machine = replace(machine, assembly=sides_at_position(machine, turning))
-        if machine.racks:
-            machine = replace(machine, racks=self._engaged(machine))
+        if any(coupling.slides for coupling in machine.couplings):
+            machine = self._engaged(machine)
         loops = any(group.kind == "loops" for group in assemble(machine).groups)
         return machine if loops else replace(machine, position=None)
 
@@ -232,25 +231,37 @@ class MachineDraft:
             start_drawn = self.pose(entry.driven).angle - way
             if abs(remainder(start_drawn - start, 2 * pi)) > MESHING:
                 start = clean(remainder(start_drawn, 2 * pi), "angle")
-                turnings[k] = replace(entry, start=start)
+                turnings[k] = entry.started(start)
             angles[entry.driven] = start, start + way
         return {key: tuple(item for item in turnings if item.list_name == key) for key in lists}
 
-    def _engaged(self, machine: Machine) -> tuple[Rack, ...]:
-        """Racks that start so that what they drive comes to where it is drawn."""
+    def _engaged(self, machine: Machine) -> Machine:
+        """With couplings of what slides that start so that what they drive comes to where it is
+        drawn.
+        """
         motion = move(machine, np.array([self.crank_angle]))
-        return tuple(self._put(rack, motion) for rack in machine.racks)
+        engaged: dict[str, Any] = {}
+        for table in coupling_kinds(type(machine)):
+            items = getattr(machine, table)
+            if any(item.slides for item in items):
+                engaged[table] = tuple(
+                    self._put(item, motion) if item.slides else item for item in items
+                )
+        return replace(machine, **engaged)
 
-    def _put(self, rack: Rack, motion: Motion) -> Rack:
-        if rack.drives == "pinion":
-            ends = (rack.rack, rack.carrier)
+    def _put(self, coupling: Coupling, motion: Motion) -> Coupling:
+        driven = coupling.driven
+        if driven == coupling.slides:
+            ends = (driven, coupling.carrier)
             slider = next(slider for slider in self.sliders if (slider.link, slider.on) == ends)
             off = self.travel(slider) - float(motion.sliders[slider.name].travel[0])
-            in_mesh = abs(off) <= MESHING * rack.radius
-            return rack if in_mesh else replace(rack, travel=clean(rack.travel + off, "length"))
-        turned = self.pose(rack.pinion).angle - float(motion.links[rack.pinion].angle[0])
-        off = remainder(turned, 2 * pi)
-        return rack if abs(off) <= MESHING else replace(rack, angle=clean(rack.angle + off))
+            in_mesh = abs(off) <= MESHING * abs(coupling.foot)
+            start = clean(coupling.start + off, "length")
+        else:
+            turned = self.pose(driven).angle - float(motion.links[driven].angle[0])
+            off = remainder(turned, 2 * pi)
+            in_mesh, start = abs(off) <= MESHING, clean(coupling.start + off)
+        return coupling if in_mesh else coupling.started(start)
 
     def _usual_drive(self) -> Drive:
         """In the place of one that has not been chosen."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     Conditions,
     Flag,
@@ -193,12 +194,24 @@ class Belt(Turning):
     @classmethod
     def declare_outputs(cls, table: str) -> None:
         declare = of_coupling(table)
-        declare(".pull", "force", to_say("effective pull {name}"), compared=FORCE,
-                loop=part_in_loops("pull"), yardstick="acting")  # fmt: skip
-        declare(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE,
-                loop=part_in_loops("left"))  # fmt: skip
-        declare(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE,
-                loop=part_in_loops("right"))  # fmt: skip
+        pull = with_meaning(
+            "effective pull {name}",
+            "Difference of the tensions of both strands of a belt, which transmits the torque.",
+        )
+        left = with_meaning(
+            "tension of the left strand {name}",
+            "Tension of the strand of a belt on the left, seen from the driving towards the driven "
+            "pulley.",
+        )
+        right = with_meaning(
+            "tension of the right strand {name}",
+            "Tension of the strand of a belt on the right, seen from the driving towards the "
+            "driven pulley.",
+        )
+        declare(".pull", "force", pull, compared=FORCE, loop=part_in_loops("pull"),
+                yardstick="acting")  # fmt: skip
+        declare(".left", "force", left, compared=FORCE, loop=part_in_loops("left"))
+        declare(".right", "force", right, compared=FORCE, loop=part_in_loops("right"))
         of_mesh(table)
 
     def preload_rate(self, distance: Any) -> Any:

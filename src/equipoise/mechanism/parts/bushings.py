@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of, said, say, series, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import Conditions, Listing, Quantity, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross
@@ -50,12 +51,43 @@ class Bushing(BetweenPoints, RatedElement):
         "modelica": "equipoise.exchange.modelica:bushings",
     }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
-        "along": ("length", to_say("deflection along bushing {name}")),
-        "across": ("length", to_say("deflection across bushing {name}")),
-        "force_along": ("force", to_say("force along bushing {name}")),
-        "force_across": ("force", to_say("force across bushing {name}")),
-        "torque": ("torque", to_say("torque of bushing {name}")),
-        "loss": ("power", to_say("loss of bushing {name}")),
+        "along": (
+            "length",
+            with_meaning(
+                "deflection along bushing {name}",
+                "How far a point is from that of its bushing along the direction of this.",
+            ),
+        ),
+        "across": (
+            "length",
+            with_meaning(
+                "deflection across bushing {name}",
+                "How far a point is from that of its bushing across the direction of this.",
+            ),
+        ),
+        "force_along": (
+            "force",
+            with_meaning(
+                "force along bushing {name}", "Force of a bushing on its link along its direction."
+            ),
+        ),
+        "force_across": (
+            "force",
+            with_meaning(
+                "force across bushing {name}",
+                "Force of a bushing on its link across its direction.",
+            ),
+        ),
+        "torque": (
+            "torque",
+            with_meaning(
+                "torque of bushing {name}", "Torque of a bushing on its link about its pin."
+            ),
+        ),
+        "loss": (
+            "power",
+            with_meaning("loss of bushing {name}", "Power that a bushing turns into heat."),
+        ),
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "along": (to_say("lowest along"), to_say("highest")),

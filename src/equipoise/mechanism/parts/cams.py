@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import Conditions, KeyTable, TextKind, declared, key, not_both
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
 from equipoise.mechanism.outputs.declared import (
@@ -205,17 +206,41 @@ class Cam(Coupling):
     @classmethod
     def declare_outputs(cls, table: str) -> None:
         declare, of_contact = of_coupling(table), of_contacts(table)
-        declare("", "force", to_say("contact force {name}"), FORCES, **CONTACT)
+        declare(
+            "",
+            "force",
+            with_meaning("contact force {name}", "Force between cam and follower."),
+            FORCES,
+            **CONTACT,
+        )
         declare(
             ".normal",
             "force",
-            to_say("contact force along the normal {name}"),
+            with_meaning(
+                "contact force along the normal {name}",
+                "Component of the force between cam and follower along their common normal.",
+            ),
             loop=part_in_loops("normal"),
             reason=to_say("{what} is only read; take the whole contact force instead"),
         )
-        of_contact("pressure_angle", "angle", to_say("pressure angle {name}"), loop=True,
-                   yardstick="pressure")  # fmt: skip
-        of_contact("curvature", "per length", to_say("curvature of the cam {name}"))
+        of_contact(
+            "pressure_angle",
+            "angle",
+            with_meaning(
+                "pressure angle {name}",
+                "Angle between the normal of the contact and the motion of the follower.",
+            ),
+            loop=True,
+            yardstick="pressure",
+        )
+        of_contact(
+            "curvature",
+            "per length",
+            with_meaning(
+                "curvature of the cam {name}",
+                "Curvature of the surface of a cam at the contact, the inverse of its radius.",
+            ),
+        )
         of_mesh(table)
 
     def sentence(self) -> Note:

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, say, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import Listing, Quantity, TextKind, declared, key
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import Placed
@@ -35,8 +36,18 @@ class CircularSlot(JointKind):
     title = to_say("Circular slots, each with its crank angle; angles in the axes of their bodies")
     group = to_say("circular slots")
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
-        "angle": ("angle", to_say("angle in circular slot {name}")),
-        "speed": ("speed", to_say("sliding speed in circular slot {name}")),
+        "angle": (
+            "angle",
+            with_meaning(
+                "angle in circular slot {name}", "Angle of the pin about the centre of the slot."
+            ),
+        ),
+        "speed": (
+            "speed",
+            with_meaning(
+                "sliding speed in circular slot {name}", "Speed of the pin along the slot."
+            ),
+        ),
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "angle": (to_say("smallest angle"), to_say("largest")),

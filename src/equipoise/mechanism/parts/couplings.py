@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Set
+from dataclasses import replace
 from fractions import Fraction
 from math import pi, radians
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, Self
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, Self
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import Frozen, Key, Keys, Listing, TextKind, declared, inside, key
 from equipoise.keys.declaring import listed_types, once
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
@@ -123,6 +125,7 @@ class Coupling(PartKind):
     noun : what one is called.  counted : how several are counted, a text with forms by ``{count}``.
     pushes : whether it is one force at one place, reported as a whole and in components.
     preload : what its sides pull with where no torque is passed on, N.
+    wheels : what its pitch circles are called in drawings.
     touch : what touches where it pushes.
     contact : how it pushes: along the line of `line`, or square to a surface.
     grows : whether its pitch circles are as large as the distance of its pins sets them.
@@ -142,6 +145,7 @@ class Coupling(PartKind):
     counted: ClassVar[str]
     pushes: ClassVar[bool] = True
     preload: ClassVar[Any] = 0.0
+    wheels: ClassVar[str] = to_say("pitch circles of pulleys and pinions")
     touch: ClassVar[str] = to_say("teeth")
     contact: ClassVar[Literal["line", "surface"]] = "line"
     grows: ClassVar[bool] = False
@@ -258,11 +262,22 @@ class Coupling(PartKind):
         return ""
 
     @property
+    def rolling_law(self) -> Law | None:
+        """The driven body's angle by the driver's, seen from the carrier, where pitch curves that
+        are no circles roll on each other.
+        """
+        return None
+
+    @property
     def foot(self) -> complex:
         """Of one of which a body slides: from the other's pin to where both touch, m, complex, if
         the guide points along the x axis.
         """
         raise NotImplementedError
+
+    def started(self, start: float) -> Self:
+        """The coupling with another `start`."""
+        return replace(self, start=start)
 
     def line(self, seat: Seat) -> LineOfAction | StrandLine | RollingLine:
         """Along which line it pushes; of those whose `contact` asks for it.
@@ -326,9 +341,35 @@ class Coupling(PartKind):
 def declare_teeth(table: str) -> None:
     """Declare the force of teeth, whole and in parts, of a list of couplings."""
     declare = of_coupling(table)
-    declare("", "force", to_say("tooth force {name}"), FORCES, **CONTACT)
-    declare(".tangential", "force", to_say("tangential tooth force {name}"), **PART_OF_FORCE)
-    declare(".radial", "force", to_say("radial tooth force {name}"), **PART_OF_FORCE)
+    declare(
+        "",
+        "force",
+        with_meaning(
+            "tooth force {name}",
+            "Force between the teeth of two gears at the pitch point, along the line of action.",
+        ),
+        FORCES,
+        **CONTACT,
+    )
+    declare(
+        ".tangential",
+        "force",
+        with_meaning(
+            "tangential tooth force {name}",
+            "Component of the force between teeth along the pitch circles, which transmits "
+            "the torque.",
+        ),
+        **PART_OF_FORCE,
+    )
+    declare(
+        ".radial",
+        "force",
+        with_meaning(
+            "radial tooth force {name}",
+            "Component of the force between teeth towards the axes, which pushes the gears apart.",
+        ),
+        **PART_OF_FORCE,
+    )
 
 
 @once

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -89,8 +90,20 @@ class CurvedSlot(JointKind):
     title = to_say("Curved slots, each with its crank angle; distances along the curve")
     group = to_say("curved slots")
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
-        "distance": ("length", to_say("distance along curved slot {name}")),
-        "speed": ("speed", to_say("sliding speed in curved slot {name}")),
+        "distance": (
+            "length",
+            with_meaning(
+                "distance along curved slot {name}",
+                "Distance of the pin along the centre line of a slot from its first point.",
+            ),
+        ),
+        "speed": (
+            "speed",
+            with_meaning(
+                "sliding speed in curved slot {name}",
+                "Speed of the pin along the centre line of the slot.",
+            ),
+        ),
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "distance": (to_say("smallest distance"), to_say("largest")),

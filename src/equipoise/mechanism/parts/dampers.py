@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, say, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
@@ -61,9 +62,24 @@ class Damper(BetweenPoints, Damping):
         "modelica": "equipoise.exchange.modelica:dampers",
     }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
-        "pull": ("force", to_say("pull of damper {name}")),
-        "speed": ("speed", to_say("speed of damper {name}")),
-        "loss": ("power", to_say("loss of damper {name}")),
+        "pull": (
+            "force",
+            with_meaning(
+                "pull of damper {name}",
+                "Force with which a damper pulls its two ends together; below 0 it holds them "
+                "apart.",
+            ),
+        ),
+        "speed": (
+            "speed",
+            with_meaning(
+                "speed of damper {name}", "Speed with which the ends of a damper move apart."
+            ),
+        ),
+        "loss": (
+            "power",
+            with_meaning("loss of damper {name}", "Power that a damper turns into heat."),
+        ),
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "speed": (to_say("lowest speed"), to_say("highest")),

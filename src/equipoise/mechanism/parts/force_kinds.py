@@ -101,6 +101,17 @@ class RatedElement(ForceElement):
         """
         return self.efforts(ways)
 
+    @property
+    def dry(self) -> bool:
+        """Whether its force jumps where its point turns back."""
+        return False
+
+    def sign_changes(self, ways: Sequence[tuple[Any, Any]]) -> tuple[Sequence[Any], Sequence[Any]]:
+        """Of a dry one speeds at whose change of sign its force jumps, m/s or rad/s, and ways at
+        whose change of sign it has a corner, m or rad.
+        """
+        return (), ()
+
     @abstractmethod
     def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
         """What it exerts on each of its bodies, the frame too, where these are its efforts."""

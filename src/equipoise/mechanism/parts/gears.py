@@ -67,6 +67,7 @@ class Gear(Turning):
 
     noun = to_say("pair of gears")
     group = to_say("gears")
+    wheels = to_say("pitch circles of gears")
     loses = True
     columns: ClassVar[Mapping[PathPattern, Set[str]]] = {
         (): {"start", "pressure_angle"},
@@ -131,12 +132,12 @@ class Gear(Turning):
 
     @property
     def relation(self) -> Relation:
-        if self.law is not None:
-            return coupled, (self.law,)
+        if self.rolling_law is not None:
+            return coupled, (self.rolling_law,)
         return kernels.in_ratio, (self.speed_ratio,)
 
     @property
-    def law(self) -> Law | None:
+    def rolling_law(self) -> Law | None:
         """The driven gear's angle by the driver's, seen from the carrier, if the ratio varies."""
         if self.shape is None:
             return None
@@ -186,8 +187,8 @@ class Gear(Turning):
         ratio = self.speed_ratio
         ring_driven = 0 < ratio < 1
         radial = np.tan(self.pressure_angle) * (1 if ring_driven else -1)
-        if self.law is not None:
-            return RollingLine(self.law, seat.centres, radial)
+        if self.rolling_law is not None:
+            return RollingLine(self.rolling_law, seat.centres, radial)
         return LineOfAction(seat.centres / (1 - ratio), -radial)
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:

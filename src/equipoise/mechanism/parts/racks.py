@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Set
+from dataclasses import replace
 from fractions import Fraction
 from math import tan
 from typing import Any, ClassVar, Literal
@@ -103,6 +104,12 @@ class Rack(Coupling):
     def start(self) -> float:
         """Angle (rad) of a driven pinion, or travel (m) of a driven rack, at crank angle 0."""
         return self.travel if self.drives == "pinion" else self.angle
+
+    def started(self, start: float) -> Rack:
+        """The rack with another angle or travel at the start."""
+        if self.drives == "pinion":
+            return replace(self, travel=start)
+        return replace(self, angle=start)
 
     @property
     def slides(self) -> str:

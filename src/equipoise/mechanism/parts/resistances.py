@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -89,9 +90,26 @@ class Resistance(BetweenPoints, TableRows, RatedElement):
         "modelica": "equipoise.exchange.modelica:resistances",
     }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
-        "force": ("force", to_say("force of resistance {name}")),
-        "speed": ("speed", to_say("speed of resistance {name}")),
-        "loss": ("power", to_say("loss of resistance {name}")),
+        "force": (
+            "force",
+            with_meaning(
+                "force of resistance {name}", "Force with which a resistance holds a point back."
+            ),
+        ),
+        "speed": (
+            "speed",
+            with_meaning(
+                "speed of resistance {name}",
+                "Speed of a point that a resistance holds back, along its direction where it "
+                "has one.",
+            ),
+        ),
+        "loss": (
+            "power",
+            with_meaning(
+                "loss of resistance {name}", "Power that a resistance takes from the machine."
+            ),
+        ),
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "speed": (to_say("lowest speed"), to_say("highest")),
@@ -163,6 +181,15 @@ class Resistance(BetweenPoints, TableRows, RatedElement):
     @property
     def linear(self) -> bool:
         return self.force is None and not self.rows[0] and not self.one_way
+
+    @property
+    def dry(self) -> bool:
+        return bool(self.speed)
+
+    def sign_changes(self, ways: Sequence[tuple[Any, Any]]) -> tuple[Sequence[Any], Sequence[Any]]:
+        """Of its speed along its direction, or of both; of ways to the rows of its table."""
+        rates = [rate for _, rate in ways[: 1 if self.axed else 2]]
+        return rates, [ways[0][0] - place for place in self.positions]
 
     def _moving(self, at: Placed) -> tuple[Any, Any, tuple[tuple[Any, Any], ...]]:
         """As `relative_motion`, along its direction; of one without, along the other body's x."""

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -84,8 +85,16 @@ class Spring(BetweenPoints, RowLaw, ForceElement):
         "modelica": "equipoise.exchange.modelica:springs",
     }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
-        "pull": ("force", to_say("pull of spring {name}")),
-        "length": ("length", to_say("length of spring {name}")),
+        "pull": (
+            "force",
+            with_meaning(
+                "pull of spring {name}", "Force with which a spring pulls its ends together."
+            ),
+        ),
+        "length": (
+            "length",
+            with_meaning("length of spring {name}", "Distance between the ends of a spring."),
+        ),
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "length": (to_say("shortest"), to_say("longest")),

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import Number, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross, positive
@@ -63,9 +64,23 @@ class Stop(BetweenPoints, RatedElement):
         "modelica": "equipoise.exchange.modelica:stops",
     }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
-        "force": ("force", to_say("force of stop {name}")),
-        "gap": ("length", to_say("gap of stop {name}")),
-        "loss": ("power", to_say("loss of stop {name}")),
+        "force": (
+            "force",
+            with_meaning("force of stop {name}", "Force with which a stop pushes a point back."),
+        ),
+        "gap": (
+            "length",
+            with_meaning(
+                "gap of stop {name}",
+                "Distance of a point from the line of its stop; below 0 it presses the stop in.",
+            ),
+        ),
+        "loss": (
+            "power",
+            with_meaning(
+                "loss of stop {name}", "Power that a stop turns into heat while it is pressed."
+            ),
+        ),
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "gap": (to_say("smallest gap"), to_say("largest")),

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, say, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
@@ -57,9 +58,26 @@ class TorsionDamper(BetweenBodies, Damping):
         "modelica": "equipoise.exchange.modelica:torsion_dampers",
     }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
-        "torque": ("torque", to_say("torque of torsion damper {name}")),
-        "speed": ("angular speed", to_say("speed of torsion damper {name}")),
-        "loss": ("power", to_say("loss of torsion damper {name}")),
+        "torque": (
+            "torque",
+            with_meaning(
+                "torque of torsion damper {name}",
+                "Torque with which a torsion damper holds a link back.",
+            ),
+        ),
+        "speed": (
+            "angular speed",
+            with_meaning(
+                "speed of torsion damper {name}",
+                "Angular speed of a link relative to the body that a torsion damper ties it to.",
+            ),
+        ),
+        "loss": (
+            "power",
+            with_meaning(
+                "loss of torsion damper {name}", "Power that a torsion damper turns into heat."
+            ),
+        ),
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "speed": (to_say("lowest speed"), to_say("highest")),

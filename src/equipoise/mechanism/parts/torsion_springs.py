@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -66,9 +67,24 @@ class TorsionSpring(BetweenBodies, RowLaw, ForceElement):
         "modelica": "equipoise.exchange.modelica:torsion_springs",
     }
     outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
-        "torque": ("torque", to_say("torque of torsion spring {name}")),
-        "angle": ("angle", to_say("angle of torsion spring {name}")),
-        "energy": ("energy", to_say("energy of torsion spring {name}")),
+        "torque": (
+            "torque",
+            with_meaning(
+                "torque of torsion spring {name}",
+                "Torque with which a torsion spring turns its bodies towards its free angle.",
+            ),
+        ),
+        "angle": (
+            "angle",
+            with_meaning(
+                "angle of torsion spring {name}",
+                "Angle between the two bodies that a torsion spring joins.",
+            ),
+        ),
+        "energy": (
+            "energy",
+            with_meaning("energy of torsion spring {name}", "Energy stored in a torsion spring."),
+        ),
     }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "angle": (to_say("smallest angle"), to_say("largest")),
