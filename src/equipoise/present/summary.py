@@ -56,7 +56,7 @@ def answers(findings: Findings, stated: str = "") -> Iterator[SummaryAnswer]:
         yield SummaryAnswer(
             say("What shakes, and how much"), tuple(_shaking_sentences(findings, shaking))
         )
-        yield SummaryAnswer(say("Why"), tuple(_why(findings)))
+        yield SummaryAnswer(say("Why"), tuple(why_sentences(findings)))
         if findings.balanced is not None:
             worse = tuple(deterioration_sentences(findings.balanced)) if findings.helped else ()
             helps = tuple(benefit_sentences(findings.balanced, stated))
@@ -224,7 +224,8 @@ def _ordered(findings: Findings, shaking: Shaking) -> str:
     )
 
 
-def _why(findings: Findings) -> Iterator[str]:
+def why_sentences(findings: Findings) -> Iterator[str]:
+    """Which links the shaking force comes from, and which causes the drive torque."""
     analysis, motion = findings.analysis, findings.analysis.resolved.motion
     split = analysis.resolved.forces.split
     by_link = shares(split.by_link("shaking_force"), motion)

@@ -118,7 +118,8 @@ def tool_tiles(findings: ToolFindings) -> Iterator[Tile]:
         stands_out = limit_broken(exposure.a8)
         later = findings.exposure_after
         after = "" if later is None or later.a8 is None else brief(later.a8)
-        yield Tile(label, brief(exposure.a8), "m/s²", say(verdict), after, stands_out)
+        note = str(exposure.worst) if stands_out else say(verdict)  # the unit says what is broken
+        yield Tile(label, brief(exposure.a8), "m/s²", note, after, stands_out)
     if findings.design is not None:
         best = findings.design.figures[0]
         removesuffix = change(best.before, best.after).removesuffix(" %")

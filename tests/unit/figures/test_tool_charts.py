@@ -22,7 +22,7 @@ from equipoise.i18n import Note
 from equipoise.results.charts import Curve, Panel
 from equipoise.schema.models import load_tool
 from equipoise.symbols.shapes import Shape
-from unit.figures.checks import check
+from unit.figures.checks import check, views
 from unit.figures.samples import words
 from unit.figures.tool_samples import SPEEDS, machine, pictures
 
@@ -396,6 +396,16 @@ def test_what_a_design_moves_is_an_arrow() -> None:
     before, after = chart.panels
     assert [panel.title for panel in chart.panels] == ["before", "after"]
     assert not before.arrows
+    # to one scale, with hands, belt and absorber whole
+    shown = views(chart)
+    first, second = (view.x.length / (view.x.high - view.x.low) for view in shown)
+    assert first == pytest.approx(second)
+    for view in shown:
+        left, top, right, bottom = view.box
+        for shape in view.panel.signs:
+            x, y = view.places(shape.places.real, shape.places.imag).T
+            assert left - 1 <= x.min() and x.max() <= right + 1, shape.role
+            assert top - 1 <= y.min() and y.max() <= bottom + 1, shape.role
     (arrow,) = after.arrows
     assert (arrow.tail.real, arrow.head.real) == pytest.approx((0.32, 0.4))
     assert "320 → 400 mm" in words(chart)

@@ -21,12 +21,13 @@ from equipoise.figures import forces as forces_charts
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective, Phases
 from equipoise.present.cells import grid
 from equipoise.present.findings import Findings, find
+from equipoise.present.pages import page
 from equipoise.present.summary import answers
 from equipoise.quantities.numbers import in_unit
 from equipoise.quantities.units import FACTORS
 from equipoise.results.analysis import ANGLES, order_values
 from equipoise.results.analysis_blocks import display_of_totals
-from equipoise.results.blocks import Block, Many, ReportSection, SvgPicture, Table, Value
+from equipoise.results.blocks import Block, Facts, Many, ReportSection, SvgPicture, Table, Value
 from equipoise.vibration.linear import nearest_loud
 from equipoise.web.edits import solved
 from equipoise.web.figures import figures_of
@@ -297,6 +298,30 @@ def test_the_crank_angle_of_a_peak_is_one() -> None:
     assert note == f"at crank angle {np.degrees(at):.1f}\N{DEGREE SIGN}"
     chart = forces_charts.torque(found.analysis)
     assert note.split()[-1] in " ".join(mark.text for mark in chart.panels[0].marks)
+
+
+def test_a_report_has_the_cam_and_the_spring_of_its_machine() -> None:
+    """In the parts before the appendix, with the figures that the analysis has of them."""
+    shown = [*shown_blocks(document("cam-pusher").sections)]
+    cam, spring = (
+        next(one for one in shown if isinstance(one, Table) and one.title.startswith(title))
+        for title in ("Cams", "Springs")
+    )
+    analysis = findings_of("cam-pusher").analysis
+    assert len(cam.rows) == len(analysis.machine.cams) == 1
+    assert len(spring.rows) == len(analysis.machine.springs) == 1
+    parts = next(one for one in shown if isinstance(one, Facts) and "springs" in one.title)
+    assert {item.partition(":")[0] for item in parts.items} >= {"Cam", "Spring"}
+
+
+def test_a_machine_without_a_crank_has_the_words_of_one_nowhere() -> None:
+    """In no line of the report of a cylinder, on paper or on a screen, but in its own file."""
+    made = document("hydraulic-loader")
+    told = replace(made, appendix=tuple(one for one in made.appendix if one.name != "file"))
+    text = re.sub(r"<[^>]*>", " ", page(told)).replace("\xa0", " ")
+    assert "of the cycle" in text and "cycles a minute" in text
+    wrong = r"crank angle|\brpm\b|drive pivot|turn of the crank|times a turn|once a turn"
+    assert re.findall(wrong, text) == []
 
 
 def test_a_peak_has_its_sign() -> None:

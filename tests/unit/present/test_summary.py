@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from copy import copy
 from dataclasses import replace
 from math import pi
@@ -29,6 +30,7 @@ from equipoise.present.summary import (
     planting_sentences,
     tiles,
     vibration_sentences,
+    why_sentences,
 )
 from equipoise.present.tool_summary import tool_answers
 from equipoise.quantities import PER_RPM, brief
@@ -65,6 +67,19 @@ def test_parts_that_cancel_but_for_rounding_have_no_shares() -> None:
     assert shares(parts, motion) == {"one": 0.0, "other": 0.0}
     alone = shares({"one": turning, "other": 0 * turning}, motion)
     assert alone == {"one": pytest.approx(1), "other": 0.0}
+
+
+def test_parts_that_mostly_cancel_are_said_to_stand_against_each_other() -> None:
+    """Two walkers of 14 kg against two of 12: no share above 100 % or below 0 is left to read."""
+    analysis = eq.analyze(eq.load("straw-walker"), 72)
+    told = SimpleNamespace(analysis=analysis, machine=analysis.machine)
+    (why,) = (one for one in why_sentences(told) if "taken away" in one)
+    ahead, share, against = re.fullmatch(
+        r".* from: (.*); of that (\d+) % is taken away again by (.*)\.", why
+    ).groups()
+    assert {*ahead.split(" and ")} == {"walker-1", "walker-4"}  # in either order, as equals
+    assert {*against.split(" and ")} == {"walker-2", "walker-3"}
+    assert int(share) == round(100 * 12 / 14)
 
 
 def test_cycles_are_told_of_drives_without_a_crank() -> None:
