@@ -123,7 +123,7 @@ def draw_bars(view: View, bars: Bars) -> None:
 
 
 def _dots(view: View, bars: Bars) -> None:
-    """A dot at the size of each."""
+    """A dot at the size of each, on which no text stands."""
     pair = (bars.at, bars.size) if bars.across == "x" else (bars.size, bars.at)
     roles = np.array(bars.roles or [bars.role] * len(bars.at))
     shown = np.isfinite(bars.size) & (bars.size > 0)
@@ -133,6 +133,8 @@ def _dots(view: View, bars: Bars) -> None:
         places = view.places(pair[0][chosen], pair[1][chosen])
         signs = Markers(places, "o", DOT, look.ink, look.inside, 0.0, view.box)
         view.sheet.add(signs, look.order)
+        for x, y in places.tolist():
+            view.labels.reserve(x, y, DOT / 2)
 
 
 def _intervals(view: View, bars: Bars, low: Array, high: Array) -> None:

@@ -6,6 +6,7 @@ else; no number here is the place of a thing, only its distance from the next.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import floor, log10
@@ -587,7 +588,7 @@ def _above(cell: Cell, width: float) -> None:
     rows = rows_of([*cell.keys], width)
     cell.legend_in_title = len(rows) == 1 and sum(k.width + APART for k in cell.keys) + head < width
     cell.titles = tuple(lines_of(panel.title, width, NORMAL))
-    cell.remarks = tuple(lines_of(panel.remark, width, SMALL))
+    cell.remarks = _tied_lines(panel.remark, panel.y.unit_name, width, SMALL)
     last = width_of(cell.titles[-1], NORMAL) + 8 if cell.titles else 0.0
     cell.apart = bool(last) and last + width_of(panel.remark, SMALL) > width
     lines = len(cell.titles) + len(cell.remarks)
@@ -640,9 +641,16 @@ def _titles(sheet: Canvas, cell: Cell, start: float, end: float, foot: float) ->
 
 def _name_of(axis: Axis, room: float) -> tuple[str, ...]:
     """Lines of the name of an axis, whose unit stays whole."""
-    unit = axis.unit_name
-    whole = axis.text.replace(unit, unit.replace(" ", TIED)) if " " in unit else axis.text
-    return tuple(line.replace(TIED, " ") for line in lines_of(whole, room, NORMAL))
+    return _tied_lines(axis.text, axis.unit_name, room, NORMAL)
+
+
+def _tied_lines(text: str, unit: str, room: float, size: float) -> tuple[str, ...]:
+    """Lines of a text, with its numbers and their unit on one."""
+    tied = unit.replace(" ", TIED)
+    whole = (
+        re.sub(rf"(?<=\d) (?={re.escape(tied)})", TIED, text.replace(unit, tied)) if unit else text
+    )
+    return tuple(line.replace(TIED, " ") for line in lines_of(whole, room, size))
 
 
 def _name_axes(sheet: Canvas, cell: Cell, view: View, left: float) -> None:

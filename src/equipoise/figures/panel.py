@@ -34,7 +34,7 @@ from equipoise.figures.style import (
     look_of,
     mixed,
 )
-from equipoise.figures.view import View, corners_of
+from equipoise.figures.view import View, aside, corners_of
 from equipoise.i18n import decimals
 from equipoise.results.charts import Bars, Mark, Outline, Panel, Surface
 
@@ -282,11 +282,11 @@ def frame(view: View, numbers: bool) -> None:
     panel = view.panel
     view.sheet.add(CanvasStroke((corners_of(view.box),), LINES, 0.7, closed=True), 5.0)
     lines = []
-    for place, text in view.ticks[0]:
+    for (place, text), off in zip(view.ticks[0], aside(view.x, view.ticks[0]), strict=True):
         x = float(view.x.of(place))
         lines.append(np.array([(x, bottom), (x, bottom + 3)]))
         if numbers:
-            view.write(x, bottom + 9, text, "middle")
+            view.write(x - off, bottom + 9, text, "middle")
     for place, text in view.ticks[1]:
         y = float(view.y.of(place))
         lines.append(np.array([(left - 3, y), (left, y)]))
@@ -403,7 +403,7 @@ def _bar_numbers(view: View) -> None:
     if most > MOST_DECIMALS:
         return
     least = min(most, max(1, most - 1))
-    tops = [top for bars in matching_bars for top in _tops(view, bars)]
+    spans = [span for bars in matching_bars for span in _spans(view, bars)]
     for fewer in range(most, least - 1, -1):
         texts = [
             (
@@ -415,31 +415,40 @@ def _bar_numbers(view: View) -> None:
             for size, at, color in numbers
             if round(size, fewer)
         ]
-        clear = _clear(_off_bars(texts, tops))
+        clear = _clear(_off_bars(texts, spans, (view.x.start, view.x.end)))
         if len(clear) == len(texts):
             break
     for text, x, y, color in clear:
         view.write(x, y, text, "middle", color=color)
 
 
-def _tops(view: View, bars: Bars) -> Iterator[tuple[float, float, float]]:
-    """Left, right and top of each bar that goes up, on the sheet."""
+Span = tuple[float, float, float, float]
+"""Of a bar on the sheet: left, right, top and foot."""
+
+
+def _spans(view: View, bars: Bars) -> Iterator[Span]:
+    """Where each bar is, of those that go down none of it."""
     half = np.broadcast_to(np.asarray(bars.width, float) / 2, bars.at.shape)
     ends = (view.x.at(bars.at - half), view.x.at(bars.at + half), view.y.at(bars.size))
+    foot = float(view.y.at(0.0))
     for left, right, top in zip(*ends, strict=True):
-        yield float(left), float(right), float(top)
+        yield float(left), float(right), float(top), foot
 
 
-def _off_bars(texts: list[Number], tops: list[tuple[float, float, float]]) -> list[Number]:
-    """Numbers that are moved to the side off higher bars beside their own; those without room for
-    that are left out.
+def _off_bars(texts: list[Number], spans: list[Span], ends: tuple[float, float]) -> list[Number]:
+    """Numbers that are moved to the side off higher bars beside their own, and into the axes; those
+    without room for that are left out.
+
+    ends : of the axes, points.
     """
     moved = []
     for text, x, y, color in texts:
         half = width_of(text, SMALL) / 2 + 1
-        higher = [(left, right) for left, right, top in tops if top < y - OVER / 2]
-        start = max((right for _, right in higher if right <= x), default=-np.inf)
-        end = min((left for left, _ in higher if left >= x), default=np.inf)
+        higher = [
+            (left, right) for left, right, top, foot in spans if top < y - OVER / 2 < foot - OVER
+        ]
+        start = max((right for _, right in higher if right <= x), default=ends[0])
+        end = min((left for left, _ in higher if left >= x), default=ends[1])
         if end - start >= 2 * half:
             moved.append((text, min(max(x, start + half), end - half), y, color))
     return moved

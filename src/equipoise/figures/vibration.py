@@ -50,6 +50,8 @@ QUANTITIES = {
 }
 SAMPLES, LEAST_ORDER, MOST_BARS = 720, 10, 60
 """In a turn; orders that are drawn at least, and bars at most."""
+BELOW = 0.4
+"""Of the least amplitude that matters: where its axis begins, so that its dot is whole."""
 MATTERS, TOUCHES = 1e-4, 1e-3
 """Shares: of the largest amplitude at which the log axis ends, and above which orders are drawn; of
 the largest force below which a one-sided mount counts as off its ground."""
@@ -187,14 +189,14 @@ def _bars(signals: GaugeSignals, name: str, last: float) -> Panel:
     largest = float(np.max(sizes, initial=0.0))
     ends: dict[str, Any] = {}
     if largest:
-        ends = {"low": largest * MATTERS, "high": largest * 6, "scale": "log"}
+        ends = {"low": largest * MATTERS * BELOW, "high": largest * 6, "scale": "log"}
     x = Axis(say("order: events in one turn of the crank"), low=0.0, high=last + 1)
     y = read_axis(say("amplitude"), "displacement", signals.rotation, sizes, **ends)
     title = short(name, 44)
     if not largest:
         return Panel(x, y, title=title, message=say("does not move"), height=SMALL)
     significant, loudest = sizes > largest * MATTERS, int(np.argmax(sizes))
-    mark = Mark(float(orders[loudest]), largest, y.format_value(largest), sign=False, distance=3.0)
+    mark = Mark(float(orders[loudest]), largest, y.format_value(largest), sign=False, distance=5.0)
     bars = Bars(orders[significant], sizes[significant], 0.62 / signal.turns)
     return Panel(x, y, marks=(mark,), bars=(bars,), title=title, height=SMALL)
 

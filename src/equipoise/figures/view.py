@@ -117,17 +117,34 @@ def ticks_of(scale: AxisScale, upright: bool = False) -> Ticks:
     return (_log_ticks if axis.scale == "log" else _round_ticks)(scale, upright)
 
 
+TOUCHING, ASIDE = 3.0, 6.0
+"""Points between words below an axis at least; by how many the first may be moved aside for that,
+as the mean before many orders."""
+
+
 def _apart(scale: AxisScale, ticks: Ticks) -> Ticks:
-    """Those of words side by side that do not touch."""
+    """Those of words side by side that do not touch, where the first may be moved aside."""
     clear: Ticks = []
     end = -np.inf
     for place, text in ticks:
         half = width_of(text, SMALL) / 2
         x = float(scale.of(place))
-        if x - half > end + 3:
+        if x - half > end + TOUCHING:
+            end = x + half - (0.0 if clear else ASIDE)
             clear.append((place, text))
-            end = x + half
     return clear
+
+
+def aside(scale: AxisScale, ticks: Ticks) -> Iterator[float]:
+    """By how many points each text below an axis is moved to its beginning: the first off the next,
+    which is a shorter one.
+    """
+    if len(ticks) > 1:
+        (first, text), (second, following) = ticks[:2]
+        half = (width_of(text, SMALL) + width_of(following, SMALL)) / 2
+        gap = float(scale.of(second) - scale.of(first)) - half
+        yield min(max(TOUCHING - gap, 0.0), ASIDE)
+    yield from (0.0 for _ in ticks[len(ticks) > 1 :])
 
 
 def steps_of(scale: AxisScale, digits: tuple[float, ...]) -> Iterator[float]:

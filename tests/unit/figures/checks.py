@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 from equipoise.figures import is_wide, layout
+from equipoise.figures.curves import DOT
 from equipoise.figures.layout import lay_out
 from equipoise.figures.panel import dot_of
-from equipoise.figures.sheet import Canvas, CanvasStroke, Item, Words, box_of
+from equipoise.figures.sheet import Canvas, CanvasStroke, Item, Markers, Words, box_of
 from equipoise.figures.style import PAPER, DrawingStyle, look_of
 from equipoise.figures.vector import svg_of
 from equipoise.figures.view import View
@@ -83,6 +84,8 @@ class Laid:
             runs_back,
             bars_afloat,
             numbers_on_bars,
+            dots_whole,
+            first_orders,
             extremes_without_room,
             signs_without_names,
             panels_left,
@@ -198,21 +201,27 @@ def bars_afloat(laid: Laid) -> Iterator[Fault]:
 
 
 def numbers_on_bars(laid: Laid) -> Iterator[Fault]:
-    """Sizes that stand at bars lie on no higher bar beside their own."""
+    """Sizes that stand at bars lie on no higher bar beside their own, nor on the axes."""
     for view, items in laid.panels:
         numbers = [one for one in items if isinstance(one, Words) and _is_number(one.text)]
         for bars in view.panel.bars:
             if bars.across != "x" or view.y.axis.scale == "log":
                 continue
+            for one in numbers if bars.labelled else ():
+                start, _, end, _ = box_of(one)
+                if view.box[1] < one.y and not view.box[0] <= start < end <= view.box[2]:
+                    yield "number on an axis", f"{one.text} in {_told(view)}"
+            foot = float(view.y.at(0.0))
             ends = (view.x.at(bars.at + side * np.asarray(bars.width) / 2) for side in (-1, 1))
             tops = np.where(
                 bars.size > 0, view.y.at(bars.size), np.inf
             )  # not of those that go down
             for left, right, top in zip(*ends, tops, strict=True):
                 for one in numbers:
-                    start, _, end, bottom = box_of(one)
+                    start, up, end, bottom = box_of(one)
                     beside = min(right, end) - max(left, start) > 1
-                    if beside and view.box[1] < one.y and bottom - top > 2 * SLACK:
+                    reached = bottom - top > 2 * SLACK and foot > up
+                    if beside and view.box[1] < one.y and reached:
                         yield "number on a bar", f"{one.text} in {_told(view)}"
 
 
@@ -240,6 +249,31 @@ def signs_without_names(laid: Laid) -> Iterator[Fault]:
             shape.role == "tray" for shape in view.panel.signs
         ):
             yield "sign without a name", "tray"
+
+
+def dots_whole(laid: Laid) -> Iterator[Fault]:
+    """Dots that stand for bars are cut by no axis and covered by no text."""
+    for view, items in laid.panels if any(v.panel.bars for v, _ in laid.panels) else ():
+        left, top, right, bottom = view.box
+        for dots in (one for one in items if isinstance(one, Markers) and one.size == DOT):
+            half = DOT / 2 - SLACK / 2
+            for x, y in dots.places.tolist():
+                if not (left + half < x < right - half and top + half < y < bottom - half):
+                    yield "dot cut", _told(view)
+                for words in (one for one in items if isinstance(one, Words)):
+                    start, up, end, down = box_of(words)
+                    if start < x + half and end > x - half and up < y + half and down > y - half:
+                        yield "text on a dot", f"{words.text} in {_told(view)}"
+
+
+def first_orders(laid: Laid) -> Iterator[Fault]:
+    """The first places of an axis with words have theirs: the mean, and the order of the crank."""
+    for view, _ in laid.panels:
+        every = view.panel.x.ticks or ()
+        if view.panel.bars and view.panel.bars[0].across == "x" and len(every) > 1:
+            written = [text for _, text in view.ticks[0]]
+            if [text for _, text in every[:2]] != written[:2]:
+                yield "place without its word", every[1][1]
 
 
 def _is_number(text: str) -> bool:
@@ -354,7 +388,7 @@ def alike_in_grey(laid: Laid) -> Iterator[Fault]:
             if (a.dashes, a.sign) != (b.dashes, b.sign):
                 continue
             thin, wide = sorted((a, b), key=lambda look: look.width)
-            if wide.width - thin.width >= WIDER and wide.order > thin.order:
+            if wide.width - thin.width >= WIDER and wide.order >= thin.order:
                 continue
             dots = [(dot.sign, lightness(dot.inside)) for dot in map(dot_of, (a, b))]
             alike = dots[0][0] == dots[1][0] and abs(dots[0][1] - dots[1][1]) < LIGHTER

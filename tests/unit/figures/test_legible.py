@@ -135,6 +135,15 @@ def test_units_of_names_that_wrap_stay_whole() -> None:
     assert any(text.endswith("N m") for text in words)
 
 
+def test_numbers_of_remarks_that_wrap_keep_their_units() -> None:
+    x = np.linspace(0.0, 1.0, 5)
+    y = Axis.of("drive torque", "torque", x)
+    panel = Panel(Axis("x"), y, (Curve(x, x),), remark="mean 1.234 N m; RMS 5.678 N m " * 4)
+    written = [text.text for text in lay_out(Chart("a", "M", "what", (panel,)), HALF).words]
+    lines = [text for text in written if "RMS" in text or "mean" in text]
+    assert len(lines) > 1 and sum(text.count(" N m") for text in lines) == 8
+
+
 def test_sizes_on_a_logarithmic_axis_are_dots_and_no_bars() -> None:
     """A bar shows its size from 0, which such an axis does not have."""
     (chart, *_) = spectra(eq.respond(eq.load("yamashita-rig")))
