@@ -36,6 +36,8 @@ from equipoise.studies.tolerances import machines_of, tolerance
 SECONDS = float(os.environ.get("SECONDS_ALONE", "25"))
 """Of one processor that each task takes; a search may end earlier, where it stands still."""
 ROUNDS = int(os.environ.get("ROUNDS", "2"))
+LEAST_DESIGNS = 160
+"""Of a tolerance, below which nothing can be said of its causes."""
 ASKED = Limit(1.7, at_most=False)
 STUDIES = {
     "respond": ("yamashita-rig", "links.crank.mass", "gauges.gauge.rms"),
@@ -72,7 +74,7 @@ def searched(command: str) -> Task:
 def tolerated(command: str) -> Task:
     count = count_of(command, "tolerance")
     share = machines_of(study(command, "tolerance", count)) / count
-    some = study(command, "tolerance", round(count / share))
+    some = study(command, "tolerance", max(LEAST_DESIGNS, round(count / share)))
     return lambda workers: tolerance(some, workers=workers).to_dict()
 
 

@@ -412,7 +412,7 @@ class PooledEvaluator(Generic[Figures]):
         self.shared = elsewhere is not None or (self.runner.workers > 1 and shared)
         self.patience = PATIENCE if elsewhere is None else QUICK
         self.spent, self.count, self.step, self.begun = 0.0, 0, 1, False
-        self.each = 0.0
+        self.later = 0.0, 0  # time and designs after the first part
         if self.shared and expected >= EARLY * batch_size:
             self.runner.begin()
 
@@ -442,7 +442,7 @@ class PooledEvaluator(Generic[Figures]):
             return self.alone(values)
         report = progress or (lambda _: None)
         if self.is_shared_out and self.each * len(values) < HANDY:
-            return self.alone(values)
+            return self._computed_alone(values, len(values))
         outcomes, begin = [], 0
         while begin < len(values) and not self.is_shared_out:
             part = values[begin : begin + self.step]
@@ -453,16 +453,23 @@ class PooledEvaluator(Generic[Figures]):
             outcomes += self._shared_out(values[begin:], lambda k: report(begin + k))
         return self.join(outcomes)
 
+    @property
+    def each(self) -> float:
+        """Time that a design takes in the mean, s."""
+        seconds, count = self.later if self.later[1] else (self.spent, self.count)
+        return seconds / count
+
     def _computed_alone(self, part: Array, left: int) -> Figures:
         """Compute a part of the designs that are left of a call, and see whether others are to."""
         start = monotonic()
         outcome = self.alone(part)
         took = monotonic() - start
-        self.each = took / len(part)
-        self.spent, self.count = self.spent + took, self.count + len(part)
-        if took < QUICK:
+        if took < QUICK and not self.is_shared_out:
             self.step *= 2
-        if self.count > len(part):  # the first part took as long as all that is imported for it
+        is_first, self.count = not self.count, self.count + len(part)
+        self.spent += took
+        if not is_first:  # that part took as long as all that is imported for it
+            self.later = self.later[0] + took, self.later[1] + len(part)
             to_come = max(left - len(part), self.expected - self.count)
             is_long = self.spent > QUICK and self.each * to_come > PATIENCE
             self.begun = self.begun or is_long or self.runner.pool is not None

@@ -108,6 +108,22 @@ def test_processes_are_for_all_designs_to_come(monkeypatch: pytest.MonkeyPatch) 
     assert (few.is_shared_out, many.is_shared_out) == (False, True)
 
 
+def test_a_few_quick_designs_do_not_keep_the_others_from_processes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Such as those that are no machine, as the first may happen to be."""
+    durations = iter([0.1, 0.0, 1.0])
+    moments = (moment for took in durations for moment in (0.0, took))
+    monkeypatch.setattr(pooling, "monotonic", lambda: next(moments))
+    evaluate = PooledEvaluator(np.square, lambda: np.square, np.concatenate, 2)
+    for _ in range(2):
+        evaluate(np.arange(1.0))
+    evaluate.begun = True
+    assert evaluate.each < pooling.HANDY
+    evaluate(np.arange(1.0))
+    assert evaluate.each > pooling.HANDY
+
+
 def test_loops_share_out_nothing(at_once: list[Any]) -> None:
     some = load_study("study-of-balance")
     with pooled(some, 2) as evaluate:
