@@ -24,7 +24,7 @@ from typing import Any, ClassVar, Self
 from unicodedata import normalize
 
 from equipoise.dataclass import dataclass
-from equipoise.i18n import Note, in_english, said, say, speaking, spoken
+from equipoise.i18n import Note, in_english, localized, say, speaking, spoken
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class EquipoiseError(Exception):
         lines : whether `lines` stand below it.
         """
         with speaking(language or spoken()):
-            return said(in_english(self.sentence if lines else self.note))
+            return localized(in_english(self.sentence if lines else self.note))
 
     @property
     def explained_by(self) -> str:
@@ -112,10 +112,10 @@ class EquipoiseError(Exception):
     def _render_traceback_(self) -> list[str]:
         """What IPython and notebooks show: its traceback, and below it where there is more."""
         shell = import_module("IPython").get_ipython()
-        shown = shell.InteractiveTB.structured_traceback(type(self), self, self.__traceback__)
+        traceback = shell.InteractiveTB.structured_traceback(type(self), self, self.__traceback__)
         explained_by = self.explained_by
-        more = say("more: {command}", command=explained_by)
-        return [*shown, *([more] if explained_by else [])]
+        line = say("more: {command}", command=explained_by)
+        return [*traceback, *([line] if explained_by else [])]
 
     def with_paste(self, paste: Paste | None) -> Self:
         """Attach lines that can be pasted into the file; returns the error itself."""
@@ -328,14 +328,10 @@ def meant(given: str, names: Sequence[str]) -> Note | None:
 
     by_form = {form_of(name): name for name in reversed(names)}
     form = form_of(given)
-    matching_get_close_matches = [
+    matches = [
         name for name in get_close_matches(form, by_form, 5, 0.5) if _is_misspelt(form, name)
     ]
-    return (
-        Note("did you mean {name!r}?", name=by_form[matching_get_close_matches[0]])
-        if matching_get_close_matches
-        else None
-    )
+    return Note("did you mean {name!r}?", name=by_form[matches[0]]) if matches else None
 
 
 SHORTEST = 2
@@ -378,9 +374,13 @@ def form_of(name: str) -> str:
 
 
 def _listed(names: list[str]) -> str:
-    shown = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or Note("none")
+    first_names = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or Note("none")
     omitted = len(names) - MOST_SHOWN
-    return Note("{names} and {more} more", names=shown, more=omitted) if omitted > 0 else shown
+    return (
+        Note("{names} and {more} more", names=first_names, more=omitted)
+        if omitted > 0
+        else first_names
+    )
 
 
 EXTRAS = {

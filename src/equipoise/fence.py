@@ -44,21 +44,21 @@ class Fence:
         ------
         UsageError : it is absolute, goes up, or goes out by a symbolic link.
         """
-        shown = f"{what}: got {name[:200]!r}"
+        given = f"{what}: got {name[:200]!r}"
         absolute = name.startswith(("/", "\\", "~")) or ntpath.isabs(name)
         if absolute or ".." in re.split(r"[\\/]", name):
             raise UsageError(
                 Note(
-                    "{shown}; name files from the folder that is served, without .. and not "
+                    "{given}; name files from the folder that is served, without .. and not "
                     "from the root",
-                    shown=shown,
+                    given=given,
                 )
             )
         if _real(self.folder / name, (self.folder,)) is None:
             raise UsageError(
                 Note(
-                    "{shown}, which leads out of the folder that is served; name another",
-                    shown=shown,
+                    "{given}, which leads out of the folder that is served; name another",
+                    given=given,
                 )
             )
 

@@ -155,8 +155,8 @@ def _wrong(value: Any, parameter: Parameter, function: Callable[..., Any]) -> st
                 return ""  # which the function looks at itself
             words = f"{'an' if kind[0] in 'AEIOU' else 'a'} {kind}"
         wanted.append(words)
-    shown = repr(value) if isinstance(value, str | int | float | None) else None
-    got = shown[:60] if shown else f"one of the type {type(value).__name__}"
+    text = repr(value) if isinstance(value, str | int | float | None) else None
+    got = text[:60] if text else f"one of the type {type(value).__name__}"
     hint = ", which load reads from a file" if READ & {*kinds} and isinstance(value, str) else ""
     return f"got {got}; give {' or '.join(dict.fromkeys(filter(None, wanted)))}{hint}"
 

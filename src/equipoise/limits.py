@@ -147,12 +147,12 @@ def out_of_memory(error: MemoryError) -> UsageError:
     gc.collect()
     shape: Any = getattr(error, "shape", None)
     kind: Any = getattr(error, "dtype", None)
-    asked = 0 if shape is None or kind is None else prod(shape) * kind.itemsize
+    needed = 0 if shape is None or kind is None else prod(shape) * kind.itemsize
     size: Note = Note("more")
-    if asked > memory_limit():
-        size = Note("{size} in one piece", size=size_text(asked))
-    elif asked:
-        size = Note("{size} beside what it holds already", size=size_text(asked))
+    if needed > memory_limit():
+        size = Note("{size} in one piece", size=size_text(needed))
+    elif needed:
+        size = Note("{size} beside what it holds already", size=size_text(needed))
     return UsageError(
         Note(
             "not enough memory: needs {size}, and {limit} may be used; ask for fewer crank angles, "
@@ -160,7 +160,7 @@ def out_of_memory(error: MemoryError) -> UsageError:
             size=size,
             limit=size_text(memory_limit()),
             variable=VARIABLE,
-            enough=_enough(asked + memory_limit()),
+            enough=_enough(needed + memory_limit()),
         )
     )
 

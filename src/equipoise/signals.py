@@ -221,8 +221,8 @@ def smooth_tops(period: float, values: Array) -> Tops:
         slack = np.maximum(EQUAL * (high - low), rounding)
         row, k, rises = _local_tops(values, high - np.maximum(slack, LIFT * (high - low)), rounding)
         top, move = values[row, k], np.zeros(len(k))
-        near = values[row[rises, None], (k[rises, None] + STEPS) % count]
-        value, offset = _smoothest(_tops_of_stencils, near)
+        stencils = values[row[rises, None], (k[rises, None] + STEPS) % count]
+        value, offset = _smoothest(_tops_of_stencils, stencils)
         higher = value > top[rises] + rounding[row[rises]]
         rises[rises] = higher
         top[rises], move[rises] = value[higher], offset[higher]
@@ -251,8 +251,8 @@ def _local_tops(values: Array, enough: Array, rounding: Array) -> tuple[Array, A
     np.greater_equal(values[:, 0], values[:, -1], out=rises[:, 0])
     row, k = np.divmod(np.flatnonzero(falls & rises), count)
     value = values[row, k]
-    near = value >= enough[row]
-    row, k, value = row[near], k[near], value[near]
+    stencils = value >= enough[row]
+    row, k, value = row[stencils], k[stencils], value[stencils]
     drop = value - np.minimum(values[row, k - 1], values[row, (k + 1) % count])
     return row, k, drop > rounding[row]
 
@@ -299,11 +299,11 @@ def stencils_above(values: Array, least: float) -> tuple[Array, Array]:
     if len(values) < len(STEPS):
         k = k[values[k] > least]
         return k[:, None], np.ones((len(k), 1))
-    near = (k[:, None] + STEPS) % len(values)
+    stencils = (k[:, None] + STEPS) % len(values)
     with np.errstate(invalid="ignore", divide="ignore"):
-        top, move, _ = _tops_of_stencils(values[near])
+        top, move, _ = _tops_of_stencils(values[stencils])
     above = top > least
-    return near[above], np.vander(move[above], len(STEPS), increasing=True) @ TO_POWERS.T
+    return stencils[above], np.vander(move[above], len(STEPS), increasing=True) @ TO_POWERS.T
 
 
 def _times(rows: Array, matrix: Array) -> Array:
@@ -389,7 +389,7 @@ class JumpSampling:
         return cls(theta[order], whole[order], at[order], turns, orders, edges)
 
     @cached_property
-    def shown(self) -> Array:
+    def curve_places(self) -> Array:
         """Places (M,) of the grid and of both sides of jumps: what is drawn, and has extremes."""
         return np.flatnonzero(self.shares == 0.0)
 
@@ -416,7 +416,7 @@ class JumpSampling:
         between = legendre.legvander(x[some], GAUSS_POINTS - 1) @ to_series.T
         alone = np.zeros((len(values), GAUSS_POINTS))
         alone[:, 0] = 1.0
-        k = self.shown[values[self.shown] > least]
+        k = self.curve_places[values[self.curve_places] > least]
         places = np.vstack(
             [np.repeat(k[:, None], GAUSS_POINTS, 1), self.inside.reshape(-1, GAUSS_POINTS)[some]]
         )
@@ -428,7 +428,7 @@ class JumpSampling:
 
         Of equal tops the first counts.
         """
-        sampled, at = sampled_tops(self.at[self.shown], values[:, self.shown])
+        sampled, at = sampled_tops(self.at[self.curve_places], values[:, self.curve_places])
         panels = values[:, self.inside].reshape(len(values), -1, GAUSS_POINTS)
         with np.errstate(invalid="ignore"):
             highest = np.max(panels, axis=-1)

@@ -89,7 +89,7 @@ def known_of(design: Machine, angles: int, signals: Sequence[str]) -> Mapping[st
     """Signals of a machine at so many crank angles in a turn."""
     analysis = eq.analyze(design, angles)
     sizes, sampling = _sizes(design, analysis), analysis.resolved.motion.sampling
-    shown = slice(None) if sampling is None else sampling.shown
+    shown = slice(None) if sampling is None else sampling.curve_places
     at = (analysis.crank_angle if sampling is None else sampling.at)[shown]
     found = {}
     for name in signals:

@@ -33,7 +33,7 @@ from equipoise.balancing.sentences import (
     worst_deteriorations,
 )
 from equipoise.balancing.workshop import in_short, sentences
-from equipoise.i18n import said, say, to_say
+from equipoise.i18n import localized, say, to_say
 from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import Dimension, change, display, number, percent
 from equipoise.quantities.numbers import ROUNDING
@@ -264,7 +264,7 @@ def _prices(balanced: Balanced) -> Table:
         over = broken_if(price.used > price.at_most * (1 + OVER))
         used = replace(quantity(price.used, unit), emphasis=over)
         most = quantity(price.at_most, unit)
-        rows.append((named.get(name, said(name)), most, used, _saved(balanced, price, unit)))
+        rows.append((named.get(name, localized(name)), most, used, _saved(balanced, price, unit)))
     labels = ("", say("at most"), say("used"), say("more of it saves"))
     return Table(say("Limits"), tuple(map(Column, labels)), tuple(rows))
 

@@ -210,7 +210,7 @@ def reasons_to_leave(balanced: Balanced) -> Iterator[str]:
     elif largest is not None:
         yield say(
             "No counterweight that fits reduces what is large here: {figure}.",
-            figure=largest.label.said(),
+            figure=largest.label.localized(),
         )
 
 
@@ -255,7 +255,7 @@ def preloads(balanced: Balanced) -> Iterator[str]:
     if balanced.advice is not None:
         machine = balanced.machine if balanced.helps else balanced.original
         for note in preloads_to_hold(machine):
-            yield say("{sentence}.", sentence=capital(note.said()))
+            yield say("{sentence}.", sentence=capital(note.localized()))
 
 
 def steadying_sentence(balanced: Balanced) -> str:
@@ -369,14 +369,14 @@ def _against(new: FigureAssessment, was: FigureAssessment) -> FigureAssessment:
 def _valued(assessment: FigureAssessment) -> str:
     shown = display(assessment.dimension, [assessment.value], assessment.shown_unit)
     value = shown.with_unit(shown.text(assessment.value, digits=3))
-    return say("{what}: {value}", what=assessment.label.said(), value=value)
+    return say("{what}: {value}", what=assessment.label.localized(), value=value)
 
 
 def _from_to(was: FigureAssessment, new: FigureAssessment) -> str:
     shown = display(was.dimension, [was.value, new.value], was.shown_unit)
     return say(
         "{what}, from {before} to {after}",
-        what=was.label.said(),
+        what=was.label.localized(),
         before=shown.text(was.value, max(was.value, new.value), 3),
         after=shown.with_unit(shown.text(new.value, digits=3)),
     )
@@ -461,7 +461,9 @@ def _fall_of_figure(balanced: Balanced) -> str | None:
         gone = 1 - abs(new.value / was.value)
         if not is_worth(balanced.gain, share, gone):
             fallen = percent(max(gone, 0.0), 1)
-            return say("{figure}, falls by only {gain} %", figure=was.label.said(), gain=fallen)
+            return say(
+                "{figure}, falls by only {gain} %", figure=was.label.localized(), gain=fallen
+            )
     return None
 
 

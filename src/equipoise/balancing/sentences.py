@@ -10,7 +10,7 @@ from operator import eq
 from typing import TYPE_CHECKING
 
 from equipoise.balancing.objectives import unit_of
-from equipoise.i18n import said, say, spoken, to_say
+from equipoise.i18n import localized, say, spoken, to_say
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.balance import CUT, Balance, Objective, Weight, material_of
 from equipoise.quantities import PER_RPM, brief, format_quantity, percent
@@ -118,7 +118,7 @@ def proof_sentences(balanced: Balanced) -> Iterator[str]:
     yield say(
         "Proof, by {method}: with {freedom}, no choice makes {aims} smaller than here by more than "
         "{gap} of the value before{scope}.",
-        method=said(balanced.method),
+        method=localized(balanced.method),
         freedom=listed(free),
         aims=objectives_text(balanced),
         gap=gap_text(balanced.gap),
@@ -137,7 +137,7 @@ def gap_text(gap: float) -> str:
 def scope_of(balanced: Balanced) -> str:
     """Of what the proof holds, where that is not all that the plan allows."""
     limits = [say("within the limits")] if balanced.plan.limits else []
-    parts = say(" and ").join([*limits, *map(said, balanced.scope)])
+    parts = say(" and ").join([*limits, *map(localized, balanced.scope)])
     return f" {parts}" if parts else ""
 
 

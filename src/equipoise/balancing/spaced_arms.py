@@ -92,7 +92,7 @@ def centered_arms_for(
     values = [abs(item.value) for item in after if item.family == largest.family]
     if not values or (gain := 1 - values[0] / abs(largest.value)) < WORTH_NAMING:
         return None
-    label = largest.label.said()
+    label = largest.label.localized()
     links, pins, distance = tuple(arms), tuple(arms.values()), max(distances, default=0.0)
     before = abs(largest.value)
     moment = max(machine.links[name].mass * away  # type: ignore[operator]  # weighed by now

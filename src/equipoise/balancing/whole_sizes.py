@@ -20,7 +20,7 @@ from equipoise.balancing.problem import ADDED, Problem
 from equipoise.balancing.rounding import NEARLY
 from equipoise.balancing.weights import RADII
 from equipoise.balancing.workshop import Change, Piece
-from equipoise.i18n import Note, said, say
+from equipoise.i18n import Note, localized, say
 from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.parts.balance import Balance
 from equipoise.mechanism.parts.bodies import Body
@@ -147,7 +147,7 @@ def _exceeded(exact: Balanced, rounded: Balanced) -> str:
     for name, price in rounded.prices.items():
         most = max(price.at_most, exact.prices[name].used)
         if price.used > most + LIMIT_ROUNDING * abs(most):
-            return said(name)
+            return localized(name)
     return ""
 
 

@@ -204,8 +204,8 @@ def _refuse(error: Exception) -> int:
     hints = _hints(error) if isinstance(error, EquipoiseError) else ()
     if lines:  # which are pasted with all that stands below them
         hints = tuple(f"# {line}" for line in hints)
-    said = f"equipoise: {_one_line(sentence)}"
-    print(said, *map(_one_line, lines), *hints, sep="\n", file=sys.stderr)
+    message = f"equipoise: {_one_line(sentence)}"
+    print(message, *map(_one_line, lines), *hints, sep="\n", file=sys.stderr)
     return 2
 
 

@@ -26,7 +26,7 @@ from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import UsageError, at_place
-from equipoise.i18n import Note, said, say
+from equipoise.i18n import Note, localized, say
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -204,7 +204,7 @@ def conditions(machine: LinkageFile, /, *, speed: Speed = None) -> CommandResult
     able = feasibility(driven)
     return CommandResult(
         lambda: balancing.conditions_blocks(
-            *by_name.values(), verdict=[said(answer.reason) for answer in able.answers]
+            *by_name.values(), verdict=[localized(answer.reason) for answer in able.answers]
         ),
         lambda: {
             **{kind: item.to_dict() for kind, item in by_name.items()},

@@ -152,7 +152,7 @@ def _save(model: Any, out: str | None, number: int, of: Note) -> list[str]:
     if out is None:
         return []
     origin = Note("Design {number} of {of}.", number=number, of=of)
-    return write_model(model, out, Note(", design {number}", number=number), origin.said)
+    return write_model(model, out, Note(", design {number}", number=number), origin.localized)
 
 
 def _columns(

@@ -120,13 +120,13 @@ def tool(
     chosen = {"modes": modes, "respond": swept, "exposure": exposure or duration is not None}
     names = [name for name, is_chosen in chosen.items() if is_chosen]
     check_belonging("--modes", modes or not names, number=number)
-    asked = Asked(tool, number, respond, speeds, tuple(at or ()), duration)
+    answers = Asked(tool, number, respond, speeds, tuple(at or ()), duration)
     brief = not names
     names = names or default_answers(tool)
-    parts = [getattr(asked, name) for name in names]
+    parts = [getattr(answers, name) for name in names]
     return replace(
-        _result(tool, parts, lambda: asked.pictures(names), brief=brief),
-        columns=lambda: asked.respond.columns(),  # noqa: PLW0108 - which is computed for it
+        _result(tool, parts, lambda: answers.pictures(names), brief=brief),
+        columns=lambda: answers.respond.columns(),  # noqa: PLW0108 - which is computed for it
     )
 
 

@@ -451,5 +451,5 @@ def fit(
         CommandResult.of(fitted),
         columns=lambda: table(fitted.after),
         pictures=fitted.after.charts,
-        save=lambda: write_model(fitted.machine, new, Note(", fitted"), origin.said),
+        save=lambda: write_model(fitted.machine, new, Note(", fitted"), origin.localized),
     )

@@ -22,7 +22,7 @@ from equipoise.cli.options import (
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.fence import hold_place, may_be_replaced
-from equipoise.i18n import Note, in_each, said, say, to_say
+from equipoise.i18n import Note, in_each, localized, say, to_say
 
 if TYPE_CHECKING:
     import numpy as np
@@ -176,13 +176,13 @@ def wrote_pictures(number: int, folder: str) -> str:
 
 def boxes(signs: str, otherwise: str) -> list[str]:
     """Which signs no font of this computer has, if there are any, and what to do."""
-    shown = "".join(dict.fromkeys(signs))[:20]
+    letters = "".join(dict.fromkeys(signs))[:20]
     if not signs:
         return []
     missing = say(
         "note: no font has {signs}, so boxes are drawn; install one such as Noto Sans CJK, "
         "or {cure}",
-        signs=shown,
+        signs=letters,
         cure=otherwise,
     )
     return [missing]
@@ -221,7 +221,8 @@ def write_model(
     new_model: Any = replace(
         model,
         title=in_each(
-            model.title, lambda own_title: f"{own_title.removesuffix(said(title))}{said(title)}"
+            model.title,
+            lambda own_title: f"{own_title.removesuffix(localized(title))}{localized(title)}",
         ),
         description=in_each(model.description, described),
     )
@@ -281,12 +282,12 @@ def _check_place(option: str, path: str) -> None:
 
     if not path:
         raise UsageError(at_place(option, Note("got an empty name; give the name of a file")))
-    shown = f"{option}: {printable(path)}"
+    place = f"{option}: {printable(path)}"
     if os.path.isdir(path):
-        raise UsageError(Note("{shown} is a directory; give the name of a file", shown=shown))
+        raise UsageError(Note("{place} is a directory; give the name of a file", place=place))
     if not os.path.isdir(os.path.dirname(path) or "."):
         raise UsageError(
-            at_place(shown, Note("there is no such folder; make it, or choose another"))
+            at_place(place, Note("there is no such folder; make it, or choose another"))
         )
     with suppress(OSError):  # reported when the file is written
         hold_place(path)

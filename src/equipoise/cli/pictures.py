@@ -30,7 +30,7 @@ from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.cli.runner import CommandResult, command
 from equipoise.errors import ModelError, UsageError, at_place
-from equipoise.i18n import Note, said, say
+from equipoise.i18n import Note, localized, say
 from equipoise.mechanism.checks import unknown
 
 if TYPE_CHECKING:
@@ -107,9 +107,9 @@ def plot(
             write_all(folder, {name: render(picture.draw(), kind)})
             written.append(f"{os.path.join(folder, name)}  {picture.caption}")
     swings = getattr(result, "swings", None)
-    notes = [] if swings is None else [say("note: {note}", note=said(swings))]
+    notes = [] if swings is None else [say("note: {note}", note=localized(swings))]
     notes += [
-        say("{part}: left out, {why}", part=part, why=said(why))
+        say("{part}: left out, {why}", part=part, why=localized(why))
         for part, why in result.failed.items()
     ]
     return CommandResult(

@@ -305,14 +305,14 @@ def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
         )
     if head == "added_mass":
         return replace(plan, added_mass=quantity("--limit", tail, "mass"))
-    asked = read_objective("--limit", head)
+    objective = read_objective("--limit", head)
     with error_in_option("--limit"):
         share = parse_share(tail)
-        dimension = None if share is not None else quantity_of(asked, machine)
+        dimension = None if share is not None else quantity_of(objective, machine)
     if share is not None:
-        limit = Limit(asked, ratio=share)
+        limit = Limit(objective, ratio=share)
     elif dimension is not None:
-        limit = Limit(asked, at_most=quantity("--limit", tail, dimension))
+        limit = Limit(objective, at_most=quantity("--limit", tail, dimension))
     else:
         raise UsageError(
             at_place(
@@ -320,7 +320,7 @@ def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
                 Note(
                     "there is no unit for the area under {output}; give a share of the value "
                     'before, such as "80 %"',
-                    output=asked.output,
+                    output=objective.output,
                 ),
             )
         )

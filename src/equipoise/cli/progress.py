@@ -41,19 +41,19 @@ _shown_now: _Log | _Bar | None = None
 
 def last_line() -> float:
     """Moment of the last line on how far work is, s, or 0; of a bar now."""
-    shown = _shown_now
-    if shown is None:
+    running = _shown_now
+    if running is None:
         return 0.0
-    return monotonic() if isinstance(shown, _Bar) else shown.last
+    return monotonic() if isinstance(running, _Bar) else running.last
 
 
 def so_far() -> str:
     """How far work is, in words that may be empty; they stand for the next line of a log."""
-    shown = _shown_now
-    if not isinstance(shown, _Log) or shown.step is None:
+    running = _shown_now
+    if not isinstance(running, _Log) or running.step is None:
         return ""
-    shown.wait()
-    return shown.step().share
+    running.wait()
+    return running.step().share
 
 
 @dataclass(frozen=True)

@@ -126,7 +126,7 @@ def result_of(reply: ToolReply, folder: Path) -> CallToolResult:
     """A reply as the protocol wants it, with its pictures."""
     from mcp import types
 
-    from equipoise.cli.tools import shown, units_of
+    from equipoise.cli.tools import name_in_folder, units_of
 
     if reply.wrong:
         return types.CallToolResult(content=[types.TextContent(text=reply.text)], is_error=True)
@@ -136,7 +136,7 @@ def result_of(reply: ToolReply, folder: Path) -> CallToolResult:
         structured_content={
             "values": reply.values,
             "units": units_of(reply.values),
-            "files": [shown(path, folder) for path in written],
+            "files": [name_in_folder(path, folder) for path in written],
         },
     )
 

@@ -272,6 +272,6 @@ def _names(values: Any) -> Iterator[str]:
         yield from _names(item)
 
 
-def shown(path: Path, folder: Path) -> str:
+def name_in_folder(path: Path, folder: Path) -> str:
     """Name of a file in the folder."""
     return os.path.relpath(path, folder).replace(os.sep, "/")

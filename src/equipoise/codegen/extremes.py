@@ -104,7 +104,7 @@ class PanelTops:
     @property
     def order(self) -> Array:
         """Places (N,) in the sampling of values as they are kept."""
-        return np.concatenate([self.sampling.shown, self.sampling.inside])
+        return np.concatenate([self.sampling.curve_places, self.sampling.inside])
 
     def __call__(self, values: Array) -> Tops:
         ordered = np.empty_like(values)
@@ -119,7 +119,7 @@ class PanelTops:
 
     def arguments(self) -> tuple[Any, ...]:
         of = self.sampling
-        return of.at[of.shown], of.edges, 2 * pi * of.turns
+        return of.at[of.curve_places], of.edges, 2 * pi * of.turns
 
 
 def columns_of(gathered: Gathered) -> Array:
@@ -210,8 +210,8 @@ def tops_on_grid(
     work : (3, 9) to work with.
     """
     count = len(values)
-    near, squares, slopes = work[0], work[1], work[2]
-    best, found = high, 0
+    stencil, squares, slopes = work[0], work[1], work[2]
+    best, tops_filled = high, 0
     for k in range(count):
         value = sign * values[k]
         if value < limits[0]:
@@ -223,7 +223,7 @@ def tops_on_grid(
         drop = value - min(before, after)
         if value + drop < best - limits[2]:  # more than a curve that is smooth rises above it
             continue
-        tops[0, found], tops[1, found] = value, k
+        tops[0, tops_filled], tops[1, tops_filled] = value, k
         if drop > limits[1]:
             for j in range(WIDTH):
                 place = k + j - BESIDE_TOP
@@ -231,13 +231,13 @@ def tops_on_grid(
                     place += count
                 elif place >= count:
                     place -= count
-                near[j] = sign * values[place]
-            top, move = smoothest_top(near, squares, slopes)
+                stencil[j] = sign * values[place]
+            top, move = smoothest_top(stencil, squares, slopes)
             if top > value + limits[1]:
-                tops[0, found], tops[1, found] = top, k + move
+                tops[0, tops_filled], tops[1, tops_filled] = top, k + move
                 best = max(best, top)
-        found += 1
-    return best, found
+        tops_filled += 1
+    return best, tops_filled
 
 
 def grid_extremes(samples: Array, out: Array, columns: Array, period: float, first: float) -> None:
@@ -257,15 +257,15 @@ def grid_extremes(samples: Array, out: Array, columns: Array, period: float, fir
                 if value_column < 0:
                     continue
                 sign, high = (-1.0, -lowest) if side else (1.0, highest)
-                best, found, step = high, 0, 0.0
+                best, tops_filled, step = high, 0, 0.0
                 if span > rounding:
                     limits[0], limits[1], limits[2] = (
                         high - max(slack, LIFT * span),
                         rounding,
                         slack,
                     )
-                    best, found = tops_on_grid(samples[i, s], sign, high, limits, tops, work)
-                for k in range(found):
+                    best, tops_filled = tops_on_grid(samples[i, s], sign, high, limits, tops, work)
+                for k in range(tops_filled):
                     if tops[0, k] >= best - slack:
                         step = tops[1, k]
                         break
@@ -364,7 +364,7 @@ def tops_of_sampling(
     limits : highest sample; what is enough; by how much equal tops differ.
     highest : (2, P), the highest value of each panel, and the highest of the opposite ones.
     """
-    near, squares, best, found = work[3], work[4], limits[0], 0
+    stencil, squares, best, tops_filled = work[3], work[4], limits[0], 0
     for k in range(highest.shape[1]):
         high, low = highest[0, k], -highest[1, k]
         if sign < 0:
@@ -372,20 +372,20 @@ def tops_of_sampling(
         if high < limits[1] or 0 < high < best - limits[2] - LIFT * (high - low):
             continue
         for j in range(GAUSS_POINTS):
-            near[j] = sign * values[GAUSS_POINTS * k + j]
+            stencil[j] = sign * values[GAUSS_POINTS * k + j]
         if high <= 0:
-            top, x, rough = top_of_panel(near, -np.inf, work, dense)
+            top, x, rough = top_of_panel(stencil, -np.inf, work, dense)
             for j in range(GAUSS_POINTS):
-                squares[j] = -near[j] * near[j]
+                squares[j] = -stencil[j] * stencil[j]
             squared, other, roughness = top_of_panel(squares, -np.inf, work, dense)
             if roughness < 1 and not roughness >= rough:
                 top, x = -np.sqrt(max(-squared, 0.0)), other
         else:
-            top, x, _ = top_of_panel(near, best - limits[2], work, dense)
+            top, x, _ = top_of_panel(stencil, best - limits[2], work, dense)
         best = max(best, top)
-        tops[0, found], tops[1, found], tops[2, found] = top, x, k
-        found += 1
-    return best, found
+        tops[0, tops_filled], tops[1, tops_filled], tops[2, tops_filled] = top, x, k
+        tops_filled += 1
+    return best, tops_filled
 
 
 def range_of(values: Array) -> tuple[float, float]:
@@ -436,13 +436,15 @@ def panel_extremes(
                 sign, high, low = (-1.0, -least, -most) if side else (1.0, most, least)
                 slack = max(EQUAL * span, ROUNDING * abs(high))
                 limits[0], limits[1], limits[2] = high, high - LIFT * span, slack
-                best, found = tops_of_sampling(inside, sign, limits, highest, tops, work, dense)
+                best, tops_filled = tops_of_sampling(
+                    inside, sign, limits, highest, tops, work, dense
+                )
                 out[i, value_column] = sign * best
                 if place_column >= 0:
                     place, slack = np.inf, max(EQUAL * span, ROUNDING * abs(best))
                     if high >= best - slack:
                         place = at[place_of_sample(values, sign, high, low)]
-                    for k in range(found):
+                    for k in range(tops_filled):
                         if tops[0, k] >= best - slack:
                             begin, end = edges[int(tops[2, k])], edges[int(tops[2, k]) + 1]
                             angle = (begin + end) / 2 + (end - begin) / 2 * tops[1, k]

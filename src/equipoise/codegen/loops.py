@@ -201,7 +201,7 @@ class TracedGroup:
         _, start = self.known_pose()
         whole = minors.whole
         same = 2 * start * whole / (whole * whole + start * start)
-        names = " and ".join(self.group.shown)
+        names = " and ".join(self.group.visible_links)
         self.trace.running[f"{names} arrive"] = 1.0 - left * (1 / ARRIVED)
         self.trace.running[f"{names} stay"] = (
             same + LOWEST

@@ -57,9 +57,9 @@ class March:
 
     def way(self, theta: Array, step: float = STEPS[0]) -> tuple[Array, Array, dict[str, Array]]:
         """Crank angles (M,) on the way round, with their numbers and the rows of `MARCH`."""
-        asked = np.mod(theta - self.begin, self.period)
-        order = np.argsort(asked, kind="stable")
-        ways = np.concatenate([np.zeros(ARRIVALS), asked[order], [self.period]])
+        angles = np.mod(theta - self.begin, self.period)
+        order = np.argsort(angles, kind="stable")
+        ways = np.concatenate([np.zeros(ARRIVALS), angles[order], [self.period]])
         widths = np.diff(ways)
         counts = np.maximum(1, np.ceil(widths / step)).astype(int)
         ends = np.cumsum(counts)

@@ -53,10 +53,10 @@ def trace_prescribed(trace: Trace) -> None:
         trace.state[turn] = _vector(trace, motion, turn, 1.0)
         for name in rates:
             trace.state[name] = _number(trace, motion, name, "real", 1.0)
-    asked = {
+    inputs = {
         name for step in linkage.forces if isinstance(step, KernelCall) for name in step.inputs
     }
-    for name in sorted(asked & motion.probed.keys() - trace.state.keys()):
+    for name in sorted(inputs & motion.probed.keys() - trace.state.keys()):
         vector = np.iscomplexobj(motion.probed[name])
         trace.state[name] = (_vector(trace, motion, name, size) if vector
                              else _number(trace, motion, name, "real", 1.0))  # fmt: skip

@@ -228,9 +228,11 @@ def _straight(trace: Trace, link: str) -> Any:
 
 def _drives_on(machine: Machine) -> bool:
     """Whether the angle of a pinned follower is one that another coupling starts from."""
-    asked = {body for coupling in machine.couplings for body in (coupling.driver, coupling.carrier)}
+    carrying = {
+        body for coupling in machine.couplings for body in (coupling.driver, coupling.carrier)
+    }
     surfaces = (coupling for coupling in machine.couplings if coupling.contact == "surface")
-    return any(surface.driven in asked for surface in surfaces)
+    return any(surface.driven in carrying for surface in surfaces)
 
 
 def _counts(step: Step) -> bool:

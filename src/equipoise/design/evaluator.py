@@ -126,8 +126,8 @@ def computed(
     left, under_way = deque(chunks), dict[Future[Any], Chunk]()
     deaths, looked = 0, monotonic()
     while left or under_way:
-        kept = 0 if here is None else 1 if pool.is_ready else len(left)
-        while len(left) > kept and len(under_way) < pool.room:
+        most_waiting = 0 if here is None else 1 if pool.is_ready else len(left)
+        while len(left) > most_waiting and len(under_way) < pool.room:
             chunk = left.popleft()
             under_way[pool.submit(chunk)] = chunk
         if here is not None and left:
@@ -273,12 +273,14 @@ class Processes(Pool):
         self.watched, self.pipe_end = context.Pipe(duplex=False)
         self.executor = ProcessPoolExecutor(self.workers, context, _begin, (self.watched,))
         with _apart():  # all are started, each by one of these
-            self.made = [self.executor.submit(_make, self.task.study) for _ in range(self.workers)]
+            self.started = [
+                self.executor.submit(_make, self.task.study) for _ in range(self.workers)
+            ]
 
     @property
     def is_ready(self) -> bool:
         """Whether one of them has made what computes."""
-        return any(future.done() for future in self.made)
+        return any(future.done() for future in self.started)
 
     def submit(self, chunk: Any) -> Future[Any]:
         try:

@@ -179,18 +179,18 @@ def _with_room(
         return
     inner, outer, half = piece["inner_radius"], piece["outer_radius"], piece["angle"] / 2
     middle = round(degrees(piece["direction"]))
-    beside = radians(middle) - piece["direction"]
+    offset = radians(middle) - piece["direction"]
 
     def keeps_away(radius: float, aside: float) -> bool:
         """Whether a thread at a radius, degrees beside the middle, keeps away from all edges."""
-        to_end = min(max(half - abs(beside + radians(aside)), 0.0), pi / 2)
+        to_end = min(max(half - abs(offset + radians(aside)), 0.0), pi / 2)
         return inner + edge <= radius <= outer - edge and radius * sin(to_end) >= edge
 
     for group in _in_sector(piece, count):
         if all(keeps_away(*item) for item in group):
             polar = tuple((r, phase(rect(1, radians(middle + aside)))) for r, aside in group)
             places = tuple(center + rect(*item) for item in polar)
-            if all(abs(one - other) >= 2 * edge for one, other in pairwise(places)):
+            if all(abs(place - other) >= 2 * edge for place, other in pairwise(places)):
                 yield polar, places
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, said, say, to_say
+from equipoise.i18n import Note, localized, say, to_say
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.element_kinds import PartKind, named_function, part_kinds
@@ -249,9 +249,9 @@ class Job:
 
     def notes(self, of: Literal["file", "drawing"]) -> Iterator[str]:
         """Lines about what was written: what it leaves out, and how sizes were rounded."""
-        yield from (say(LEFT_OUT[of], part=said(part)) for part in self.left_out)
+        yield from (say(LEFT_OUT[of], part=localized(part)) for part in self.left_out)
         if self.sizes:
-            yield say("note: {note}", note=said(self.sizes))
+            yield say("note: {note}", note=localized(self.sizes))
 
     def writers(self, format: str) -> Iterator[Callable[..., None]]:
         """Functions that write parts of the machine into a format, one for each kind that has

@@ -134,34 +134,34 @@ class Part:
     @property
     def lines(self) -> tuple[str, ...]:
         """What a workshop has to know beside the drawing, a line each."""
-        said = [self.label]
+        lines = [self.label]
         if self.thickness is not None:
-            said.append(say("thickness {size} mm", size=in_mm(1e3 * self.thickness)))
+            lines.append(say("thickness {size} mm", size=in_mm(1e3 * self.thickness)))
         if self.density is not None:
-            said.append(say("material: {stuff}", stuff=stuff_named(self.density)))
+            lines.append(say("material: {stuff}", stuff=stuff_named(self.density)))
         if self.mass is not None:
-            said.append(say("mass {mass}", mass=workshop_mass(self.mass)))
-        said.extend(self._round_lines())
+            lines.append(say("mass {mass}", mass=workshop_mass(self.mass)))
+        lines.extend(self._round_lines())
         holes = [curve.text for edges in self.edges[1:] for curve in _curves(edges) if curve.whole]
         if holes:
-            said.append(say("holes: {list}", list=", ".join(dict.fromkeys(holes))))
+            lines.append(say("holes: {list}", list=", ".join(dict.fromkeys(holes))))
         if self.joints:
             places = ", ".join(
                 f"{name} ({coordinates([in_mm(1e3 * at.real), in_mm(1e3 * at.imag)])})"
                 for name, at in self.joints
             )
-            said.append(say("joints at {places} mm in the axes of the link", places=places))
+            lines.append(say("joints at {places} mm in the axes of the link", places=places))
         if self.threads is not None:
-            said.extend(self._thread_lines(self.threads))
+            lines.extend(self._thread_lines(self.threads))
         elif self.screwed:
-            said.append(
+            lines.append(
                 say(
                     "no screws fit in it and hold it: weld it on or make it in one piece with "
                     "{link}",
                     link=self.link,
                 )
             )
-        return tuple(said)
+        return tuple(lines)
 
     def _thread_lines(self, threads: ScrewThreads) -> Iterator[str]:
         """Which threads, where, and what screws without heads weigh beyond what was drilled out."""

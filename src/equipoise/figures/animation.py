@@ -27,7 +27,7 @@ from equipoise.figures.stage import (
     check_width,
     width_of,
 )
-from equipoise.i18n import Note, decimals, said, say
+from equipoise.i18n import Note, decimals, localized, say
 from equipoise.mechanism.parts.machine import unknown
 from equipoise.symbols.carrier import mount
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, in_turn, pixels
@@ -386,7 +386,7 @@ def _picture(
     text = f"""\
 <svg {place}xmlns="http://www.w3.org/2000/svg" class="linkage {mark}" role="img" \
 viewBox="0 0 {stage.width} {stage.height}" width="{stage.width}" height="{stage.height}">
-<title>{escape(said(title))}</title>
+<title>{escape(localized(title))}</title>
 <desc>{escape(" ".join(words))}</desc>
 <style>
 {style}
@@ -422,7 +422,7 @@ def _one_below_another(
     return f"""\
 <svg xmlns="http://www.w3.org/2000/svg" class="linkages" role="img" \
 viewBox="0 0 {width} {top}" width="{width}" height="{top}" style="max-width:100%;height:auto">
-<title>{escape(said(title))}</title>
+<title>{escape(localized(title))}</title>
 {inner}</svg>
 """
 

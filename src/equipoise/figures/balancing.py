@@ -44,7 +44,17 @@ from equipoise.mechanism.outputs.declared import Declared
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.objectives import output_of
 from equipoise.results.analysis import analyze
-from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Line, Mark, Panel, shown
+from equipoise.results.charts import (
+    Array,
+    Arrow,
+    Axis,
+    Chart,
+    Curve,
+    Line,
+    Mark,
+    Panel,
+    four_digits,
+)
 from equipoise.results.outputs import MEASURES, objective_named, shown_in
 from equipoise.signals import Periodic
 
@@ -262,8 +272,8 @@ def signals(balanced: Balanced) -> dict[str, Chart]:
         if len(balanced.original.rows) < 2
         else ()
     )
-    shown = SIGNALS | dict([PUSHED] if drive.pushes else [])
-    for name, (output, text, label) in shown.items():
+    signals = SIGNALS | dict([PUSHED] if drive.pushes else [])
+    for name, (output, text, label) in signals.items():
         kind = drive.effort_in if output == drive.effort else "torque"
         pair = pair_of(output, least_force if kind == "force" else least_moment)
         if changed(pair) and output not in aimed:
@@ -323,7 +333,9 @@ def _dial(hands: Mapping[str, Machine], machine: Machine, k: int) -> Panel:
     for role, hand in hands.items():
         phase = hand.rows[k].phase
         arrows.append(Arrow(0j, complex(np.exp(1j * phase)), role))
-        quantities.append(f"{say(WHEN[role])} {shown(round(float(np.degrees(phase)), 2) % 360)}°")
+        quantities.append(
+            f"{say(WHEN[role])} {four_digits(round(float(np.degrees(phase)), 2) % 360)}°"
+        )
     return Panel(
         Axis("\n".join(quantities), low=-1.1, high=1.1),
         Axis(low=-1.1, high=1.1),

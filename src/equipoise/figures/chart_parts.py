@@ -13,7 +13,17 @@ from equipoise.dataclass import dataclass
 from equipoise.figures.style import KINDS, short
 from equipoise.i18n import decimals, say
 from equipoise.quantities import Dimension
-from equipoise.results.charts import DEGREES, RPM, Array, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.results.charts import (
+    DEGREES,
+    RPM,
+    Array,
+    Axis,
+    Chart,
+    Curve,
+    Mark,
+    Panel,
+    four_digits,
+)
 from equipoise.signals import Figures
 
 Item = TypeVar("Item")
@@ -98,7 +108,7 @@ def closed(theta: Array, values: Array, period: float) -> tuple[Array, Array]:
 
 def speed_text(speed: float) -> str:
     """A crank speed, given in rad/s, as text in rpm and rad/s."""
-    values = {"rpm": shown(abs(speed) * RPM.factor), "rate": shown(abs(speed))}
+    values = {"rpm": four_digits(abs(speed) * RPM.factor), "rate": four_digits(abs(speed))}
     if speed < 0:
         return say("{rpm} rpm ({rate} rad/s, clockwise)", **values)
     return say("{rpm} rpm ({rate} rad/s)", **values)
@@ -181,8 +191,8 @@ def extremes(
         middle = float(np.mean([angle for angle, _ in places]))
         return (Mark(middle, float(values[0]), text, role, sign=False),)
     for angle, value in places if varies(values) else ():
-        shown = axis.format_value(value if abs(value) > least else 0.0)
-        text = say("{value} at {angle}", value=shown, angle=degrees_text(angle))
+        value_text = axis.format_value(value if abs(value) > least else 0.0)
+        text = say("{value} at {angle}", value=value_text, angle=degrees_text(angle))
         wish = 90.0 if value > float(np.mean(values)) else -90.0
         marks.append(Mark(angle, value, text, role, wish))
     return tuple(marks)

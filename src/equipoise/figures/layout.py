@@ -20,7 +20,7 @@ from equipoise.figures.panel import LEAD, draw, flag_height, frame
 from equipoise.figures.sheet import MIDDLE, Canvas, CanvasStroke, Words, lines_of, set_in, width_of
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL, look_of
 from equipoise.figures.view import DECADES, AxisScale, View, corners_of, ends_of, ticks_of
-from equipoise.i18n import said, say
+from equipoise.i18n import localized, say
 from equipoise.results.charts import Axis, Chart, Panel
 from equipoise.symbols.looks import LOOKS
 
@@ -390,7 +390,7 @@ def lay_out_rows(chart: Chart, wide: float) -> Iterator[Canvas]:
 
 
 def _sheet(chart: Chart, cells: list[Cell], wide: float, headed: bool) -> Canvas:
-    sheet = Canvas(wide, 0.0, said(chart.title))
+    sheet = Canvas(wide, 0.0, localized(chart.title))
     top = _heading(sheet, chart) if headed else TOP
     keys = [LegendKey(role, name, kind_of(role)) for role, name in chart.keys]
     keys += [key for panel in chart.panels for key in keys_of(panel, chart_level=True)]
@@ -409,7 +409,7 @@ def _sheet(chart: Chart, cells: list[Cell], wide: float, headed: bool) -> Canvas
 def _heading(sheet: Canvas, chart: Chart) -> float:
     """The machine, what is shown, and further words; where they end."""
     room, top = sheet.width - 2 * EDGE, 3.0
-    for line in lines_of(said(chart.title), room, LARGE, bold=True):
+    for line in lines_of(localized(chart.title), room, LARGE, bold=True):
         sheet.add(Words(EDGE, top + 14.0, line, LARGE, INK, bold=True), 7)
         top += LARGE + 4
     top += 2.5

@@ -28,8 +28,8 @@ from equipoise.results.charts import (
     Line,
     Mark,
     Panel,
+    four_digits,
     quantity,
-    shown,
 )
 
 if TYPE_CHECKING:
@@ -215,6 +215,6 @@ def _cycle_marks(place: FatiguePlace, section: LinkSection) -> Iterator[Mark]:
         for mean, size, effect in zip(cycles.means, cycles.ranges, effects, strict=True):
             text = ""
             if effect == worst and np.isfinite(worst):
-                text, worst = say("safety {value}", value=shown(limit / effect)), np.inf
+                text, worst = say("safety {value}", value=four_digits(limit / effect)), np.inf
             role = f"cycles {number % len(KINDS)}"
             yield Mark(float(mean), float(size) / 2, text, role, label=label)

@@ -17,7 +17,7 @@ from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import instant_center, pairs, pinned
-from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, four_digits
 from equipoise.symbols.looks import in_turn
 from equipoise.symbols.pieces import GROUND, pieces, placed
 from equipoise.symbols.scene import Scene, called, clear_angle
@@ -102,7 +102,7 @@ def _reversal_texts(scene: Scene) -> Iterator[str]:
 
 def crank_angle_text(angle: float) -> str:
     """A crank angle, given in rad, as text in degrees."""
-    return f"{shown(round(float(np.degrees(angle)), 2))}°"
+    return f"{four_digits(round(float(np.degrees(angle)), 2))}°"
 
 
 def pose_text(scene: Scene, k: int) -> str:
@@ -198,7 +198,7 @@ def joint_names(
 def _other_names(scene: Scene, k: int) -> Iterator[Mark]:
     """Names of links, of other rows, of gauges and, where there is room, of mounts."""
     yield from _link_names(scene, k)
-    for row in scene.rows.shown:
+    for row in scene.rows.visible:
         away = {name: abs(place[k] - scene.places[name][k]) for name, place in row.places.items()}
         at = complex(row.places[max(away, key=lambda name: away[name])][k])
         yield Mark.of(at, rows_named(row.numbers), "lines", 45.0, sign=False, distance=4.0)

@@ -16,7 +16,7 @@ from equipoise.figures.chart_parts import by_name, ends
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import decimals, say
 from equipoise.quantities import Display
-from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Line, Mark, Panel, shown
+from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Line, Mark, Panel, four_digits
 
 if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure
@@ -65,9 +65,9 @@ def spectrum(weighted: Weighted, title: str) -> Chart:
     low = max(DEEPEST * top, 0.5 * float(np.min(after[after > 0], initial=top)))
     curves = []
     if weighted.band_a_h is not None:
-        label = say("RMS, {value} m/s²", value=shown(_root(weighted.a_h)))
+        label = say("RMS, {value} m/s²", value=four_digits(_root(weighted.a_h)))
         curves.append(_stairs(before, low, "unweighted", label))
-    label = say("weighted, total value a_hv = {value} m/s²", value=shown(weighted.a_hv))
+    label = say("weighted, total value a_hv = {value} m/s²", value=four_digits(weighted.a_hv))
     curves.append(_stairs(after, low, "weighted", label))
     ticks = tuple(
         (float(10 ** (0.1 * round(10 * np.log10(item)))), decimals(f"{item:g}"))
@@ -126,7 +126,7 @@ def exposure(tools: Sequence[tuple[str, float]], day: Exposure | None) -> Chart:
     )
     title = say("Daily vibration exposure")
     if day is not None:
-        title = say("A(8) = {value} m/s²", value=shown(day.a8))
+        title = say("A(8) = {value} m/s²", value=four_digits(day.a8))
     what = say("Exposure A(8) against hours of work a day, Directive 2002/44/EC")
     return Chart("exposure", title, what, (panel,))
 
@@ -213,7 +213,7 @@ def swings(decay: Decay, title: str) -> Chart:
     x = Axis.of(say("height of a half-swing"), decay.kind, heights, low=0.0, high=most)
     y = replace(x, label=say("height of the next"))
     sign = "\N{MINUS SIGN}" if cut < 0 else "+"
-    line = {"slope": shown(slope), "sign": sign, "cut": x.quantity(abs(cut))}
+    line = {"slope": four_digits(slope), "sign": sign, "cut": x.quantity(abs(cut))}
     text, at = say("next = {slope} height {sign} {cut}", **line), 0.3 * most
     panel = Panel(
         x,

@@ -17,7 +17,7 @@ from equipoise.i18n import decimals, say, to_say
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import AXES, Gauge, Mount, unit_vector
 from equipoise.quantities import typeset
-from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, four_digits
 from equipoise.symbols import carrier, shapes
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape, hull
@@ -190,9 +190,9 @@ def described(mode: Mode) -> str:
     if mode.swings:
         damping = mode.damping_ratio if abs(mode.damping_ratio) > UNDAMPED else 0.0
         text = {"hertz": frequency / (2 * pi), "frequency": frequency, "damping": damping}
-        values = {name: shown(value) for name, value in text.items()}
+        values = {name: four_digits(value) for name, value in text.items()}
         return say("{hertz} Hz, {frequency} rad/s, damping ratio {damping}", **values)
-    time = shown(1 / abs(decay))
+    time = four_digits(1 / abs(decay))
     if decay > 0:
         return say("does not oscillate: overdamped, decays by a factor of e in {time} s", time=time)
     return say("does not oscillate: unstable, grows by a factor of e in {time} s", time=time)
@@ -262,7 +262,7 @@ def _downward(low: complex, high: complex) -> tuple[tuple[float, str], ...]:
     power = 10.0 ** np.floor(np.log10(exact))
     step = next(by * power for by in (1, 2, 5, 10) if by * power >= exact)
     counts = range(int(np.ceil(low.imag / step)), int(np.floor(high.imag / step)) + 1)
-    return tuple((count * step, shown(-1000 * count * step + 0.0)) for count in counts)
+    return tuple((count * step, four_digits(-1000 * count * step + 0.0)) for count in counts)
 
 
 def _curves(shape: ModeShape, view: View) -> Iterator[Curve]:

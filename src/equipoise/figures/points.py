@@ -22,7 +22,7 @@ from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.outputs.declared import guided, joint_named, pinned
 from equipoise.quantities import Dimension
-from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, four_digits
 
 if TYPE_CHECKING:
     from equipoise.mechanism.kinematics.motion import Motion, PointMotion
@@ -177,7 +177,7 @@ def _paths_title(motion: Motion) -> str:
     values = {"step": step, "speed": speed_text(motion.speed)}
     if not motion.speed:
         return say("Paths of points; dots every {step}° of the crank", **values)
-    values["time"] = shown(1000 * np.radians(step) / abs(motion.speed))
+    values["time"] = four_digits(1000 * np.radians(step) / abs(motion.speed))
     return say("Paths of points; dots every {step}° = {time} ms, at {speed}", **values)
 
 

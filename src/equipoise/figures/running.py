@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.figures.chart_parts import varies
 from equipoise.figures.vibration import support_charts
 from equipoise.i18n import say, to_say
-from equipoise.results.charts import Axis, Chart, Curve, Panel, shown
+from equipoise.results.charts import Axis, Chart, Curve, Panel, four_digits
 from equipoise.running.blocks import verdict
 from equipoise.running.drives_blocks import verdict as drives_verdict
 
@@ -62,7 +62,7 @@ def drives_charts(run: DrivesRun) -> dict[str, Chart]:
         charts["speed"] = Chart("speed", run.machine.title, drives_verdict(run), tuple(panels))
     if run.support is None:
         return charts
-    lasting = say("run of {time} s", time=shown(float(time[-1])))
+    lasting = say("run of {time} s", time=four_digits(float(time[-1])))
     return charts | support_charts(run.support, time, lasting)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.figures.chart_parts import by_name, continued, groups, speed_text
 from equipoise.figures.style import short
-from equipoise.i18n import Note, all_of, said, say
+from equipoise.i18n import Note, all_of, localized, say
 from equipoise.quantities import Dimension, Display, display, typeset
 from equipoise.results.charts import (
     Array,
@@ -23,7 +23,7 @@ from equipoise.results.charts import (
     Mark,
     Panel,
     Surface,
-    shown,
+    four_digits,
 )
 from equipoise.results.outputs import objective_named
 from equipoise.studies.blocks import named_together, unit_in
@@ -99,7 +99,7 @@ def _histogram(scatter: Scatter, unit: Unit, designs: int) -> Panel:
     bars = Bars((edges[:-1] + edges[1:]) / 2, shares, np.diff(edges), roles=roles)
     title = ""
     if scatter.within is not None:
-        title = say("{share} % within limits", share=shown(100 * scatter.within.value))
+        title = say("{share} % within limits", share=four_digits(100 * scatter.within.value))
     y = Axis(say("machines"), PERCENT, low=0.0)
     return Panel(x, y, lines=tuple(lines), bars=(bars,), title=title, height=98.0)
 
@@ -195,8 +195,8 @@ def optimum_text(landscape: Landscape) -> str:
     best = say(
         "least {aim}: {value}, at {places}",
         aim=objective_named(landscape.objective),
-        value=f"{shown(landscape.least)} {typeset(landscape.unit)}",
-        places=said(all_of(places)),
+        value=f"{four_digits(landscape.least)} {typeset(landscape.unit)}",
+        places=localized(all_of(places)),
     )
     edge = [
         say("{name} is at an end of its range", name=named(landscape, path))
@@ -213,7 +213,7 @@ def _in_units(landscape: Landscape, path: str, value: float) -> str:
 def named(landscape: Landscape, path: str) -> str:
     """One of the numbers in words."""
     words = landscape.words[path]
-    return words.said() if isinstance(words, Note) else words
+    return words.localized() if isinstance(words, Note) else words
 
 
 def landscape(result: Landscape) -> Chart:
@@ -230,14 +230,14 @@ def landscape(result: Landscape) -> Chart:
     )
     unit = typeset(result.unit)
     place = f"{x.quantity(result.best[0])}, {y.quantity(result.best[1])}"
-    places = {"least": (result.best, f"{shown(result.least)} {unit}\n{place}", say("least"))}
+    places = {"least": (result.best, f"{four_digits(result.least)} {unit}\n{place}", say("least"))}
     if result.start is not None and not np.isnan(result.before):
         inside = (
             values[0] <= coordinate <= values[-1]
             for values, coordinate in zip((result.x, result.y), result.start, strict=True)
         )
         if all(inside):
-            places["own"] = (result.start, f"{shown(result.before)} {unit}", say("as it is"))
+            places["own"] = (result.start, f"{four_digits(result.before)} {unit}", say("as it is"))
     marks = [
         Mark(*at, text, role, bold=True, label=name) for role, (at, text, name) in places.items()
     ]

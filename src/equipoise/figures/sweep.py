@@ -35,7 +35,7 @@ from equipoise.results.charts import (
     Mark,
     Panel,
     PlaceLabel,
-    shown,
+    four_digits,
 )
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ def peaks(axis: Axis, speed: Array, curves: Sequence[SpeedCurve]) -> tuple[Mark,
         if any(mark.x == at and abs(size - mark.y) < ALIKE * size for mark in marks):
             continue
         if 0 < k < len(speed) - 1:
-            statement = {"value": axis.format_value(size), "speed": shown(at * RPM.factor)}
+            statement = {"value": axis.format_value(size), "speed": four_digits(at * RPM.factor)}
             text = say("{value} at {speed} rpm", **statement)
         marks.append(Mark(at, size, text, role, 20.0, sign=False, optional=bool(marks)))
     return tuple(mark for mark in marks if mark.text)
@@ -132,7 +132,7 @@ def peaks(axis: Axis, speed: Array, curves: Sequence[SpeedCurve]) -> tuple[Mark,
 def own_speed(sweep: Sweep) -> tuple[Line, ...]:
     """A line at the speed of the machine, where that is in the range."""
     at, (low, high) = abs(sweep.machine.drive.speed), sorted(np.abs(sweep.speed[[0, -1]]))
-    text = say("work, {speed} rpm", speed=shown(at * RPM.factor))
+    text = say("work, {speed} rpm", speed=four_digits(at * RPM.factor))
     return (Line(at, "work", text),) if low <= at <= high else ()
 
 
@@ -254,7 +254,7 @@ def resonance_map(sweep: Sweep) -> Chart:
     for number, mode in enumerate(sweep.modes, 1):
         if mode.swings:
             at = 2 * pi * mode.cycles_per_second
-            statement = {"number": number, "frequency": shown(mode.cycles_per_second)}
+            statement = {"number": number, "frequency": four_digits(mode.cycles_per_second)}
             lines.append(Line(at, "mode", axis="y"))
             asides.append(Aside(at, say("mode {number}: {frequency} Hz", **statement), "mode"))
     for order in _orders(sweep):

@@ -15,7 +15,7 @@ from equipoise.figures.modes import described
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, PLANAR
-from equipoise.results.charts import quantity, shown
+from equipoise.results.charts import four_digits, quantity
 from equipoise.symbols.carrier import SupportSwing
 from equipoise.symbols.scene import DriveSign, Scene, clear_angle
 from equipoise.symbols.shapes import Array
@@ -86,7 +86,9 @@ def _enlarged(scene: Scene, reach: float, factor: float | None = None) -> tuple[
         factor = _round(LARGEST * _size(scene) / reach) if reach else 1.0
     if factor == 1:
         return factor, [say("movement of the support to scale")]
-    return factor, [say("movement of the support {factor} times as large", factor=shown(factor))]
+    return factor, [
+        say("movement of the support {factor} times as large", factor=four_digits(factor))
+    ]
 
 
 def moving(analysis: Analysis, factor: float | None = None) -> tuple[Scene, EquipoiseError | None]:

@@ -28,7 +28,7 @@ from equipoise.handheld.modes import number_of
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import decimals, say, to_say
 from equipoise.quantities import Dimension, Display, display
-from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Line, Mark, Panel, shown
+from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Line, Mark, Panel, four_digits
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign
@@ -236,7 +236,9 @@ def design(result: ToolDesign) -> Chart:
     curves = (*old, *curves_of(result.speed, after))
     panel = Panel(x, y, curves, marks, lines=work, height=209.0)
     figure = result.figures[MEASURES.index("rms" if plan is None else plan.measure)]
-    what = f"{figure_named(figure)}: {shown(figure.before)} → {shown(figure.after)} m/s²"
+    what = (
+        f"{figure_named(figure)}: {four_digits(figure.before)} → {four_digits(figure.after)} m/s²"
+    )
     keys = (("dashed ink", say("before")), ("ink", say("after")))
     return Chart("design", result.tool.title, what, (panel,), keys=keys)
 

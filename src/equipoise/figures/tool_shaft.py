@@ -26,7 +26,7 @@ from equipoise.figures.chart_parts import (
 from equipoise.figures.style import KINDS, short
 from equipoise.handheld.hand_exposure import grips
 from equipoise.handheld.response import respond_tool
-from equipoise.i18n import decimals, said, say, to_say
+from equipoise.i18n import decimals, localized, say, to_say
 from equipoise.quantities import Display
 from equipoise.results.charts import (
     DEGREES,
@@ -40,8 +40,8 @@ from equipoise.results.charts import (
     Mark,
     Panel,
     PlaceLabel,
+    four_digits,
     quantity,
-    shown,
 )
 from equipoise.signals import highest_at
 
@@ -164,12 +164,12 @@ def _shape(modes: ToolModes, result: PlaneModes, number: int) -> Panel:
     if hertz:
         minute = rpm_text(float(result.frequency[number]))
         lines = [
-            f"{shown(hertz)} Hz",
+            f"{four_digits(hertz)} Hz",
             f"{minute} 1/min",
             decimals(f"λ = {result.parameter[number]:.3f}"),
         ]
     else:
-        lines = [say("free:"), *wrap(said(result.rigid[number]), LETTERS)]
+        lines = [say("free:"), *wrap(localized(result.rigid[number]), LETTERS)]
     return Panel(
         shaft_axis(modes.tool),
         Axis(low=-REACH, high=REACH, ticks=()),
@@ -186,7 +186,7 @@ def _shape(modes: ToolModes, result: PlaneModes, number: int) -> Panel:
 def rpm_text(speed: float) -> str:
     """A speed or frequency, given in rad/s, as text in rpm: four digits, or all of the integer."""
     minute = speed * RPM.factor
-    return shown(minute) if minute < 1e4 else f"{minute:.0f}"
+    return four_digits(minute) if minute < 1e4 else f"{minute:.0f}"
 
 
 # -- bending moment --------------------------------------------------------------------------------
@@ -214,7 +214,7 @@ def moment(response: ToolResponse, speed: float | None) -> Chart:
     displaced = _displaced(line, loudest)
     keys = [("strong", say("all orders, root of squares"))]
     for role, k in zip(ORDER_ROLES, loudest, strict=False):
-        keys.append((role, say("order {order}", order=shown(float(tool_response.orders[k])))))
+        keys.append((role, say("order {order}", order=four_digits(float(tool_response.orders[k])))))
     if {plane for _, plane in displaced} == {0, 1}:
         keys.append(("other end", say("lateral plane")))
     what = say("RMS of the bending moment, and shape of each order when it is largest")
@@ -377,7 +377,7 @@ def transmission(transmissions: Transmissions, plane: int, modes: ToolModes | No
     keys = [("quiet speed", say("quiet speed, rpm"))]
     if flags:
         keys.append(("natural", say("natural frequency")))
-    ticks = tuple((float(np.radians(at)), shown(at)) for at in range(-180, 181, 90))
+    ticks = tuple((float(np.radians(at)), four_digits(at)) for at in range(-180, 181, 90))
     reach = 195 / DEGREES.factor
     phases = Panel(
         x,
@@ -456,7 +456,7 @@ def weighted(exposure: ToolExposure) -> Chart:
     chart = replace(chart, panels=(replace(panel, curves=(*panel.curves, *stretches)),))
     if exposure.worst is None or exposure.a8 is None:
         return chart
-    text = {"a8": shown(exposure.a8), "hand": short(exposure.worst)}
+    text = {"a8": four_digits(exposure.a8), "hand": short(exposure.worst)}
     return replace(chart, what=f"{chart.what}; " + say("A(8) = {a8} m/s² at {hand}", **text))
 
 
@@ -497,7 +497,7 @@ def _of_hands(
     marks = (*hand_peaks(tool, speed, curves, y), *work_mark(work, y, above=False))
     content = (*curves_of(speed, curves), *limits)
     panel = Panel(x, y, content, marks, lines=work, areas=(above,), height=245.0)
-    hours = say("{hours} h a day", hours=shown(duration_of(exposure) / 3600))
+    hours = say("{hours} h a day", hours=four_digits(duration_of(exposure) / 3600))
     return Chart(name, tool.title, f"{what}, {hours}", (panel,))
 
 

@@ -32,8 +32,8 @@ from equipoise.results.charts import (
     Mark,
     Panel,
     PlaceLabel,
+    four_digits,
     quantity,
-    shown,
 )
 from equipoise.signals import Array
 
@@ -99,7 +99,7 @@ def _modes_chart(modes: ToolModes, panels: Sequence[Panel]) -> Chart:
 def _swinging(modes: ToolModes, k: int, phases: Array) -> list[Panel]:
     """Mode k of the vertical plane; phases (N,) : shares of its largest displacement."""
     plane = modes.planes[0]
-    frequency = shown(float(plane.cycles_per_second[k]))
+    frequency = four_digits(float(plane.cycles_per_second[k]))
     title = say("mode {number}: {frequency} Hz", number=k + 1, frequency=frequency)
     swing = SWING * modes.tool.shaft.length * phases[:, None]
     tool_scene = side_of(modes.tool, modes.places, swing * plane.shapes[k])
@@ -153,7 +153,7 @@ def _at_work(tool: Tool) -> Iterator[Panel]:
     title = say("at work, {speed} rpm", speed=rpm_text(tool.operation.speed))
     remark = say(
         "order {order}, displacement drawn {factor} times as large",
-        order=shown(float(response.orders[order])),
+        order=four_digits(float(response.orders[order])),
         factor=f"{factor:g}",
     )
     yield _panel(side_of(tool, along, factor * shape[None]), (), title, remark=remark)

@@ -13,7 +13,7 @@ import numpy as np
 from equipoise.figures.layout import lay_out
 from equipoise.figures.sheet import Array, Box, Canvas, CanvasStroke, Markers, Words, box_of
 from equipoise.figures.style import PAPER
-from equipoise.i18n import said
+from equipoise.i18n import localized
 from equipoise.results.charts import Chart
 
 FONTS = "DejaVu Sans, Verdana, sans-serif"
@@ -166,7 +166,7 @@ def flipped(pictures: Sequence[Chart], seconds: float, width: int) -> str:
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" class="{mark}" role="img" width="{width}" '
         f'height="{height}" viewBox{head}',
-        f"<title>{escape(said(pictures[0].title))}</title>",
+        f"<title>{escape(localized(pictures[0].title))}</title>",
         "<style>",
         *_motions(mark, len(frames), seconds),
         "</style>",

@@ -31,7 +31,7 @@ from equipoise.results.charts import (
     Line,
     Mark,
     Panel,
-    shown,
+    four_digits,
 )
 from equipoise.vibration.response import members_of
 from equipoise.vibration.simplified import linear_of
@@ -133,7 +133,7 @@ def drive(response: Response) -> Chart:
     y = read_axis(say("drive torque"), "force", True, sampled(result.torque)[1], room=ROOM)
     panels = [_with_mean(response, result.torque, result.torque_figures, y)]
     if result.speed is not None:
-        title = say("varies by {share} % of its mean", share=shown(100 * result.fluctuation))
+        title = say("varies by {share} % of its mean", share=four_digits(100 * result.fluctuation))
         y = Axis.of(say("crank speed"), "angular speed", (), "rpm", room=ROOM)
         panels.append(_with_mean(response, result.speed, result.speed.figures, y, title=title))
     what = say("Drive of {link}", link=short(response.machine.drive.link))
@@ -344,4 +344,4 @@ def _time_panel(time: Array, y: Axis, values: Array, **rest: Any) -> Panel:
 
 def _from_rest(transient: Transient) -> str:
     turns = abs(float(transient.crank_angle[-1] - transient.crank_angle[0])) / (2 * pi)
-    return say("from rest, {turns} turns of the crank; exact model", turns=shown(turns))
+    return say("from rest, {turns} turns of the crank; exact model", turns=four_digits(turns))

@@ -20,7 +20,7 @@ from equipoise.exchange.parts import COUNTERWEIGHT, Part, along, in_mm, parts
 from equipoise.figures.paint import fonts_for, settings
 from equipoise.figures.sheet import lines_of
 from equipoise.figures.style import INK, MAIN
-from equipoise.i18n import LANGUAGES, Note, said, say, speaking, spoken
+from equipoise.i18n import LANGUAGES, Note, localized, say, speaking, spoken
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,7 +93,7 @@ def _texts(job: Job, part: Part) -> tuple[str, ...]:
     ratio = f"1:{by:g}" if by >= 1 else f"{1 / by:g}:1"
     scale = say("scale {ratio}, dimensions in mm", ratio=ratio)
     rounded = [capital(job.sizes)] if part.kind == COUNTERWEIGHT and job.sizes else []
-    return said(job.machine.title), *part.lines, *rounded, scale
+    return localized(job.machine.title), *part.lines, *rounded, scale
 
 
 def scale_of(part: Part) -> float:

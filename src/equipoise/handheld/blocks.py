@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.handheld.model import PLANES
 from equipoise.handheld.response import rms_over_time
-from equipoise.i18n import Note, said, say, to_say
+from equipoise.i18n import Note, localized, say, to_say
 from equipoise.quantities import PER_RPM, Dimension, format_quantity, number
 from equipoise.results.blocks import (
     Block,
@@ -159,7 +159,7 @@ def _frequencies(name: str, plane: PlaneModes) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for k, frequency in enumerate(plane.cycles_per_second.tolist()):
         if k < len(plane.rigid):
-            rigid = say("rigid: {motion}", motion=said(plane.rigid[k]))
+            rigid = say("rigid: {motion}", motion=localized(plane.rigid[k]))
             rows.append((str(k + 1), Value(0.0), Value(0.0), Value(0.0), rigid))
             continue
         still = tuple(cell(place, "length") for place in plane.nodes[k].tolist())
@@ -256,8 +256,8 @@ def _peaks(speed: Array, transmission: Transmission, plane: int) -> tuple[Cell, 
     scale = SILENT * float(np.max(size))
     dips = zip(transmission.lowest[plane].tolist(), transmission.quiet[plane].tolist(), strict=True)
     quiet = tuple(Value(depth, scale, at) for depth, at in dips)
-    shown = Many(quiet[:MOST_QUIET], max(len(quiet) - MOST_QUIET, 0))
-    return Many(peaks) if peaks else say("none"), shown if quiet else say("none")
+    quietest = Many(quiet[:MOST_QUIET], max(len(quiet) - MOST_QUIET, 0))
+    return Many(peaks) if peaks else say("none"), quietest if quiet else say("none")
 
 
 def _stations(sweep: ToolSweep) -> Table:

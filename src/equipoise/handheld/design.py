@@ -240,7 +240,7 @@ class Before:
     dimension: str
     before: float
     after: float
-    said: Note | None = None
+    label: Note | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -392,16 +392,16 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
         means.append({name: float(np.sqrt(square)) for name, square in squares.items()})
         tops.append({name: float(np.max(curve)) for name, curve in curves.items()})
     rms, top, both = to_say("RMS over the band"), to_say("largest"), to_say("{what}, {measure}")
-    for said, result in (
+    for label, result in (
         (Note(to_say("total value a_hv of the worst hand, RMS over the band")), means),
         (Note(to_say("total value a_hv of the worst hand, largest")), tops),
     ):
-        yield _before(said, "acceleration", *(max(item.values()) for item in result))
+        yield _before(label, "acceleration", *(max(item.values()) for item in result))
     for name in search.hands if len(search.hands) > 1 else ():
         what = Note(to_say("total value a_hv at {station}"), station=name)
         for measure, result in ((rms, means), (top, tops)):
-            said = Note(both, what=what, measure=Note(measure))
-            yield _before(said, "acceleration", *(item[name] for item in result))
+            label = Note(both, what=what, measure=Note(measure))
+            yield _before(label, "acceleration", *(item[name] for item in result))
     for name in search.force_stations:
         responses = (respond_tool(item, search.band.speed) for item in (search.tool, better))
         forces = (float(np.max(rms_over_time(item.whole_force(name)))) for item in responses)
@@ -410,6 +410,6 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
     yield _before(Note(to_say("mass")), "mass", search.tool.mass, better.mass)
 
 
-def _before(said: Note, dimension: str, before: float, after: float) -> Before:
-    key = str(said).removeprefix("total value ")  # which JSON has without
-    return Before(key, dimension, before, after, said)
+def _before(label: Note, dimension: str, before: float, after: float) -> Before:
+    key = str(label).removeprefix("total value ")  # which JSON has without
+    return Before(key, dimension, before, after, label)

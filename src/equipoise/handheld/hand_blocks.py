@@ -184,7 +184,7 @@ def _pair(before: Before, marks_worse: bool = False) -> tuple[Cell, ...]:
 
 def figure_named(before: Before) -> str:
     """A figure of a design, or a number that it may change, in words."""
-    return varied_named(before.name) if before.said is None else before.said.said()
+    return varied_named(before.name) if before.label is None else before.label.localized()
 
 
 def variation_blocks(variation: Variation) -> Iterator[Block]:

@@ -95,7 +95,11 @@ class Excitation(Frozen):
             "name", TextKind(), "if left out, that of the station and what it is", default=None
         ),
         "direction": Key(
-            "direction", TextKind(DIRECTIONS), "of a force", default=None, shown="vertical"
+            "direction",
+            TextKind(DIRECTIONS),
+            "of a force",
+            default=None,
+            written_default="vertical",
         ),
     }
     file_order = ("name", "station", "force", "unbalance", "linkage", "direction")

@@ -125,7 +125,7 @@ PROFILE: Keys = {
     "material": _key(TextKind(suggested=(*MATERIALS,)), "of a tube", example="aluminium"),
     "youngs_modulus": _key("modulus", "modulus of elasticity of a tube, instead of `material`"),
     "density": _key("density", "goes with `youngs_modulus`"),
-    "poisson_ratio": _key(Number(), "goes with `youngs_modulus`", shown=0.3),
+    "poisson_ratio": _key(Number(), "goes with `youngs_modulus`", written_default=0.3),
     "carried": _key("mass per length", "of what runs in a tube and does not stiffen it", 0.0),
 }
 """Keys of a table that has a cross-section."""

@@ -33,7 +33,7 @@ def say(text: str, /, **values: Any) -> str:
     text = _wording.get().get(text, text)
     sentence = form_of(text, values, language) or catalogue(language).get(text, text)
     if values:
-        each = {name: v.said() if isinstance(v, Note) else v for name, v in values.items()}
+        each = {name: v.localized() if isinstance(v, Note) else v for name, v in values.items()}
         sentence = with_particles(filled(sentence, each, KNOWN[language].decimal), language)
     return sentence
 
@@ -86,7 +86,7 @@ class Note(str):
     def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
         return (self.template,), dict(self.values)
 
-    def said(self) -> str:
+    def localized(self) -> str:
         """The sentence in the language that is spoken."""
         return _said(self.template, self.values)
 
@@ -113,7 +113,7 @@ class Note(str):
 
 
 def _said(template: str, values: Mapping[str, Any]) -> str:
-    return say(template, **{name: said(value) for name, value in values.items()})
+    return say(template, **{name: localized(value) for name, value in values.items()})
 
 
 class Worded(str):
@@ -144,7 +144,7 @@ class Worded(str):
 
     __hash__ = str.__hash__
 
-    def said(self) -> str:
+    def localized(self) -> str:
         """The text in the language that is spoken, as a `str` where it has none."""
         return self.texts.get(_spoken.get()) or str(self)
 
@@ -152,7 +152,7 @@ class Worded(str):
 class KeyName(str):
     """A key of a file in a sentence: as files have it, or by a word inside of `key_words`."""
 
-    def said(self) -> str:
+    def localized(self) -> str:
         """The key, or its word."""
         return _key_words.get()(str(self))
 
@@ -188,9 +188,9 @@ def worded(text: str | Mapping[str, str]) -> str:
     return Worded(text) if isinstance(text, Mapping) else text
 
 
-def said(text: Note | str) -> str:
+def localized(text: Note | str) -> str:
     """A sentence, a part of one, or a text of a file, in the language that is spoken."""
-    return text.said() if isinstance(text, Note | Worded | KeyName) else text
+    return text.localized() if isinstance(text, Note | Worded | KeyName) else text
 
 
 def in_english(text: Note | str) -> Note | str:

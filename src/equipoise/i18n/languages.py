@@ -171,8 +171,8 @@ def _is_so(relation: str, count: int) -> bool:
 def texts(language: str) -> Mapping[str, str]:
     """English text -> text in a language, in the form of a count that is ``other``."""
     return {
-        text: said if isinstance(said, str) else said.get(OTHER, text)
-        for text, said in content(language)["texts"].items()
+        text: translation if isinstance(translation, str) else translation.get(OTHER, text)
+        for text, translation in content(language)["texts"].items()
     }
 
 
@@ -180,14 +180,14 @@ def texts(language: str) -> Mapping[str, str]:
 def counted(language: str) -> Mapping[str, Mapping[str, str]]:
     """English text -> its forms in a language by category, and at ``by`` the placeholder."""
     of = {
-        text: said.get(BY, USUAL)
-        for text, said in content("en")["texts"].items()
-        if not isinstance(said, str)
+        text: translation.get(BY, USUAL)
+        for text, translation in content("en")["texts"].items()
+        if not isinstance(translation, str)
     }
     return {
-        text: {OTHER: text, **said, BY: of.get(text, USUAL)}
-        for text, said in content(language)["texts"].items()
-        if not isinstance(said, str)
+        text: {OTHER: text, **translation, BY: of.get(text, USUAL)}
+        for text, translation in content(language)["texts"].items()
+        if not isinstance(translation, str)
     }
 
 

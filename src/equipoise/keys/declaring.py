@@ -58,7 +58,7 @@ class Key:
     field: str = ""
     example: Any = None
     default: Any = REQUIRED
-    shown: Any = None
+    written_default: Any = None
     at_least: float | None = None
     above: float | None = None
     below: float | None = None
@@ -176,10 +176,10 @@ class Frozen(TableRecord):
                 object.__setattr__(self, declaration.field, declaration.kind.check(value))
             except (TypeError, ValueError, OverflowError):
                 text = repr(value)
-                shown = text if len(text) <= 60 else f"{text[:57]}..."
+                given = text if len(text) <= 60 else f"{text[:57]}..."
                 raise ModelError(
                     declaration.field,
-                    Note("got {shown}; give {wanted}", shown=shown, wanted=declaration.kind.wanted),
+                    Note("got {given}; give {wanted}", given=given, wanted=declaration.kind.wanted),
                 ) from None
             except UsageError as error:
                 raise ModelError(declaration.field, error.note) from None

@@ -53,13 +53,13 @@ class KeyPath(tuple[str | int, ...]):
                 steps.append(_unquoted(in_quotes) if bare is None else bare.strip())
             end = match.end()
         if not text or end < len(text) or -1 in steps:
-            shown = text if len(text) <= LONGEST_KEY else f"{text[:57]}..."
+            given = text if len(text) <= LONGEST_KEY else f"{text[:57]}..."
             raise ModelError(
                 text,
                 Note(
-                    "got {shown!r}; give keys with points between, and numbers in lists from "
+                    "got {given!r}; give keys with points between, and numbers in lists from "
                     "1 in brackets, such as links.crank.points.B.x or gears[1].ratio",
-                    shown=shown,
+                    given=given,
                 ),
             )
         return cls(steps)
@@ -76,7 +76,7 @@ class KeyPath(tuple[str | int, ...]):
         return "".join(steps).removeprefix(".")
 
     @property
-    def shown(self) -> str:
+    def abbreviated(self) -> str:
         """Text of a path in a message, in which endless keys are cut."""
         return str(KeyPath(map(_cut, self)))
 

@@ -193,5 +193,5 @@ def asks_of(given: Mapping[str, Any], before: Asks = ()) -> Asks:
     for key in given:
         if key not in REQUIREMENT_KINDS:
             raise UsageError(unknown(key, REQUIREMENT_KINDS, "key"))
-    asked = {**dict(before), **given}
-    return tuple((key, asked[key]) for key in REQUIREMENT_KINDS if asked.get(key) is not None)
+    values = {**dict(before), **given}
+    return tuple((key, values[key]) for key in REQUIREMENT_KINDS if values.get(key) is not None)

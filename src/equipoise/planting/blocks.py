@@ -322,13 +322,13 @@ def fit_blocks(fit: Fit) -> Iterator[Block]:
     yield _goals(fit)
     yield _changes(fit)
     yield _figures(fit)
-    missed = [figure_named(name) for name, met in fit.met.items() if not met]
+    unmet = [figure_named(name) for name, met in fit.met.items() if not met]
     notes: list[Note | str] = [*fit.after.notes, *linkage_remarks(assemble(fit.machine))]
-    if missed:
+    if unmet:
         template = to_say(
             "not met: {names}; widen the limits of [vary], loosen the goals, or try another seed"
         )
-        notes.append(Note(template, names=", ".join(missed)))
+        notes.append(Note(template, names=", ".join(unmet)))
     elif any(goal.make for goal in fit.goals):
         notes.append(Note(UNPROVED))
     if notes:
@@ -377,11 +377,11 @@ def _changes(fit: Fit) -> Table:
 
 
 def _figures(fit: Fit) -> Table:
-    asked = {goal.figure for goal in fit.goals}
+    requested = {goal.figure for goal in fit.goals}
     rows: list[tuple[Cell, ...]] = []
     for name in (*FIGURES, *OTHERS):
         known = any(f.get(name) is not None for f in (fit.before, fit.after) if f is not None)
-        if name not in asked and known:
+        if name not in requested and known:
             rows.append(
                 (figure_named(name), _figure_cell(fit.before, name), _figure_cell(fit.after, name))
             )

@@ -405,8 +405,8 @@ class Fit(Result):
         """A goal, whether it is met, and its figure before and after."""
         figures = {"before": self.before, "after": self.after}
         values = {when: figure and figure.get(goal.figure) for when, figure in figures.items()}
-        asked = {"figure": goal.figure, **goal.asked_in("goals"), "tolerance": goal.tolerance}
-        return {**asked, "met": self.met.get(goal.figure), **values}
+        requested = {"figure": goal.figure, **goal.asked_in("goals"), "tolerance": goal.tolerance}
+        return {**requested, "met": self.met.get(goal.figure), **values}
 
 
 Progress = Callable[[int, int, float], None]

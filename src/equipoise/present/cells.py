@@ -95,12 +95,12 @@ def grid(table: Table) -> Grid:
     column.
     """
     sizes = _sizes(table)
-    shown = _displays(table, sizes)
-    rows = tuple(tuple(_row(table, row, shown, sizes)) for row in table.rows)
+    displays = _displays(table, sizes)
+    rows = tuple(tuple(_row(table, row, displays, sizes)) for row in table.rows)
     if not rows:
         return Grid(table.title, tuple(Head(column.label) for column in table.columns), ())
     columns = zip(table.columns, zip(*table.rows, strict=True), strict=True)
-    heads = (_head(*pair, shown) for pair in columns)
+    heads = (_head(*pair, displays) for pair in columns)
     is_sos = [any(cell.text for cell in cells) for cells in zip(*rows, strict=True)]
     return Grid(
         table.title,
@@ -110,13 +110,13 @@ def grid(table: Table) -> Grid:
 
 
 def _row(
-    table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display], sizes: Sizes
+    table: Table, row: tuple[Cell, ...], displays: Mapping[Kind, Display], sizes: Sizes
 ) -> Iterator[CellText]:
-    unit = _unit_of_row(table, row, shown)
+    unit = _unit_of_row(table, row, displays)
     faint = _faint(table, row, sizes)
     for place, (column, cell) in enumerate(zip(table.columns, row, strict=True)):
         least = {kind: size for (at, kind), size in sizes.items() if at == place}
-        text = _text(cell, column, shown, least, faint if column.alike else {})
+        text = _text(cell, column, displays, least, faint if column.alike else {})
         if place == 0 and unit:
             comma = say(", ").replace(" ", "\N{NO-BREAK SPACE}")
             text = replace(text, text=comma.join(filter(None, (text.text, unit))))
@@ -137,10 +137,10 @@ def _faint(table: Table, row: tuple[Cell, ...], sizes: Sizes) -> dict[Kind, floa
     return whole
 
 
-def _unit_of_row(table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> str:
+def _unit_of_row(table: Table, row: tuple[Cell, ...], displays: Mapping[Kind, Display]) -> str:
     """Unit of the numbers of a row in columns without a dimension of their own."""
     own = (
-        shown[_kind(value, column)].unit
+        displays[_kind(value, column)].unit
         for column, cell in zip(table.columns, row, strict=True)
         for value in _values(cell)
         if value.dimension is not None and column.dimension is None
@@ -191,10 +191,10 @@ def _display(dimension: Dimension | None, unit: str | None, values: Iterable[flo
     return display(dimension, [*values], unit)
 
 
-def _head(column: Column, cells: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> Head:
+def _head(column: Column, cells: tuple[Cell, ...], displays: Mapping[Kind, Display]) -> Head:
     is_so = any(value.at is not None for cell in cells for value in _values(cell))
-    at = shown[column.at].unit if is_so else ""
-    return Head(column.label, shown[column.dimension, column.unit].unit, at)
+    at = displays[column.at].unit if is_so else ""
+    return Head(column.label, displays[column.dimension, column.unit].unit, at)
 
 
 _IS_NUMBER = re.compile(r"[(+\-\N{MINUS SIGN}\N{PLUS-MINUS SIGN}]*[0-9]")
@@ -207,7 +207,7 @@ _IS_NUMBER = re.compile(r"[(+\-\N{MINUS SIGN}\N{PLUS-MINUS SIGN}]*[0-9]")
 def _text(
     cell: Cell,
     column: Column,
-    shown: Mapping[Kind, Display],
+    displays: Mapping[Kind, Display],
     sizes: Mapping[Kind, float],
     faint: Mapping[Kind, float],
 ) -> CellText:
@@ -218,7 +218,7 @@ def _text(
         text = say("same") if share == UNCHANGED else decimals(share)
         return CellText(text, "", True, cell.emphasis)
     if isinstance(cell, Many):
-        values = [_text(value, column, shown, sizes, faint) for value in cell.values]
+        values = [_text(value, column, displays, sizes, faint) for value in cell.values]
         labels = [say("and {count} more", count=cell.omitted)] if cell.omitted else []
         words = say(", ").join([*(item.text_with_note for item in values), *labels])
         return CellText(
@@ -226,7 +226,7 @@ def _text(
         )
     if isinstance(cell, Span):
         kind = column.dimension, column.unit
-        unit, size = shown[kind], sizes[kind]
+        unit, size = displays[kind], sizes[kind]
         scale = max(abs(cell.low), abs(cell.high), cell.scale)
         ends = [Value(end, scale, None, cell.digits, cell.after) for end in (cell.low, cell.high)]
         least = faint.get(kind, 0.0)
@@ -234,12 +234,12 @@ def _text(
         equal = cell.high - cell.low <= ROUNDING * scale or low == high
         return CellText(high if equal else say("{low} to {high}", low=low, high=high), number=True)
     kind = _kind(cell, column)
-    text = _number(cell, shown[kind], kind[0], sizes[kind] * column.alike, faint.get(kind, 0.0))
+    text = _number(cell, displays[kind], kind[0], sizes[kind] * column.alike, faint.get(kind, 0.0))
     at = ""
     if cell.at is not None:
         place = Value(cell.at, after=1 if column.at[0] == "angle" else None)
-        at = _number(place, shown[column.at], column.at[0])
-    limit = "" if cell.limit is None else decimals(f"{cell.limit * shown[kind].factor:.4g}")
+        at = _number(place, displays[column.at], column.at[0])
+    limit = "" if cell.limit is None else decimals(f"{cell.limit * displays[kind].factor:.4g}")
     return CellText(text, at, number=True, emphasis=cell.emphasis, limit=limit)
 
 
@@ -313,7 +313,7 @@ def with_omitted(text: str, omitted: int) -> str:
 def noted(note: Note | str) -> str:
     """A note in the language that is spoken; what that lacks, in its original wording."""
     if isinstance(note, Note) and note.is_translated:
-        return say("Note: {note}", note=note.said())
+        return say("Note: {note}", note=note.localized())
     if spoken() == "en":
         return say("Note: {note}", note=note)
     return say("Note, in its original wording: {note}", note=note)

@@ -12,7 +12,7 @@ from equipoise.errors import ModelError, lacking
 from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.hand_blocks import varied_named
 from equipoise.handheld.shaft import Section
-from equipoise.i18n import Note, all_of, coordinates, listed, said, say, series, to_say
+from equipoise.i18n import Note, all_of, coordinates, listed, localized, say, series, to_say
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import numbered
@@ -267,7 +267,7 @@ HOW_SOLVED = {
 def _build_up(linkage: Linkage) -> Iterable[str]:
     structure = linkage.joints
     for group in linkage.groups:
-        shown = [r for r in group.reactions if not structure.hides(r.name, r.on, r.by)]
+        visible = [r for r in group.reactions if not structure.hides(r.name, r.on, r.by)]
         joints = [
             Note("{joint} (slider)", joint=r.name) if r.kind == "slider"
             else Note("{joint} (pin in a slot)", joint=r.name) if r.name in structure.riders
@@ -277,13 +277,13 @@ def _build_up(linkage: Linkage) -> Iterable[str]:
                 "{joint} ({kind} on {body})",
                 joint=r.name, kind=Note(r.kind), body=body_named(r.by),
             )
-            for r in shown
+            for r in visible
         ]  # fmt: skip
         yield INDENT + say(
             "{links}: {how}; joints {joints}",
-            links=said(all_of([link for link in group.links if link not in structure.riders])),
+            links=localized(all_of([link for link in group.links if link not in structure.riders])),
             how=say(HOW_SOLVED[group.kind]),
-            joints=said(series(joints)),
+            joints=localized(series(joints)),
         )
 
 
@@ -315,8 +315,8 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
             what = listed(what, say("borne by {link}", link=load.reaction_link))
         elif load.reaction is not None:
             what = listed(what, say("borne by the frame"))
-        shown = [Value(end, after=1) for end in ends if end is not None]
-        acting: tuple[Cell, ...] = (*shown, beyond) if shown else (say("always"), None, None)
+        limits = [Value(end, after=1) for end in ends if end is not None]
+        acting: tuple[Cell, ...] = (*limits, beyond) if limits else (say("always"), None, None)
         yield place, what, *acting, Value(work.largest, dimension=kind), Value(work.net, work.both)
 
 
@@ -335,7 +335,7 @@ def _joints(machine: Machine) -> Iterator[str]:
         parts += _bearing(joint)
         if joint.stiffness is not None:
             parts.append(format_quantity(joint.stiffness, "stiffness", "N/m"))
-        yield said(series([*parts, *_friction(joint)]))
+        yield localized(series([*parts, *_friction(joint)]))
 
 
 def _bearing(properties: JointProperties) -> Iterator[str]:
@@ -392,7 +392,7 @@ def _drive_train(machine: Machine) -> Iterator[str]:
         template = to_say("motor: {parts}; mean speed follows from it")
         if motor.mean_speed == "held":
             template = to_say("motor: {parts}; mean speed is the drive's")
-        yield say(template, parts=said(series(parts)))
+        yield say(template, parts=localized(series(parts)))
     if machine.timed_loads:
         yield say("loads over time, in runs alone: {count}", count=len(machine.timed_loads))
     if machine.duty:
@@ -401,11 +401,13 @@ def _drive_train(machine: Machine) -> Iterator[str]:
         )
     if machine.rows:
         unit = display("angle")
-        shown = [unit.text(row.phase) for row in machine.rows[:MOST_SHOWN]]
-        omitted = len(machine.rows) - len(shown)
-        phases = said(all_of(shown, commas=True))
+        first_phases = [unit.text(row.phase) for row in machine.rows[:MOST_SHOWN]]
+        omitted = len(machine.rows) - len(first_phases)
+        phases = localized(all_of(first_phases, commas=True))
         if omitted:
-            phases = say("{some} and {number} more", some=said(series(shown)), number=omitted)
+            phases = say(
+                "{some} and {number} more", some=localized(series(first_phases)), number=omitted
+            )
         yield say(
             "rows: {count} on one shaft, ahead by {phases}",
             count=len(machine.rows),
@@ -456,11 +458,11 @@ def _support(machine: Machine) -> Iterator[str]:
     yield say(
         template,
         mass=format_quantity(support.mass, "mass", "kg"),
-        motions=said(all_of(support.coordinates, commas=True)),
+        motions=localized(all_of(support.coordinates, commas=True)),
         pivot="" if support.pivot is None else point_text(support.pivot),
     )
     for name, mount in support.mounts.items():
-        parts = said(series([*_mount(mount)]))
+        parts = localized(series([*_mount(mount)]))
         yield INDENT + say("mount {name}: {parts}", name=name, parts=parts)
     for name, gauge in support.gauges.items():
         yield INDENT + say("{name}: a gauge that reads {what}", name=name, what=_reading(gauge))
@@ -519,18 +521,18 @@ def tool_blocks(tool: Tool, file: str) -> Iterator[Block]:
             "{station} at {place}: {parts}",
             station=station.name,
             place=_length(station.position),
-            parts=said(series([*_station(station)])) or say("nothing"),
+            parts=localized(series([*_station(station)])) or say("nothing"),
         )
         yield Text(INDENT + line)
     for excitation in tool.excitations:
-        parts = said(series([*_excitation(excitation)]))
+        parts = localized(series([*_excitation(excitation)]))
         yield Text(say("excitation {name}: {parts}", name=excitation.name, parts=parts))
     if tool.operation is not None:
-        speeds = said(series([*_operation(tool.operation)]))
+        speeds = localized(series([*_operation(tool.operation)]))
         yield Text(say("engine: {speeds}", speeds=speeds))
     if tool.work:
         times = [f"{value.name} {number(value.duration / 3600)} h" for value in tool.work]
-        yield Text(say("day: {times}", times=said(series(times))))
+        yield Text(say("day: {times}", times=localized(series(times))))
     if tool.design is not None:
         yield from map(Text, _design(tool.design))
     yield FileText("", say("ready: {command}", command=f"equipoise tool {file}"))
@@ -565,7 +567,7 @@ def _shaft(shaft: Shaft) -> Iterator[str]:
     parts = [_length(shaft.length), _mass(shaft.mass), *stuff, stiffness, shaft.theory.title()]
     if shaft.loss_factor:
         parts.append(say("loss factor {factor}", factor=number(shaft.loss_factor)))
-    yield say("shaft: {parts}", parts=said(series([*filter(None, parts)])))
+    yield say("shaft: {parts}", parts=localized(series([*filter(None, parts)])))
     for start, stop, section in pieces if len(pieces) > 1 else ():
         linear = format_quantity(section.mass_per_length, "mass per length", "kg/m")
         yield INDENT + say(
@@ -582,12 +584,14 @@ def _station(station: Station) -> Iterator[str]:
     yield from _rates(station)
     if station.absorber is not None:
         rates = [_mass(station.absorber.mass), *_rates(station.absorber)]
-        yield say("absorber ({rates})", rates=said(series(rates)))
+        yield say("absorber ({rates})", rates=localized(series(rates)))
     if station.hand is not None:
         hand = station.hand
-        yield say("{count} hands ({parts})", count=hand.hands, parts=said(series([*_hand(hand)])))
+        yield say(
+            "{count} hands ({parts})", count=hand.hands, parts=localized(series([*_hand(hand)]))
+        )
     if station.harness is not None:
-        yield say("harness ({rates})", rates=said(series([*_rates(station.harness)])))
+        yield say("harness ({rates})", rates=localized(series([*_rates(station.harness)])))
 
 
 def _rates(item: object) -> Iterator[str]:
@@ -616,7 +620,7 @@ def _excitation(excitation: Excitation) -> Iterator[str]:
     elif excitation.unbalance is not None:
         yield say("unbalance {size}", size=format_quantity(excitation.unbalance, "unbalance"))
     elif excitation.linkage is not None:
-        yield say("linkage {title}", title=said(excitation.linkage.title))
+        yield say("linkage {title}", title=localized(excitation.linkage.title))
     yield say("at {station}", station=excitation.station)
     if excitation.ratio != 1:
         yield say("{ratio} times the engine's speed", ratio=number(excitation.ratio))
@@ -652,7 +656,7 @@ def _design(design: DesignPlan) -> Iterator[str]:
         high=high,
     )
     names = [varied_named(variable.name) for variable in design.variables]
-    yield INDENT + say("may change: {names}", names=said(series(names)))
+    yield INDENT + say("may change: {names}", names=localized(series(names)))
     for limit in design.limits:
         most = format_quantity(limit.at_most, OUTPUTS[limit.output])
         yield INDENT + say(LIMITED[limit.output], station=limit.station, limit=most)

@@ -14,7 +14,7 @@ from equipoise.errors import UsageError, at_place
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
 from equipoise.handheld.model import Tool
-from equipoise.i18n import LANGUAGES, Note, coordinates, said, say, speaking, to_say
+from equipoise.i18n import LANGUAGES, Note, coordinates, localized, say, speaking, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.findings import Findings, ToolFindings, find
@@ -179,9 +179,9 @@ def _of_linkage(
         blocks["balance"] = [*_not_said(blocks["balance"], said_above)]
     return ReportDocument(
         language,
-        said(machine.title),
+        localized(machine.title),
         driven(machine, analysis.motion.speed),
-        said(machine.description),
+        localized(machine.description),
         tuple(tiles(findings)),
         summary,
         _animation(findings),
@@ -240,9 +240,9 @@ def balance_blocks(findings: Findings) -> Iterator[Block]:
 
 
 def _of_tool(
-    findings: ToolFindings, drawn: Drawings, language: str, command: str
+    findings: ToolFindings, drawings: Drawings, language: str, command: str
 ) -> ReportDocument:
-    pictures = drawn.get("tool", [])
+    pictures = drawings.get("tool", [])
     blocks: list[Block | ReportSection] = []
     if findings.design is not None:
         blocks.extend(design_blocks(findings.design, judged=False))  # which the summary says
@@ -262,9 +262,9 @@ def _of_tool(
     named: Parts = {"model": model, "tool": blocks}
     return ReportDocument(
         language,
-        said(findings.tool.title),
+        localized(findings.tool.title),
         subtitle,
-        said(findings.tool.description),
+        localized(findings.tool.description),
         tuple(tool_tiles(findings)),
         tuple(tool_answers(findings)),
         "",
@@ -301,8 +301,8 @@ def _sections(
     """
     template = to_say("Made by Equipoise {version} from {file}")
     origin = say(template, version=equipoise.__version__, file=findings.file)
-    asked = (*findings.notes, *questions_of(findings))
-    notes = [Notes(asked)] if asked else []
+    notes_and_questions = (*findings.notes, *questions_of(findings))
+    notes = [Notes(notes_and_questions)] if notes_and_questions else []
     again = [FileText(say("Command"), command)] if command else []  # as it is, to be copied
     last: Parts = {
         "sources": [Facts("", tuple(sources(findings)))],
@@ -371,7 +371,7 @@ def _settings_of_linkage(findings: Findings) -> Iterator[str]:
     if findings.response is not None:
         yield model_text(findings.response.model)
     if findings.balanced is not None:
-        yield say("Balanced by: {method}", method=said(findings.balanced.method))
+        yield say("Balanced by: {method}", method=localized(findings.balanced.method))
 
 
 def questions_of(findings: Findings | ToolFindings) -> tuple[Note | str, ...]:

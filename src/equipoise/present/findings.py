@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
 from equipoise.handheld.model import Tool
-from equipoise.i18n import Note, in_each, said, say, to_say
+from equipoise.i18n import Note, in_each, localized, say, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import in_si
 from equipoise.results.analysis import ANGLES
@@ -284,9 +284,9 @@ def _with_text(
 
     if isinstance(model, Machine | Tool):
         try:
-            return model, dumped(model), said(model.title)
+            return model, dumped(model), localized(model.title)
         except ModelError:
-            return model, "", said(model.title)
+            return model, "", localized(model.title)
     file = opened(model)
     read = loads_tool if kind_of_text(file.text) == "tool" else loads_linkage
     name = printable(os.path.basename(model))

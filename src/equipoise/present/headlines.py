@@ -16,7 +16,7 @@ from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.outcome import good_already
 from equipoise.balancing.sentences import capital, figure_named, figure_unit
 from equipoise.dataclass import dataclass
-from equipoise.i18n import said, say, to_say
+from equipoise.i18n import localized, say, to_say
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.outputs.declared import joint_named, named
 from equipoise.quantities import (
@@ -239,7 +239,7 @@ def counted(analysis: Analysis) -> str:
     """How many links move, and their mass."""
     links = analysis.machine.links
     if any(link.mass is None for link in links.values()):
-        return said(moving_links(len(links)))
+        return localized(moving_links(len(links)))
     mass = format_quantity(analysis.machine.mass, "mass", "kg", digits=3)
     return say("{links} of {mass} together", links=moving_links(len(links)), mass=mass)
 
@@ -338,8 +338,8 @@ def kinematic(analysis: Analysis, name: str) -> str:
         return say("The transmission angle stays between {low} and {high}", low=low, high=high)
     for entry in analysis.outputs:
         if entry.dimension in ("speed", "angular speed") and name == kinematics_named(entry.item):
-            shown = display(entry.dimension, [entry.figures.peak])
-            return topped(entry.label(), entry.figures, shown)
+            unit_display = display(entry.dimension, [entry.figures.peak])
+            return topped(entry.label(), entry.figures, unit_display)
     return ""
 
 

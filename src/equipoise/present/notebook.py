@@ -12,7 +12,7 @@ from equipoise.figures import standalone_svg
 from equipoise.figures.linkage import linkage
 from equipoise.handheld.blocks import model_blocks as tool_blocks
 from equipoise.handheld.model import Tool
-from equipoise.i18n import said
+from equipoise.i18n import localized
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.swinging import swing
@@ -31,8 +31,8 @@ def html_of(value: Displayed) -> str:
     owner = _owner(value)
     with in_own_words(owner):
         if isinstance(value, Result):
-            return part_of_page(said(value.title), (*value.headline(), *value.blocks()))
-        title = said(owner.title)
+            return part_of_page(localized(value.title), (*value.headline(), *value.blocks()))
+        title = localized(owner.title)
         if isinstance(value, Machine):
             picture, trouble = _pose(value)
             return part_of_page(title, (*trouble, *model_blocks(value)), picture)

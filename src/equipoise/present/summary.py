@@ -329,7 +329,7 @@ def vibration_sentences(findings: Findings) -> Iterator[str]:
         return
     met = findings.sweep.resonances
     for note in (resonance_note(met, response.speed), *within(met, response.speed)):
-        yield say("{sentence}.", sentence=capital(note.said()))
+        yield say("{sentence}.", sentence=capital(note.localized()))
 
 
 def planting_sentences(findings: Findings) -> Iterator[str]:

@@ -16,7 +16,7 @@ from typing import TextIO, get_args
 from unicodedata import combining, east_asian_width
 
 from equipoise.dataclass import dataclass
-from equipoise.i18n import said, say, to_say
+from equipoise.i18n import localized, say, to_say
 from equipoise.present.cells import CellText, Grid, Head, bound, grid, with_omitted
 from equipoise.results.blocks import (
     Block,
@@ -182,9 +182,9 @@ class _Column:
 
     def _set(self, text: str, width: int, role: str | None, tail: str, looks: Looks) -> str:
         """A line at its side of the column."""
-        shown, blank = looks.paint(text, role), " " * (width - size(text))
+        painted, blank = looks.paint(text, role), " " * (width - size(text))
         end = tail + " " * (self.tail - size(tail))
-        return f"{shown}{blank}{end}" if self.words else f"{blank}{shown}{end}"
+        return f"{painted}{blank}{end}" if self.words else f"{blank}{painted}{end}"
 
 
 def _columns(grid: Grid, room: int, looks: Looks) -> Iterator[_Column]:
@@ -332,18 +332,18 @@ def block_text(
     """
     columns = shutil.get_terminal_size().columns if width is None else width
 
-    def printed(shown: Iterable[Block | ReportSection]) -> list[str]:
+    def printed(printed_blocks: Iterable[Block | ReportSection]) -> list[str]:
         printer = _Printer(max(columns, LEAST), Looks(coloured(sys.stdout)), begun=title is None)
         if title:
             printer.words(title, "title")
-        printer.blocks(shown)
+        printer.blocks(printed_blocks)
         return printer.lines
 
-    shown = [*blocks] if most is not None else blocks
-    lines = printed(shown)
-    while most is not None and len(lines) > most and (shorter := _shortened([*shown])):
-        shown = shorter
-        lines = printed(shown)
+    printed_blocks = [*blocks] if most is not None else blocks
+    lines = printed(printed_blocks)
+    while most is not None and len(lines) > most and (shorter := _shortened([*printed_blocks])):
+        printed_blocks = shorter
+        lines = printed(printed_blocks)
     return "".join(f"{line}\n" for line in lines)
 
 
@@ -421,7 +421,7 @@ class _Printer:
             self.space()
             for place, note in enumerate(block.notes, 1):
                 omitted = block.omitted if place == len(block.notes) else 0
-                self.words(with_omitted(f"note: {said(note)}", omitted))
+                self.words(with_omitted(f"note: {localized(note)}", omitted))
             if not block.notes and block.omitted:
                 self.words(say("notes left out here: {count}", count=block.omitted))
         elif isinstance(block, FileText):

@@ -105,7 +105,7 @@ def parse_expression(text: str, dimension: Dimension, names: Names = NO_NAMES) -
     """
     if re.fullmatch(pattern(dimension), text) or not is_expression(text):
         return parse(text, dimension)
-    amount = _amount(text, names, lambda shown: _no_quantity(shown, dimension))
+    amount = _amount(text, names, lambda short: _no_quantity(short, dimension))
     if not amount.powers and not names.keys() & names_in(text):
         raise UsageError(
             Note(
@@ -116,9 +116,9 @@ def parse_expression(text: str, dimension: Dimension, names: Names = NO_NAMES) -
             )
         )
     if amount.powers != {dimension: 1}:
-        kind, shown = KINDS[dimension], _short(text)
-        otherwise = _no_quantity(shown, dimension)
-        raise UsageError(_another(shown, amount, Note(kind.noun), kind.example, otherwise))
+        kind, short = KINDS[dimension], _short(text)
+        otherwise = _no_quantity(short, dimension)
+        raise UsageError(_another(short, amount, Note(kind.noun), kind.example, otherwise))
     return _float(amount, text)
 
 
@@ -137,8 +137,8 @@ def parse_number(text: str, names: Names = NO_NAMES) -> float:
     """
     amount = _amount(text, names, _no_number)
     if amount.powers:
-        shown = _short(text)
-        raise UsageError(_another(shown, amount, Note("a plain number"), "0.15", _no_number(shown)))
+        short = _short(text)
+        raise UsageError(_another(short, amount, Note("a plain number"), "0.15", _no_number(short)))
     return _float(amount, text)
 
 
@@ -234,12 +234,12 @@ def _float(amount: Amount, text: str) -> float:
 
 def _amount(text: str, names: Names, wrong: Callable[[str], Note]) -> Amount:
     """What an expression comes to; `wrong` says what is wrong where it is none."""
-    shown = _short(text)
+    short = _short(text)
     if len(text) > LONGEST:
         raise UsageError(
             Note(
                 "got {text!r}, which has {count} characters; give at most {most}",
-                text=shown,
+                text=short,
                 count=len(text),
                 most=LONGEST,
             )
@@ -249,12 +249,12 @@ def _amount(text: str, names: Names, wrong: Callable[[str], Note]) -> Amount:
         try:
             tree, quantities = _tree(text)
             for name in sorted(_names_in(tree) - quantities.keys() - names.keys()):
-                raise UsageError(_unknown(shown, name, names, wrong))
+                raise UsageError(_unknown(short, name, names, wrong))
             return _value(tree, {**names, **quantities})
         except (SyntaxError, ValueError, RecursionError, MemoryError, InvalidOperation) as error:
-            raise UsageError(wrong(shown)) from error
+            raise UsageError(wrong(short)) from error
         except ZeroDivisionError as error:
-            raise UsageError(Note("got {text!r}, which divides by 0", text=shown)) from error
+            raise UsageError(Note("got {text!r}, which divides by 0", text=short)) from error
 
 
 def _unknown(text: str, name: str, names: Names, wrong: Callable[[str], Note]) -> Note:

@@ -313,24 +313,24 @@ def format_quantity(
 
     scale : beside which a smaller value is rounding, and is printed as 0.
     """
-    shown = display(dimension, [value], unit)
-    return shown.with_unit(shown.text(value, scale, digits))
+    unit_display = display(dimension, [value], unit)
+    return unit_display.with_unit(unit_display.text(value, scale, digits))
 
 
 def angle(radians: float, after: int = 1) -> str:
     """An angle with its unit: degrees with so many digits behind the point, or as is chosen."""
-    shown = in_unit(chosen_unit("angle") or "deg")
-    return shown.with_unit(fixed(shown, radians, after))
+    unit_display = in_unit(chosen_unit("angle") or "deg")
+    return unit_display.with_unit(fixed(unit_display, radians, after))
 
 
 MORE_DIGITS = {"rad": 2, "turn": 3}
 """Of angles, beyond those behind the point in degrees."""
 
 
-def fixed(shown: Display, value: float, after: int) -> str:
+def fixed(unit_display: Display, value: float, after: int) -> str:
     """A value (SI) with so many digits behind the point, and without the minus of what is 0."""
-    value = shown.factor * value
-    after += MORE_DIGITS.get(shown.unit, 0)
+    value = unit_display.factor * value
+    after += MORE_DIGITS.get(unit_display.unit, 0)
     return f"{round(value, after) + 0.0:.{after}f}" if isfinite(value) else f"{value}"
 
 

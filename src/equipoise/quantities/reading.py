@@ -297,8 +297,8 @@ def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
     other = _known(plain) or next((KINDS[kind] for kind in KINDS if unit_meant(unit, kind)), None)
     if other is not None:
         of = Note(other.noun)
-        shown = plain if plain in other.units else _quoted(unit)
-        return Note("{unit} is the unit of {of}; {wanted}", unit=shown, of=of, wanted=wanted)
+        unit_text = plain if plain in other.units else _quoted(unit)
+        return Note("{unit} is the unit of {of}; {wanted}", unit=unit_text, of=of, wanted=wanted)
     return Note("there is no unit {unit} here; {wanted}", unit=_quoted(unit), wanted=wanted)
 
 

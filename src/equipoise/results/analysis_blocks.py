@@ -66,8 +66,8 @@ def question_blocks(analysis: Analysis) -> Iterator[Block]:
     tables of forces, which there are none of.
     """
     place: Place | None = "end" if analysis.solved is not None else None
-    if asked := (*remarks_of(analysis, place),):
-        yield Notes(asked)
+    if questions := (*remarks_of(analysis, place),):
+        yield Notes(questions)
 
 
 # -- motion ----------------------------------------------------------------------------------------
@@ -128,12 +128,12 @@ def strokes_table(analysis: Analysis) -> Table:
         rows.append((joint_named(name), stroke, *ends, Value(item.time_ratio), rest))
     heads = (say("stroke"), say("lowest"), say("highest"), say("time ratio"))
     columns = ("", *heads, say("further dead positions"))
-    shown = len(columns) if any(row[-1] is not None for row in rows) else -1
+    width = len(columns) if any(row[-1] is not None for row in rows) else -1
     title = say(
         "Sliders and rockers: stroke between dead positions (at crank angle), and time of the "
         "slower stroke over that of the faster"
     )
-    return Table.of(title, columns[:shown], (row[:shown] for row in rows))
+    return Table.of(title, columns[:width], (row[:width] for row in rows))
 
 
 def advantages_table(analysis: Analysis) -> Table:

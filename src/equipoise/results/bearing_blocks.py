@@ -47,12 +47,12 @@ def _rolling(analysis: Analysis) -> Table:
         Column(say("dynamic rating needed"), "force"),
         say("static safety"),
     ]
-    shown = [k for k in range(len(columns)) if any(row[k] is not None for row in rows)]
+    filled = [k for k in range(len(columns)) if any(row[k] is not None for row in rows)]
     states = len(analysis.machine.duty)
     title = say("Rolling bearings in joints")
     if states:
         title = say("Rolling bearings in joints, over {count} duty states", count=states)
-    return Table.of(title, [columns[k] for k in shown], ([row[k] for k in shown] for row in rows))
+    return Table.of(title, [columns[k] for k in filled], ([row[k] for k in filled] for row in rows))
 
 
 def _plain(analysis: Analysis) -> Table:

@@ -45,9 +45,9 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
         *(Column(head, "force") for head in force_heads),
         Column(say("lifts off from"), "angular speed", "rpm"),
     )
-    shown = len(rows[0]) - (len(rows[0]) == len(columns) and not limited)
+    width = len(rows[0]) - (len(rows[0]) == len(columns) and not limited)
     title = say("Cams; largest and smallest with the crank angle")
-    yield Table.of(title, columns[:shown], (row[:shown] for row in rows))
+    yield Table.of(title, columns[:width], (row[:width] for row in rows))
     if solved is not None and (lost := lost_contacts(solved)):
         yield Notes(lost)
 

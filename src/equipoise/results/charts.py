@@ -73,7 +73,7 @@ class Axis:
 
     def format_value(self, value: float) -> str:
         """A value in SI units as a number of this axis, with a true minus."""
-        return shown(self.unit.factor * value)
+        return four_digits(self.unit.factor * value)
 
     def quantity(self, value: float) -> str:
         """Value as the axis shows it, with its unit."""
@@ -339,6 +339,6 @@ def quantity(value: float, dimension: Dimension, unit: str | None = None) -> str
     return Axis("", display(dimension, [value], unit)).quantity(value)
 
 
-def shown(value: float) -> str:
+def four_digits(value: float) -> str:
     """Four significant digits, with a true minus."""
     return typeset(f"{value:.4g}")

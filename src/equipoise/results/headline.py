@@ -59,8 +59,8 @@ def analysis_headline(
     if is_of_gauge:  # `respond` has the others
         rest = [item for item in rest if not item.output.startswith(GAUGES)]
     large = [item for item in rest if item.is_large]
-    if shown := large[:MOST_LARGE] or rest[:MOST_SMALL]:
-        lines = tuple(sentence(item, analysis.machine.crank_turns) for item in shown)
+    if largest := large[:MOST_LARGE] or rest[:MOST_SMALL]:
+        lines = tuple(sentence(item, analysis.machine.crank_turns) for item in largest)
         small = NEXT_TO_ONE if first is not None and first.is_large else NEXT_TO_NONE
         yield Facts(say(ELSE_LARGE if large else small), lines)
     if alone and (notes := analysis.notes):
@@ -115,8 +115,8 @@ def what_it_is(analysis: Analysis) -> str:
 def _next(analysis: Analysis, first: FigureAssessment | None) -> Iterator[str]:
     """Commands that show more of what is large, and what to do about it."""
     machine = analysis.machine
-    if shown := _output_of(analysis, first):
-        yield f"analyze --output {shlex.quote(shown) if ' ' in shown else shown}"
+    if output := _output_of(analysis, first):
+        yield f"analyze --output {shlex.quote(output) if ' ' in output else output}"
     if machine.planting is not None:
         yield "plant"
     if machine.support is not None and not massless(machine):

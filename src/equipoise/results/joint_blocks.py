@@ -140,9 +140,9 @@ def joint_table(analysis: Analysis) -> Table:
     unit = display_of_joints(analysis).unit
     columns = ["", say("by → on"), *(Column(label, "force", unit) for label in labels)]
     columns += [Column(say(item), "torque") for item in (MOMENT, TILTING)]
-    shown = [k for k in range(len(columns)) if any(row[k] is not None for row in rows)]
+    filled = [k for k in range(len(columns)) if any(row[k] is not None for row in rows)]
     title = say("Force in each joint; largest with its crank angle")
-    return Table.of(title, [columns[k] for k in shown], ([row[k] for k in shown] for row in rows))
+    return Table.of(title, [columns[k] for k in filled], ([row[k] for k in filled] for row in rows))
 
 
 MOMENT, TILTING = to_say("moment"), to_say("tilting moment")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.i18n import Note, coordinates, said, say, to_say
+from equipoise.i18n import Note, coordinates, localized, say, to_say
 from equipoise.mechanism.outputs.declared import body_named, joint_named
 from equipoise.mechanism.parts.bodies import combined, inertia_of, material_of
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
@@ -222,7 +222,7 @@ def _parts(machine: Machine) -> Iterator[str]:
             angle=angle(slider.direction),
         )
     parts = (*machine.couplings, *(element for *_, element in machine.elements))
-    yield from (part.sentence().with_values(_worded).said() for part in parts)
+    yield from (part.sentence().with_values(_worded).localized() for part in parts)
     for load in machine.loads:
         if load.point is None:
             yield say("Load: a torque on {link}", link=load.link)
@@ -422,7 +422,7 @@ def law_range_texts(law: Law) -> dict[str, str]:
 
 def pushed_named(drive: Drive | FurtherDrive) -> str:
     """Name of the cylinder or sliding joint that pushes, in the language that is spoken."""
-    return said(pushing(drive))
+    return localized(pushing(drive))
 
 
 def pushing(drive: Drive | FurtherDrive) -> Note | str:

@@ -47,15 +47,15 @@ def section_blocks(analysis: Analysis) -> Iterator[Block]:
     heads = (say("yielding"), say("buckling"), say("fatigue"))
     columns = ["", Column(say("stress"), "modulus"), say("place"), *heads]
     columns.append(Column(say("life"), "time", "h"))
-    shown = [k for k in range(len(columns)) if any(row[k] is not None for row in strength)]
+    filled = [k for k in range(len(columns)) if any(row[k] is not None for row in strength)]
     title = say("Largest stress along links (at crank angle), and safety")
     if states := len(analysis.machine.duty):
         title = say(
             "Largest stress along links (at crank angle), and safety, over {count} duty states",
             count=states,
         )
-    rows = ([row[k] for k in shown] for row in strength)
-    yield Table.of(title, [columns[k] for k in shown], rows)
+    rows = ([row[k] for k in filled] for row in strength)
+    yield Table.of(title, [columns[k] for k in filled], rows)
     yield from _elastic_blocks(analysis)
     if notes := (*_notes(analysis), *remarks_of(analysis, "sections")):
         yield Notes(notes)

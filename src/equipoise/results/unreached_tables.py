@@ -30,7 +30,7 @@ def unreached_tables(motion: Motion) -> Iterator[Note]:
             continue
         ends = (low, high, first, last)
         names = ("low", "high", "first", "last")
-        shown = {
+        limits = {
             name: format_quantity(end, argument.dimension)
             for name, end in zip(names, ends, strict=True)
         }
@@ -39,5 +39,5 @@ def unreached_tables(motion: Motion) -> Iterator[Note]:
             "so that none is reached; check the rows, and from where they count",
             where=where,
             label=argument.label,
-            **shown,
+            **limits,
         )

@@ -306,12 +306,12 @@ def kept_contact(entries: tuple[FigureAssessment, ...]) -> FigureAssessment | No
 
 def contact_sentence(entry: FigureAssessment) -> str:
     """Up to which speed a contact is kept, and its margin."""
-    shown = display(entry.dimension, [entry.value], entry.shown_unit)
+    unit_display = display(entry.dimension, [entry.value], entry.shown_unit)
     return say(
         "The follower of {cam} stays on its cam up to {speed}, {ratio} times the speed of the "
         "crank.",
         cam=named(entry.item),
-        speed=shown.with_unit(shown.text(entry.value, digits=3)),
+        speed=unit_display.with_unit(unit_display.text(entry.value, digits=3)),
         ratio=number(1 / entry.ratio, digits=2),
     )
 
@@ -323,11 +323,11 @@ def sentence(entry: FigureAssessment, crank_turns: bool = True) -> str:
     """
     is_beside = entry.dimension in ANGLES_AND_SPEEDS or entry.is_limit
     both = [entry.value, entry.yardstick] if is_beside else [entry.value]
-    shown = display(entry.dimension, both, entry.shown_unit)
+    unit_display = display(entry.dimension, both, entry.shown_unit)
     values = {
-        "what": entry.label.said(),
-        "value": shown.with_unit(shown.text(entry.value, digits=3)),
-        "against": entry.against.said(),
+        "what": entry.label.localized(),
+        "value": unit_display.with_unit(unit_display.text(entry.value, digits=3)),
+        "against": entry.against.localized(),
     }
     values["what"] = values["what"][:1].upper() + values["what"][1:]
     if entry.crank_angle is not None:
@@ -337,7 +337,7 @@ def sentence(entry: FigureAssessment, crank_turns: bool = True) -> str:
         template = of_crank if crank_turns else of_cycle
         values["value"] = say(template, value=values["value"], angle=at)
     if is_beside:
-        limit = shown.with_unit(shown.text(entry.yardstick, digits=3))
+        limit = unit_display.with_unit(unit_display.text(entry.yardstick, digits=3))
         return say("{what}: {value}; {against}: {limit}", limit=limit, **values)
     if entry.ratio >= 1:
         ratio = number(entry.ratio, digits=2)
@@ -716,8 +716,10 @@ def _of_gauge(machine: Machine, name: str, reading: GaugeReading) -> Iterator[Fi
             output, name, is_limit=True,
         )  # fmt: skip
     assert machine.support is not None
-    held = any(gauge.exposure is not None for gauge in machine.support.gauges.values())
-    if known or held or unbalances(machine):  # a rotor's vibration may be what the machine is for
+    measures_hands = any(gauge.exposure is not None for gauge in machine.support.gauges.values())
+    if (
+        known or measures_hands or unbalances(machine)
+    ):  # a rotor's vibration may be what the machine is for
         return
     rate: Dimension = "angular speed" if reading.rotation else "speed"
     most = VIBRATION / (_reach_of_support(machine) if reading.rotation else 1.0)

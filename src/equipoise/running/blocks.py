@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.i18n import said, say, to_say
+from equipoise.i18n import localized, say, to_say
 from equipoise.mechanism.outputs.declared import joint_named
 from equipoise.quantities import PER_RPM, format_quantity, number, percent
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
@@ -100,7 +100,7 @@ def _trouble(run: Run) -> str:
     if run.lacking_torque is not None:
         needed, given = run.lacking_torque
         at = degrees(run.end.crank_angle) % 360
-        return said(stall_note(at, needed, given, at_rest=not run.turned)) + "."
+        return localized(stall_note(at, needed, given, at_rest=not run.turned)) + "."
     return "" if run.driven_back is None else _driven_back(run, run.driven_back)
 
 
@@ -252,7 +252,7 @@ def contacts_table(contacts: Sequence[RunContact]) -> Iterator[Table]:
         return
     title = say("Contacts of one-sided parts")
     if len(contacts) > MOST_EVENTS:
-        title = say("Contacts of one-sided parts, the last {shown} of {count}", shown=MOST_EVENTS,
+        title = say("Contacts of one-sided parts, the last {number} of {count}", number=MOST_EVENTS,
                     count=len(contacts))  # fmt: skip
     heads = (
         "",
@@ -276,7 +276,7 @@ def contacts_table(contacts: Sequence[RunContact]) -> Iterator[Table]:
 
 def _contact_named(contact: RunContact) -> str:
     """Parts that touch, and in which row."""
-    parts = contact.parts.said()
+    parts = contact.parts.localized()
     return parts if contact.row is None else f"{parts}, {say('row {number}', number=contact.row)}"
 
 

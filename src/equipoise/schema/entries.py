@@ -86,7 +86,7 @@ class Document:
         content = deepcopy(self.content)
         above = _above(self.of, content, place) if place else {}
         if not place or not _has(above, place[-1]):
-            raise ModelError(place.shown, Note("entry not found; it may have been deleted"))
+            raise ModelError(place.abbreviated, Note("entry not found; it may have been deleted"))
         del above[place[-1]]
         if not above and len(place) > 1:
             del _above(self.of, content, place.parent)[place[-2]]
@@ -134,7 +134,7 @@ def kind_at(of: type[Frozen], place: KeyPath) -> KeyTable:
     for step in steps:
         known = tables_below(key_table.type)
         if step not in known:
-            raise ModelError(place.shown, unknown(str(step), known, "table"))
+            raise ModelError(place.abbreviated, unknown(str(step), known, "table"))
         kind = known[str(step)].kind
         inner = entry_of(kind)
         assert inner is not None
@@ -142,7 +142,7 @@ def kind_at(of: type[Frozen], place: KeyPath) -> KeyTable:
             last = next(steps, None)
             if isinstance(last, int) != isinstance(kind, Tables) or last is None:
                 what = "the number" if isinstance(kind, Tables) else "the name"
-                raise ModelError(place.shown, Note("give {what} of the entry too", what=what))
+                raise ModelError(place.abbreviated, Note("give {what} of the entry too", what=what))
         key_table = inner
     return key_table
 
@@ -171,9 +171,9 @@ def _above(of: type[Frozen], content: Content, place: KeyPath) -> Any:
         if not _has(here, step):
             # a list, or a table of names, begins with its first entry; another table does not
             if length != len(place) - 1 or _is_entry(of, place.begin(length)):
-                first = place.begin(length).shown
+                first = place.begin(length).abbreviated
                 raise ModelError(
-                    place.shown, Note("there is no {first}; add that first", first=first)
+                    place.abbreviated, Note("there is no {first}; add that first", first=first)
                 )
             here[step] = [] if isinstance(place[length], int) else {}
         here = here[step]
@@ -197,12 +197,14 @@ def _set(above: Any, place: KeyPath, entry: Content, name: str | None) -> None:
                 count=len(above),
                 following=len(above) + 1,
             )
-            raise ModelError(place.shown, number)
+            raise ModelError(place.abbreviated, number)
         above[step : step + 1] = [entry]
         return
     new = step if name is None else name
     if new != step and new in above:
-        raise ModelError(place.shown, Note("{new!r} is taken already; give another name", new=new))
+        raise ModelError(
+            place.abbreviated, Note("{new!r} is taken already; give another name", new=new)
+        )
     items = [(new, entry) if key == step else (key, value) for key, value in above.items()]
     above.clear()
     above.update(items)

@@ -174,7 +174,7 @@ def _below(content: Content, kind: Kind, path: str, place: KeyPath, here: Any) -
         if default is not None:
             return default
         if key is not None:
-            missing = place.shown
+            missing = place.abbreviated
             raise ModelError(
                 path,
                 Note(

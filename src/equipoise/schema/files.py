@@ -102,23 +102,23 @@ def write(path: Name, text: str | bytes, *, replace: bool = True, links: bool = 
     ------
     UsageError : it cannot be written, or is there already and `replace` is false.
     """
-    shown = printable(path) or "''"
+    place = printable(path) or "''"
     if not (replace or may_be_replaced()) and os.path.lexists(path):
-        raise UsageError(at_place(shown, Note("is there already; choose another name")))
+        raise UsageError(at_place(place, Note("is there already; choose another name")))
     data = text if isinstance(text, bytes) else text.encode("utf-8")
     try:
         target = Path(path)
         if target.exists() and not target.is_file():  # the file would take the place of a device
             kind = Note("a directory") if target.is_dir() else Note("no regular file")
             raise UsageError(
-                at_place(shown, Note("this is {kind}; give the name of a file", kind=kind))
+                at_place(place, Note("this is {kind}; give the name of a file", kind=kind))
             )
         with replaced(path, links=links) as file:
             file.write(data)
     except (OSError, ValueError) as error:
         raise UsageError(
             at_place(
-                shown,
+                place,
                 Note(
                     "the file cannot be written ({reason}); choose another place or name",
                     reason=reason(error),
@@ -146,9 +146,9 @@ def _make(folder: Name) -> None:
     try:
         make_folder(folder)
     except FileExistsError as error:
-        shown = printable(folder)
+        place = printable(folder)
         raise UsageError(
-            at_place(shown, Note("this is a file; give the name of a folder"))
+            at_place(place, Note("this is a file; give the name of a folder"))
         ) from error
     except (OSError, ValueError) as error:
         what = Note("the folder cannot be made ({reason})", reason=reason(error))

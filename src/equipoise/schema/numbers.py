@@ -43,9 +43,9 @@ def parse_share(text: str) -> float | None:
         return None
     match = re.fullmatch(SHARE, text)
     if match is None:
-        shown = text if len(text) <= 60 else f"{text[:57]}..."
+        given = text if len(text) <= 60 else f"{text[:57]}..."
         raise UsageError(
-            Note('got {shown!r}; give a number, a space and %, such as "80 %"', shown=shown)
+            Note('got {given!r}; give a number, a space and %, such as "80 %"', given=given)
         )
     with localcontext() as context:
         context.prec = _DIGITS

@@ -123,11 +123,11 @@ def _unquoted(line: str, column: int) -> Note | None:
         parts = [part.strip() for part in re.findall(_PART, key or table)]
         mended = ".".join(part if part[:1] in "\"'" else written_key(part) for part in parts)
         if match.start() <= column <= match.end() and mended.count('"') > (key or table).count('"'):
-            shown = f"{opening}{mended}{']' * len(opening)}" if opening else f"{mended} ="
+            text = f"{opening}{mended}{']' * len(opening)}" if opening else f"{mended} ="
             return Note(
-                "put the name in quotes: {shown}; without them it has letters A to Z, "
+                "put the name in quotes: {text}; without them it has letters A to Z, "
                 "digits, - and _ only",
-                shown=shown,
+                text=text,
             )
     value = _VALUE.search(line)
     if value is None or _PLAIN.fullmatch(value[1].replace(" ", "")) or column < value.start():
@@ -163,8 +163,8 @@ def _unassigned(line: str) -> Note | None:
         count = max(len(match["open"] or ""), len(match["close"] or ""))
         if count:
             return Note(
-                "put the name of a table in brackets: {shown}",
-                shown=f"{'[' * count}{match['name']}{']' * count}",
+                "put the name of a table in brackets: {text}",
+                text=f"{'[' * count}{match['name']}{']' * count}",
             )
     elif (match := _ASSIGNED.fullmatch(bare)) and not bare.startswith("["):
         value = match["value"]

@@ -29,7 +29,7 @@ from equipoise.schema.numbers import Polar
 
 def within(place: KeyPath, error: ModelError) -> ModelError:
     """Copy of an error whose place is inside of another."""
-    return error.within(place.shown)
+    return error.within(place.abbreviated)
 
 
 def _is_below(place: str, where: str) -> bool:
@@ -77,7 +77,7 @@ class Context:
             yield
         except ModelError as error:
             where, source = error.where, error.source
-            texts = sorted(self.written, key=lambda item: not _is_below(item[0].shown, where))
+            texts = sorted(self.written, key=lambda item: not _is_below(item[0].abbreviated, where))
             what = as_written(error.what, [text for _, text in texts])
             raise ModelError(where, what, source).like(error) from error
 
@@ -124,7 +124,7 @@ def read_table(
         (where, what), *others = context.problems
         if others:
             what = Note("{sentence} (and {more} more)", sentence=what, more=len(others))
-        raise ModelError(where.shown, what)
+        raise ModelError(where.abbreviated, what)
     with context.with_written():
         return constructed(table, context)
 
@@ -213,8 +213,8 @@ def _own_names(
         return [name for name in bodies if name != FRAME]
     if kind.of != "point":
         return []
-    beside = known.get(kind.on)
-    body = kind.on if beside is None else given.get(kind.on, beside.default)
+    key = known.get(kind.on)
+    body = kind.on if key is None else given.get(kind.on, key.default)
     fixed = [] if body == FRAME else _points_in(bodies, FRAME)
     return sorted(_points_in(bodies, body), key=fixed.__contains__)
 
@@ -240,7 +240,7 @@ def _example(key: keys.Key, names: list[str]) -> str:
 
 def _tables(kind: keys.Tables, given: Any, place: KeyPath, context: Context) -> Any:
     if not isinstance(given, list):
-        header = KeyPath(step for step in place if isinstance(step, str)).shown
+        header = KeyPath(step for step in place if isinstance(step, str)).abbreviated
         return context.wrong(
             place, given, Note("write each as a table under [[{header}]]", header=header)
         )
@@ -257,7 +257,7 @@ def _named(kind: keys.Named, given: Any, place: KeyPath, context: Context) -> An
         if kind.listed:
             right = Note("give a table, or a list of names")
         elif isinstance(given, list) and isinstance(kind.item, keys.KeyTable):
-            right = Note("write each as a table [{header}.NAME]", header=place.shown)
+            right = Note("write each as a table [{header}.NAME]", header=place.abbreviated)
         return context.wrong(place, given, right)
     read, item = READERS[type(kind.item)], kind.item
     return {name: read(item, entry, place / name, context) for name, entry in given.items()}

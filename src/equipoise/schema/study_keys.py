@@ -93,7 +93,7 @@ class SamplingTable(Frozen):
     method: str = key(TextKind(suggested=(*METHODS,)), "how designs are spread", example="sobol")
     designs: int | None = key(ANY_WHOLE, "their number; not of a grid", default=None)
     seed: int | None = key(
-        ANY_WHOLE, "of random numbers; not of a grid", default=None, shown=Sampling.seed
+        ANY_WHOLE, "of random numbers; not of a grid", default=None, written_default=Sampling.seed
     )
 
 

@@ -250,13 +250,13 @@ def _column(name: str, forms: Forms) -> tuple[Dimension, str]:
 @contextmanager
 def in_table(path: str | os.PathLike[str]) -> Iterator[None]:
     """Name a table's file in front of what is wrong with it."""
-    shown = printable(path) or "''"
+    place = printable(path) or "''"
     try:
         yield
     except (FileError, UsageError) as error:
-        raise ModelError("", at_place(shown, error.note)) from error
+        raise ModelError("", at_place(place, error.note)) from error
     except ModelError as error:
-        raise ModelError("", Note("{shown}, {what}", shown=shown, what=error.what)) from error
+        raise ModelError("", Note("{place}, {what}", place=place, what=error.what)) from error
 
 
 def headers_wanted(forms: Forms, first: str = "") -> Note:

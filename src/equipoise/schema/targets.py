@@ -137,11 +137,11 @@ def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Requirement:
         if item not in REQUIREMENT_KINDS or not REQUIREMENT_KINDS[item].choices:
             given[item] = si_value(f"{where}.{item}", value, dimension_of(goal.figure))
     try:
-        asked = Requirement(goal.figure, **given)
-        check_asks(asked)
+        requirement = Requirement(goal.figure, **given)
+        check_asks(requirement)
     except UsageError as error:
         raise ModelError(where, error.note) from error
-    return asked
+    return requirement
 
 
 def _limits(

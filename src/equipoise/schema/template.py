@@ -197,7 +197,7 @@ class Template:
             return self._lifted(self.machine(plain), {path: values[path] for path in lifted})
         try:
             linkages = self._linkages(values)
-            names = {place: f"{place.shown} changed" for place in linkages}
+            names = {place: f"{place.abbreviated} changed" for place in linkages}
             given = ((path, self._find(path), value) for path, value in values.items())
             content = replaced(self._content, (item for item in given if not item[1].rest))
             known = self._known | {("linkage", names[at]): new for at, new in linkages.items()}
@@ -304,7 +304,7 @@ class Template:
             try:
                 machine = self._linkage(place).machine(numbers)
             except ModelError as error:
-                raise ModelError(f"{place.shown}.{error.where}", error.what) from error
+                raise ModelError(f"{place.abbreviated}.{error.where}", error.what) from error
             assert isinstance(machine, Machine)
             _ = assemble(machine).cycle  # it has to turn fully, as on reading a tool's file
             linkages[place] = machine

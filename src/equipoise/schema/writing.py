@@ -91,8 +91,8 @@ def _given(to_table: Callable[[Any], dict[str, Any]], value: Any, place: KeyPath
 
 def plain_default(key: keys.Key) -> Any:
     """What a key that is left out stands for, as it would be written; None for nothing."""
-    if key.shown is not None or key.required or key.default is None or key.endless:
-        return key.shown
+    if key.written_default is not None or key.required or key.default is None or key.endless:
+        return key.written_default
     if isinstance(key.kind, keys.KeyTable | keys.Tables | keys.File):
         return None
     default = Writer({}).plain(key.kind, key.default, KeyPath())
@@ -108,7 +108,7 @@ def _file_tables(
     kind: keys.Kind, value: Any, place: KeyPath
 ) -> Iterator[tuple[str, str, Any, str]]:
     if isinstance(kind, keys.File):
-        yield place.shown, kind.sort, value, getattr(value, "file", "")
+        yield place.abbreviated, kind.sort, value, getattr(value, "file", "")
     elif isinstance(kind, keys.Planes):
         for part, item in _in_planes(value, place):
             yield from _file_tables(kind.item, item, part)
@@ -207,7 +207,7 @@ WRITERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Writer], Any]] = {
     ),
     keys.Anything: lambda kind, value, place, writer: value,
     keys.Direction: _direction,
-    keys.File: lambda kind, value, place, writer: writer.names[place.shown],
+    keys.File: lambda kind, value, place, writer: writer.names[place.abbreviated],
     keys.Flag: lambda kind, value, place, writer: value,
     keys.Listing: _listing,
     keys.Named: _named,

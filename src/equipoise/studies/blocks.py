@@ -53,7 +53,7 @@ class Unit:
     @property
     def called(self) -> str:
         """The label in the language that is spoken."""
-        return self.label.said() if isinstance(self.label, Note) else self.label
+        return self.label.localized() if isinstance(self.label, Note) else self.label
 
     def of_si(self, value: float) -> float:
         """A value in SI units, in this one."""
@@ -72,7 +72,7 @@ def unit_in(units: Units | None, name: str) -> Unit:
 def named_together(names: Sequence[str], units: Units | None) -> str:
     """Numbers that vary together in words; what they are of is said once."""
     result = _joined([unit_in(units, name).label for name in names])
-    return result.said() if isinstance(result, Note) else result
+    return result.localized() if isinstance(result, Note) else result
 
 
 def _joined(words: Sequence[Note | str]) -> Note | str:
@@ -253,14 +253,14 @@ def _front(searched: Searched, units: Units | None, own: tuple[Array, Array] | N
         values, figures = np.vstack([own[0], values]), np.vstack([own[1], figures])
     columns = columns_of(searched.study.paths, values, searched.study.names, figures)
     text = {
-        "shown": len(shown),
+        "number": len(shown),
         "count": searched.front,
         "aims": wanted(searched.objectives, units),
     }
     if len(searched.objectives) == 1:
         title = say("The best design; {aims}", **text)
     elif len(shown) < searched.front:
-        title = say("{shown} of {count} Pareto-optimal designs; {aims}", **text)
+        title = say("{number} of {count} Pareto-optimal designs; {aims}", **text)
     else:
         title = say("{count} Pareto-optimal designs; {aims}", **text)
     return designs_table(
@@ -362,7 +362,7 @@ def landscape_blocks(landscape: Landscape) -> Iterator[Block]:
         rows.append((say("as it is"), *map(Value, (*landscape.start, landscape.before))))
     objective = Column(objective_named(landscape.objective), unit=landscape.unit)
     words = (landscape.words[path] for path in landscape.paths)
-    said = (word.said() if isinstance(word, Note) else word for word in words)
+    said = (word.localized() if isinstance(word, Note) else word for word in words)
     columns = (Column(""), *map(Column, said), objective)
     yield Table(say("Least over two numbers, SI units"), columns, tuple(rows))
     values = landscape.values[np.isfinite(landscape.values)]

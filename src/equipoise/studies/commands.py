@@ -276,13 +276,13 @@ def _of_numbers(values: Any) -> bool:
 
 
 def _listed(names: Any, most: int = 12) -> str:
-    shown = [str(name) for name in names]
-    if not shown:
+    texts = [str(name) for name in names]
+    if not texts:
         return Note("none")
-    text = ", ".join(shown[:most])
-    if len(shown) <= most:
+    text = ", ".join(texts[:most])
+    if len(texts) <= most:
         return text
-    return Note("{some} and {number} more", some=text, number=len(shown) - most)
+    return Note("{some} and {number} more", some=text, number=len(texts) - most)
 
 
 # -- what it is ------------------------------------------------------------------------------------

@@ -429,8 +429,8 @@ def landscape(
         start = float(model.number(paths[0])[0]), float(model.number(paths[1])[0])
         before = float(value(np.array([start]))[0])
     values = computed.reshape(len(y), len(x))
-    asked = (of, paths, given, dimensions, words, x, y, values, unit_of(of, base))
-    return Landscape(base.with_balance(None), *asked, best, least, start, before)
+    fields = (of, paths, given, dimensions, words, x, y, values, unit_of(of, base))
+    return Landscape(base.with_balance(None), *fields, best, least, start, before)
 
 
 def _computed(

@@ -172,23 +172,23 @@ def _limit(output: Output, unit: str) -> str:
     """
     low, high = output.at_least, output.at_most
     if output.dimension is None:
-        shown = Display(unit, 1.0)
+        unit_display = Display(unit, 1.0)
     else:
         dimension = cast("Dimension", output.dimension)
-        shown = display(dimension, [limit for limit in (low, high) if limit is not None])
+        unit_display = display(dimension, [limit for limit in (low, high) if limit is not None])
     text = output.name
     if low is not None and high is not None:
-        text = f"{_in(low, shown)} <= {text} <= {_in(high, shown)}"
+        text = f"{_in(low, unit_display)} <= {text} <= {_in(high, unit_display)}"
     elif low is not None:
-        text = f"{text} >= {_in(low, shown)}"
+        text = f"{text} >= {_in(low, unit_display)}"
     elif high is not None:
-        text = f"{text} <= {_in(high, shown)}"
-    return shown.with_unit(text)
+        text = f"{text} <= {_in(high, unit_display)}"
+    return unit_display.with_unit(text)
 
 
-def _in(value: float, shown: Display) -> str:
+def _in(value: float, unit_display: Display) -> str:
     """A limit (SI) as it may stand in a file, without its unit."""
-    return f"{value * shown.factor:g}"
+    return f"{value * unit_display.factor:g}"
 
 
 PATIENCE, STILL, MARGIN = 20, 1e-4, 0.1

@@ -447,6 +447,6 @@ def brief(error: Exception) -> str:
     """Say briefly what went wrong."""
     if isinstance(error, FileNotFoundError) and is_nowhere():
         return NOWHERE
-    said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    line = said.splitlines()[0].rstrip(".") if said else type(error).__name__
+    message = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    line = message.splitlines()[0].rstrip(".") if message else type(error).__name__
     return line[:1].lower() + line[1:LONGEST]

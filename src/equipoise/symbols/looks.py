@@ -190,8 +190,8 @@ def in_turn(scene: Scene, k: int) -> list[tuple[tuple[str, ...], Scene]]:
     if not stacks:
         return [((), scene)]
     covering = {name for stack in stacks for name in stack}
-    shown = [tuple(filter(None, names)) for names in zip_longest(*stacks)]
-    return [(names, _without(scene, covering - {*names})) for names in shown]
+    stacked = [tuple(filter(None, names)) for names in zip_longest(*stacks)]
+    return [(names, _without(scene, covering - {*names})) for names in stacked]
 
 
 def _stacks(scene: Scene, k: int) -> list[list[str]]:

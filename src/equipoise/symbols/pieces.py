@@ -235,7 +235,7 @@ def _links(scene: Scene) -> Iterator[Piece]:
 
 def _rows(scene: Scene) -> Iterator[Piece]:
     """Links of other rows, pale, as lines through their points."""
-    for number, _ in enumerate(scene.rows.shown, 1):
+    for number, _ in enumerate(scene.rows.visible, 1):
         for body in scene.bodies:
             corners = [*map(complex, scene.corners(body))]
             if len(corners) > 1:

@@ -130,7 +130,7 @@ class Rows:
     others: tuple[Ghost, ...] = ()
 
     @property
-    def shown(self) -> tuple[Ghost, ...]:
+    def visible(self) -> tuple[Ghost, ...]:
         """Those of the others that are drawn."""
         return tuple(part for part in self.others if part.places)
 
@@ -390,7 +390,7 @@ class Scene:
     def linkage_box(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of all places, wheels and ways of blocks, m."""
         every = [*self.places.values(), *self.mass_centers.values(), np.array(self.room, complex)]
-        every += [place for row in self.rows.shown for place in row.places.values()]
+        every += [place for row in self.rows.visible for place in row.places.values()]
         for guide in self.guides:
             place = self.places[guide.point]
             every += [place - guide.behind * guide.way, place + guide.ahead * guide.way]

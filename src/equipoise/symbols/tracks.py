@@ -73,7 +73,7 @@ def track_of(scene: Scene, hold: Hold | None, still: bool, unit: float) -> Piece
 def _in_frame(scene: Scene, hold: Hold) -> PieceTrack:
     """Motion with a link, on a guide or between two points, in the axes of the frame."""
     if hold.row:
-        row = scene.rows.shown[hold.row - 1]
+        row = scene.rows.visible[hold.row - 1]
         return PieceTrack(
             row.places[hold.point], row.angles[hold.link], np.ones(len(scene.crank_angle))
         )

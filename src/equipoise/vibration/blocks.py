@@ -451,8 +451,8 @@ def free_blocks(free: FreeVibration) -> Iterator[Block]:
 
 def _reference_text(free: FreeVibration) -> str:
     """Sentence on the reference point of matrices and mode shapes."""
-    shown = display("length", [*free.reference], "mm")
-    place = coordinates(shown.text(part, AT_RESONANCE) for part in free.reference)
+    unit_display = display("length", [*free.reference], "mm")
+    place = coordinates(unit_display.text(part, AT_RESONANCE) for part in free.reference)
     support = free.linear.body.support
     template = (
         to_say("Displacements, masses and stiffnesses are those of the support's pivot, ({place}).")
@@ -462,7 +462,7 @@ def _reference_text(free: FreeVibration) -> str:
             "({place})."
         )
     )
-    return say(template, place=shown.with_unit(place))
+    return say(template, place=unit_display.with_unit(place))
 
 
 AT_RESONANCE = 1e-3

@@ -112,8 +112,8 @@ def check_stall(system: Coupled, setting: tuple[float, float], error: ResponseEr
     time = np.linspace(0.0, STALLING_TURNS * period / abs(speed), 2)
     try:
         follow(system, time, begin, shift, TO_SETTLE)
-    except StallError as found:
-        raise found from error
+    except StallError as stall:
+        raise stall from error
     except ResponseError:  # too long to follow, which says nothing of the motor
         return
 
@@ -281,16 +281,16 @@ class ExactSolution:
         if self.system.torque is not None and motor is not None:
             shift, own = float(self.states[-1, 0]), fastest(motor)
             if abs(shift) > own:
-                said = to_say(
+                template = to_say(
                     "to hold the mean speed, the motor's curve is shifted by {shift} rad/s, more "
                     "than its own {own} rad/s: it is too weak or slow for this machine"
                 )
-                yield Note(said, shift=f"{shift:.4g}", own=f"{own:.4g}")
+                yield Note(template, shift=f"{shift:.4g}", own=f"{own:.4g}")
         if abs(self.lean) > LEANING:
-            said = to_say(
+            template = to_say(
                 "the mean position of the support is tilted by {angle} deg from the drawn position"
             )
-            yield Note(said, angle=f"{self.lean:.1f}")
+            yield Note(template, angle=f"{self.lean:.1f}")
 
     def _gauges(self, body: SupportBody) -> dict[str, GaugeSignals]:
         base = self.base_motion

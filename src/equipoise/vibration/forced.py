@@ -111,20 +111,20 @@ def left_out(machine: Machine) -> list[Note | str]:
     """What the model file gives that does nothing in a steady vibration."""
     sentences: list[Note | str] = list(idle_parts(machine.support))
     if machine.drive.acceleration:
-        said = to_say(
+        template = to_say(
             "the acceleration of the drive is ignored: a steady-state vibration has a constant "
             "crank speed"
         )
-        sentences.append(Note(said))
+        sentences.append(Note(template))
     if machine.support is not None and machine.support.planar and machine.has_planes:
-        said = to_say("rocking moments have no effect: the support can neither roll nor yaw")
-        sentences.append(Note(said))
+        template = to_say("rocking moments have no effect: the support can neither roll nor yaw")
+        sentences.append(Note(template))
     if machine.rubs:
-        said = to_say(
+        template = to_say(
             "friction in joints loads the drive as on solid ground at a constant crank speed; by "
             "itself it shakes no support"
         )
-        sentences.append(Note(said))
+        sentences.append(Note(template))
     return sentences
 
 
@@ -206,12 +206,12 @@ def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
         return sum(float(gauge.displacement.peak_to_peak) for gauge in answer.gauges.values())
 
     louder = max(responses, key=loudness)
-    said = to_say(
+    template = to_say(
         "another steady state exists at this speed, with {share} % of this vibration; which one "
         "occurs depends on the preceding speeds"
     )
     shares = (100 * _ratio(louder, other) for other in responses if other is not louder)
-    notes = (Note(said, share=f"{share:.0f}") for share in shares)
+    notes = (Note(template, share=f"{share:.0f}") for share in shares)
     return replace(louder, notes=(*louder.notes, *notes))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.errors import EquipoiseError
-from equipoise.i18n import said, say, to_say
+from equipoise.i18n import localized, say, to_say
 from equipoise.quantities import PER_RPM, brief, number
 from equipoise.results import headline
 from equipoise.results.analysis import Analysis, analyze
@@ -133,7 +133,7 @@ def _resonances(response: Response) -> Iterator[str]:
     except EquipoiseError:  # without a small-motion description there are no resonances
         return
     if met:
-        text = said(resonance_note(met, response.speed))
+        text = localized(resonance_note(met, response.speed))
         yield say("{sentence}.", sentence=text[:1].upper() + text[1:])
 
 

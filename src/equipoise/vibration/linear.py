@@ -330,13 +330,13 @@ def within(resonances: Iterable[Resonance], speed: float) -> Iterator[Note]:
     for item in resonances:
         low, high = sorted(map(abs, item.avoid or (0.0, 0.0)))
         if low <= abs(speed) <= high and item.avoid is not None:
-            said = to_say(
+            template = to_say(
                 "the crank turns at a speed that is to be avoided: between {low} and {high} rpm "
                 "order {order} meets mode {mode} ({frequency} Hz), which amplifies it more than "
                 "three times"
             )
             yield Note(
-                said,
+                template,
                 low=brief(low / PER_RPM),
                 high=brief(high / PER_RPM),
                 order=f"{item.order:.4g}",
@@ -494,9 +494,9 @@ def between(ordered: Sequence[float], levels: Mapping[float, Array]) -> list[flo
     there = np.array([speed in levels for speed in ordered])
     if len(speeds) < 3 or not np.any(there):
         return []
-    found = [levels[speed] for speed in ordered if speed in levels]
-    curves = np.full((len(found[0]), len(speeds)), np.nan)
-    curves[:, there] = np.array(found).T
+    curves_by_speed = [levels[speed] for speed in ordered if speed in levels]
+    curves = np.full((len(curves_by_speed[0]), len(speeds)), np.nan)
+    curves[:, there] = np.array(curves_by_speed).T
     x = np.broadcast_to(ACROSS * speeds / np.ptp(speeds), curves.shape)
     ways = np.diff(x) + 1j * np.diff(curves)
     both = ways[:, 1:] + ways[:, :-1]

@@ -28,8 +28,8 @@ def respond_linear(linear: Linear, speed: float) -> Response:
     mounts, notes = mount_forces(linear, moved, moving, speed)
     notes.extend(linear.unsettled)
     if any(mode.eigenvalue.real > NEUTRAL * mode.natural_frequency for mode in linear.modes):
-        said = to_say("the support is unstable: the drawn position is no stable equilibrium")
-        notes.append(Note(said))
+        template = to_say("the support is unstable: the drawn position is no stable equilibrium")
+        notes.append(Note(template))
     return Response(
         body.machine,
         linear.excitation.model,
@@ -73,17 +73,17 @@ def mount_forces(
         row, preload = linear.body.row(mount), linear.rest.preload[name]
         force = linear.seen_by(row, moved) * -mount.spring
         force = force + linear.seen_by(row, moving) * -mount.damper
-        said = ""
+        template = ""
         if not linear.rest.carries(name, mount):
             force, preload = force * 0.0, 0.0
-            said = to_say("{name} has no contact at rest and is ignored")
+            template = to_say("{name} has no contact at rest and is ignored")
         elif mount.one_sided and force.extreme(-1)[0] + preload < 0:
-            said = to_say(
+            template = to_say(
                 "{name} would be in tension, which a one-sided mount cannot transmit; the exact "
                 "model includes the loss of contact"
             )
-        if said:
-            notes.append(Note(said, name=name))
+        if template:
+            notes.append(Note(template, name=name))
         hands_on = exciting if mount.axis is None else exciting[:0]
         mounts[name] = mount_force(force, preload, hands_on)
     return mounts, notes

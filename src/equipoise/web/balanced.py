@@ -28,7 +28,7 @@ from equipoise.balancing.sentences import (
 from equipoise.balancing.workshop import SPREAD, sentences
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, said, say
+from equipoise.i18n import Note, localized, say
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from equipoise.mechanism.parts.bodies import Body
@@ -279,7 +279,7 @@ def balanced_values(base: Computed, after: Computed, balanced: Balanced) -> Valu
         "worse": list(deterioration_sentences(balanced)),
         "gauges_worse": any(worse.group == "gauges" for worse in balanced.worse),
         "proof": " ".join(proof_sentences(balanced)),
-        "notes": list(map(said, balanced.notes)),
+        "notes": list(map(localized, balanced.notes)),
     }
 
 

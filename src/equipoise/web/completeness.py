@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from equipoise.i18n import all_of, said, say, to_say
+from equipoise.i18n import all_of, localized, say, to_say
 from equipoise.mechanism.assembly.joints import Structure, held_too_often, undetermined
 from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -50,7 +50,7 @@ def forces_lack(machine: Machine) -> str:
     numbers = all_of([word_of(own[key]) for key in ("mass", "center_of_mass", "inertia")], True)
     return say(
         "forces need {numbers} of every link: give them, or bodies, at “{place}” for {links}",
-        numbers=said(numbers),
+        numbers=localized(numbers),
         place=say("Parts of the model"),
         links=_listed(missing, AND),
     )

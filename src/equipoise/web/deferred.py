@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
-from equipoise.i18n import said, say, to_say
+from equipoise.i18n import localized, say, to_say
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.kinematics.strokes import declared_figures, dimension_of
 from equipoise.mechanism.outputs.declared import DECLARED, coupling_named, joint_named
@@ -116,7 +116,7 @@ def _displacements(shown: Computed, response: Response, block: FloatBlock) -> Va
     from equipoise.figures.swing import swinging
 
     charts = [chart("response", choices, chooser=say("Response of"))]
-    notes = list(map(said, response.notes))
+    notes = list(map(localized, response.notes))
     swing = _swing(swinging(shown.scene, response), block)
     modes = [*_modes(shown.scene, response)]
     return {
@@ -232,7 +232,7 @@ def _compared_figures(
     except EquipoiseError:
         others = {}
     values = [_shown(name, figure, others.get(name)) for name, figure in figures.items()]
-    notes = list(map(said, planted(computed).notes)) if kind == "planting" else []
+    notes = list(map(localized, planted(computed).notes)) if kind == "planting" else []
     return {"type": kind, "figures": values, "compared": bool(others), "notes": notes}
 
 

@@ -12,7 +12,7 @@ from importlib.resources import files
 from typing import Any
 
 from equipoise.errors import UsageError
-from equipoise.i18n import LANGUAGES, Note, catalogue, said, say, speaking
+from equipoise.i18n import LANGUAGES, Note, catalogue, localized, say, speaking
 from equipoise.i18n.languages import KNOWN, counted, rules
 from equipoise.web.edits import Computed
 from equipoise.web.figures import explained
@@ -173,7 +173,7 @@ def played(computed: Computed, replies: Iterable[Reply], language: str) -> str:
         "wanted": first_of(computed.design.machine)[1],
     }
     with speaking(language):
-        title = said(computed.design.machine.title) or computed.design.name
+        title = localized(computed.design.machine.title) or computed.design.name
     body = (
         '<main id="equipoise-live" data-played="equipoise-played"></main>',
         data("equipoise-played", text),

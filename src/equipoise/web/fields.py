@@ -523,7 +523,7 @@ NOT_OF_PARTS = ("ratio",)
 
 def _parts(machine: Machine) -> Iterator[Field]:
     for table, number, part in machine.parts:
-        path, of = KeyPath((table, number)), part.label.said()
+        path, of = KeyPath((table, number)), part.label.localized()
         yield from _numbers(path, table, of, part, (*part.idle_keys, *NOT_OF_PARTS))
 
 

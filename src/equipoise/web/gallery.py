@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import Note, said, say, speaking, to_say
+from equipoise.i18n import Note, localized, say, speaking, to_say
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.links import Slider
@@ -168,9 +168,9 @@ def pictured() -> Iterator[tuple[Values, bytes]]:
     headings = sections()
     for name, machine in sorted(machines.items(), key=lambda item: section_of(item[1])):
         drawing, data = _thumbnail(name)
-        text = ASIDE.sub("", " ".join(said(machine.description).split()))
+        text = ASIDE.sub("", " ".join(localized(machine.description).split()))
         line = END.split(text, maxsplit=1)[0]
-        statement = {"name": name, "title": said(machine.title), "line": line}
+        statement = {"name": name, "title": localized(machine.title), "line": line}
         statement["kind"] = headings[section_of(machine)]
         statement["words"] = f"{search_words(machine)} {text}"
         yield {**statement, **drawing}, data

@@ -23,7 +23,7 @@ from equipoise.codegen.steps import SURFACE
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
-from equipoise.i18n import Note, catalogue, decimal_sign, said, say, spoken
+from equipoise.i18n import Note, catalogue, decimal_sign, localized, say, spoken
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.reach import CHANGE_POINT
@@ -84,7 +84,7 @@ def export_bytes(job: Job) -> str:
         style(asset("interactive.css")),
         "\n".join(body),
         policy=ALONE,
-        title=said(machine.title),
+        title=localized(machine.title),
         language=spoken(),
     )
 
@@ -216,8 +216,8 @@ class Interactive:
         sampling = motion.sampling
         theta = motion.crank_angle
         content: Values = {
-            "title": said(self.machine.title),
-            "description": said(self.machine.description),
+            "title": localized(self.machine.title),
+            "description": localized(self.machine.description),
             "rules": display_rules(),
             "length": {"unit": length.name, "factor": length.factor},
             "turns": motion.turns if motion.whole_cycle else 1,
@@ -227,7 +227,7 @@ class Interactive:
             "theta": _floats(theta if sampling is None else sampling.at),
             "shares": None if sampling is None else _floats(sampling.shares),
             "edges": None if sampling is None else _floats(sampling.edges),
-            "shown": None if sampling is None else sampling.shown.tolist(),
+            "shown": None if sampling is None else sampling.curve_places.tolist(),
             "frames": None if sampling is None else sampling.grid.tolist(),
             "grid": _floats(script.grid(theta)),
             "rows": [*self._rows()],
@@ -319,7 +319,7 @@ class Interactive:
             yield {
                 "path": path,
                 "steps": [*steps],
-                "label": say(CYCLE_SPEED) if is_cycle_speed else said(template.words(path)),
+                "label": say(CYCLE_SPEED) if is_cycle_speed else localized(template.words(path)),
                 "heading": str(steps[1]) if steps[0] == "links" else _section(str(steps[0])),
                 "value": float(number.value),
                 **_unit_content(shown),

@@ -70,7 +70,7 @@ def record_of_text(name: str, text: str) -> MeasuredSignals:
     try:
         return _record(shown, text)
     except ModelError as error:
-        raise ModelError("", Note("{shown}, {what}", shown=shown, what=error.what)) from error
+        raise ModelError("", Note("{place}, {what}", place=shown, what=error.what)) from error
 
 
 def _record(name: str, text: str) -> MeasuredSignals:

@@ -13,7 +13,7 @@ from threading import Lock
 from equipoise import __version__
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
-from equipoise.i18n import Note, said, speaking, wording
+from equipoise.i18n import Note, localized, speaking, wording
 from equipoise.mechanism.kinematics.machine_draft import USUAL_SIZE
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
@@ -226,7 +226,7 @@ class Session:
 
     def _titled(self, titles: dict[str, str]) -> list[Values]:
         with speaking(self.language):
-            return [{"name": name, "title": said(title)} for name, title in titles.items()]
+            return [{"name": name, "title": localized(title)} for name, title in titles.items()]
 
     def open(self, design: Design | Sketch, result: Computed | None = None) -> None:
         """Begin with a design, or with a sketch; what was done before is forgotten.

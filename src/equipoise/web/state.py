@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from equipoise.figures.points import traced
-from equipoise.i18n import said, say, speaking, spoken
+from equipoise.i18n import localized, say, speaking, spoken
 from equipoise.mechanism.dynamics.forces import assumed_masses
 from equipoise.mechanism.outputs.declared import GROUPS, declared, guided, pinned
 from equipoise.mechanism.parts.machine import Machine
@@ -64,8 +64,8 @@ def state_of(
     lacking = forces_lack(machine)
     content: Values = {
         "name": computed.design.name,
-        "title": said(machine.title),
-        "description": said(machine.description),
+        "title": localized(machine.title),
+        "description": localized(machine.description),
         "angles": len(scene.crank_angle),
         "turns": motion.turns,
         "speed": motion.speed,
@@ -80,11 +80,11 @@ def state_of(
         "least": least_of(signals),
         "orders": _orders(analysis),
         "notes": [
-            *(said(note) for note in (computed.along, computed.swings) if note),
-            *(said(note) for note in (assumed_masses(machine),) if note),
+            *(localized(note) for note in (computed.along, computed.swings) if note),
+            *(localized(note) for note in (assumed_masses(machine),) if note),
             *([lacking] if lacking else []),
         ],
-        "held": said(computed.limit_note) if computed.limit_note else None,
+        "held": localized(computed.limit_note) if computed.limit_note else None,
         "before": before is not None,
         "status": status_of(computed),
         "compared": against is not None,

@@ -137,7 +137,7 @@ def _groups(
 
 
 def _group(place: KeyPath, of: type[Frozen], many: str, words: Values) -> Values:
-    text = {"place": str(place), "where": place.shown, "form": of.__name__}
+    text = {"place": str(place), "where": place.abbreviated, "form": of.__name__}
     return {**text, "many": many, "needs": "", **words}
 
 
@@ -163,7 +163,7 @@ def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> Values
     said = [f"{word_of(item)} {_brief(_said(item, value))}" for item, value in shown]
     return {
         "place": str(place),
-        "where": place.shown,
+        "where": place.abbreviated,
         "words": ", ".join(said[:MOST_WORDS]),
         "values": values,
         "below": [
@@ -181,7 +181,7 @@ def _is_assumed(value: Any) -> bool:
 def _said(key: Key, value: Any) -> Any:
     """A text of several languages in the one that is spoken, all else as it is."""
     several = isinstance(key.kind, Wording) and isinstance(value, Mapping)
-    return Worded(value).said() if several else value
+    return Worded(value).localized() if several else value
 
 
 def _brief(value: Any) -> str:

@@ -18,7 +18,7 @@ from equipoise.handheld.modes import ToolModes, vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.side import side_of
 from equipoise.handheld.sweep import default_answers, default_speeds, speeds_between
-from equipoise.i18n import said, say
+from equipoise.i18n import localized, say
 from equipoise.quantities import Dimension, display, format_quantity
 from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.tool import ToolScene
@@ -86,8 +86,8 @@ def tool_state(now: ToolFigures, first: ToolFigures) -> tuple[Values, bytes]:
     scene = side_of(tool)
     changed, length = now is not first, display("length", [tool.shaft.length])
     content: Values = {
-        "title": said(tool.title),
-        "description": said(tool.description),
+        "title": localized(tool.title),
+        "description": localized(tool.description),
         "length": {"unit": length.name, "factor": length.factor},
         "scene": _scene(scene),
         "before": _scene(side_of(first.tool)) if changed else None,
@@ -95,7 +95,7 @@ def tool_state(now: ToolFigures, first: ToolFigures) -> tuple[Values, bytes]:
         "views": [*_views(now)],
         "figures": [*_compared(now, first)],
         "charts": [*_charts(now, first if changed else None, block)],
-        "notes": [said(note) for note in now.modes.notes],
+        "notes": [localized(note) for note in now.modes.notes],
     }
     content["arrays"] = block.placement
     return content, block.data

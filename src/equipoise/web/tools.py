@@ -10,7 +10,7 @@ from typing import Any
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Tool
-from equipoise.i18n import LANGUAGES, Note, said, say
+from equipoise.i18n import LANGUAGES, Note, localized, say
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import in_unit, parse, typeset
 from equipoise.quantities.units import KINDS
@@ -235,7 +235,7 @@ class ToolDesk:
                 "path": path,
                 "group": group,
                 "heading": group,
-                "label": said(self.template.words(path, known=known)),
+                "label": localized(self.template.words(path, known=known)),
                 "value": value,
                 "min": min(low, value),
                 "max": max(high, value),

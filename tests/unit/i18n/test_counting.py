@@ -17,10 +17,10 @@ def test_a_count_chooses_the_form_of_its_language() -> None:
         "3 moving links",
     )
     with speaking("de"):
-        assert note.said() == "1 bewegtes Glied"
+        assert note.localized() == "1 bewegtes Glied"
         assert say("{count} moving links", count="12") == "12 bewegte Glieder"
     with speaking("ko"):
-        assert note.said() == "가동 링크 1개"
+        assert note.localized() == "가동 링크 1개"
     assert say("Switched off, it stops in {time} s and {turns} turns.", time=3, turns="1") == (
         "Switched off, it stops in 3 s and 1 turn."
     )

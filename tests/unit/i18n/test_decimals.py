@@ -16,7 +16,7 @@ from equipoise.i18n.languages import KNOWN
 from equipoise.present import html_of
 from equipoise.present.pages import page
 from equipoise.quantities import typeset
-from equipoise.results.charts import shown
+from equipoise.results.charts import four_digits
 from equipoise.schema.documents import dumps
 from equipoise.schema.template import Template
 from support.findings import report_of
@@ -39,9 +39,9 @@ def test_numbers_in_sentences_have_the_sign_of_the_language() -> None:
     assert str(inner) == "-3.5 mm and 1.25, 1.5e-04 (0.1 N)"
     with speaking("de"):
         assert str(inner) == "-3.5 mm and 1.25, 1.5e-04 (0.1 N)"
-        assert inner.said() == "-3,5 mm and 1,25, 1,5e-04 (0,1 N)"
+        assert inner.localized() == "-3,5 mm and 1,25, 1,5e-04 (0,1 N)"
     with speaking("ja"):
-        assert inner.said() == str(inner)
+        assert inner.localized() == str(inner)
 
 
 def test_names_and_what_is_to_be_typed_keep_their_point() -> None:
@@ -55,12 +55,16 @@ def test_names_and_what_is_to_be_typed_keep_their_point() -> None:
 
 def test_axes_and_print_have_it() -> None:
     with speaking("de"):
-        assert (decimals("−3.5°"), typeset("1.5e-04"), shown(-0.25)) == (
+        assert (decimals("−3.5°"), typeset("1.5e-04"), four_digits(-0.25)) == (
             "−3,5°",
             "1,5×10⁻⁴",
             "−0,25",
         )
-    assert (decimals("−3.5°"), typeset("1.5e-04"), shown(-0.25)) == ("−3.5°", "1.5×10⁻⁴", "−0.25")
+    assert (decimals("−3.5°"), typeset("1.5e-04"), four_digits(-0.25)) == (
+        "−3.5°",
+        "1.5×10⁻⁴",
+        "−0.25",
+    )
 
 
 def visible(html: str) -> str:

@@ -132,10 +132,10 @@ def test_names_are_joined_as_each_language_does():
     assert all_of(names, commas=True) == "a, b and c"
     assert (all_of(["a"]), all_of([])) == ("a", "")
     with speaking("ja"):
-        assert all_of(names, commas=True).said() == "a、b と c"
+        assert all_of(names, commas=True).localized() == "a、b と c"
     many = [Note("{name}", name=str(k)) for k in range(3000)]
     assert all_of(many, commas=True) == ", ".join(many[:-1]) + " and 2999"
-    assert all_of(many).said() == " and ".join(many)
+    assert all_of(many).localized() == " and ".join(many)
     found = unknown("crnk", ["crank", "rod"], "link")
     assert found == "no link is called 'crnk'; did you mean 'crank'?"
     assert unknown("x", ["crank", "rod"], "link").endswith("there are 'crank', 'rod'")

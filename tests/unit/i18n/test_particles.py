@@ -54,7 +54,7 @@ def test_sentences_are_said_with_one_form() -> None:
     """Also with a part that is said before."""
     note = Note("{links} can be moved no further", links=Note("{a} and {b}", a="cam", b="A"))
     with speaking("ko"):
-        assert note.said() == "cam and A를 더 움직일 수 없음"
+        assert note.localized() == "cam and A를 더 움직일 수 없음"
 
 
 def test_catalogues_give_both_forms_after_what_is_filled_in() -> None:

@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.cli.outputs import write_model
 from equipoise.errors import ModelError
-from equipoise.i18n import LANGUAGES, Note, Worded, in_each, said, speaking
+from equipoise.i18n import LANGUAGES, Note, Worded, in_each, localized, speaking
 from equipoise.keys import Wording
 from equipoise.present.composition import build
 from equipoise.present.findings import find
@@ -34,12 +34,12 @@ def test_a_text_is_said_in_the_language_that_is_spoken_or_in_the_first_there_is(
     heard = []
     for code in DOCUMENTED:
         with speaking(code):
-            heard.append((said(machine.title), said(machine.description)))
+            heard.append((localized(machine.title), localized(machine.description)))
     assert heard == [("Four-bar", "설명"), ("四節リンク", "설명"), ("Four-bar", "설명")]
     assert (str(machine.title), f"{machine.description}") == ("Four-bar", "설명")
     with speaking("ja"):
         assert str(Note("joint {name}", name=machine.title)) == "joint Four-bar"
-        assert Note("joint {name}", name=machine.title).said() == "対偶 四節リンク"
+        assert Note("joint {name}", name=machine.title).localized() == "対偶 四節リンク"
 
 
 def test_a_text_by_language_equals_what_has_the_same_in_all():
@@ -63,7 +63,7 @@ def test_what_is_no_text_by_language_is_refused_in_python(given):
 
 def test_a_model_that_is_written_tells_what_was_done_in_each_language(tmp_path):
     machine = loads(BY_LANGUAGE)
-    origin = Note("Design {number} of {of}.", number=3, of="A").said
+    origin = Note("Design {number} of {of}.", number=3, of="A").localized
     for _ in range(2):
         write_model(machine, str(tmp_path / "new.toml"), Note(", balanced"), origin)
         machine = eq.load(tmp_path / "new.toml")

@@ -156,9 +156,9 @@ def test_a_sentence_in_a_sentence_is_said_in_the_same_language():
     links = moving_links(3)
     with speaking("de"):
         outer = Note("{links} of {mass} together", links=links, mass="6 kg")
-        assert links.said() != str(links)
-        assert say(outer.template, **outer.values).startswith(links.said())
-        assert outer.said().startswith(links.said())
+        assert links.localized() != str(links)
+        assert say(outer.template, **outer.values).startswith(links.localized())
+        assert outer.localized().startswith(links.localized())
 
 
 def test_a_language_is_spoken_inside_its_block_and_in_its_thread_only():

@@ -169,7 +169,7 @@ def test_a_file_is_read_written_and_shown(tmp_path: Path) -> None:
 def test_a_wrong_file_is_named(tmp_path: Path, slip: tuple[str, str], sentence: str) -> None:
     (tmp_path / "indicator.csv").write_text(ROWS.replace(*slip), encoding="utf-8")
     (tmp_path / "engine.toml").write_text(TEXT, encoding="utf-8")
-    with refused(ModelError, "loads[1].gas", shown="indicator.csv") as caught:
+    with refused(ModelError, "loads[1].gas", place="indicator.csv") as caught:
         eq.load(tmp_path / "engine.toml")
     assert sentence in str(caught.value)
 

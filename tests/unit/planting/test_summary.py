@@ -193,7 +193,7 @@ def test_a_cycle_of_three_turns(speed: float) -> None:
     assert figures.forces is not None
     sampling = figures.forces.motion.sampling
     assert sampling.turns == 3
-    assert len(sampling.shown) == 3 * (720 + 2 * 2)  # into the soil and out, both sides
+    assert len(sampling.curve_places) == 3 * (720 + 2 * 2)  # into the soil and out, both sides
     json.dumps(figures.to_dict(), allow_nan=False)
 
 

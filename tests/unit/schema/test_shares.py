@@ -16,7 +16,7 @@ def test_shares() -> None:
     assert parse_share("80 N") is None
     assert format_share(0.8) == "80 %"
     for text in ("80%", "80 % ", "x %", "%", "8,5 %"):
-        with refused(UsageError, shown=text):
+        with refused(UsageError, given=text):
             parse_share(text)
     with refused(UsageError, text="'1e40 %'"):
         parse_share("1e40 %")

@@ -360,7 +360,7 @@ def test_errors_name_model_and_table(tmp_path: Path) -> None:
         load(path)
     table.write_text(FORCES.replace("-4.5", "x"))
     with refused(
-        ModelError, "loads[1].table", shown="f.csv", line="3", column="force_y", given="'x'"
+        ModelError, "loads[1].table", place="f.csv", line="3", column="force_y", given="'x'"
     ) as caught:
         load(path)
     assert str(caught.value).startswith(f"{path}: loads[1].table: ")

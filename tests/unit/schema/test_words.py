@@ -21,7 +21,7 @@ NO_DESIGN = re.compile(r"design\.|position\.|.*\.mounts\..*\.direction\[")
 def said(name: str, path: str, language: str = "en") -> str:
     words = Template.load(name).words(path)
     with speaking(language):
-        return words.said() if isinstance(words, Note) else words
+        return words.localized() if isinstance(words, Note) else words
 
 
 @pytest.mark.parametrize(

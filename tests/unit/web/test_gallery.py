@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.i18n import said, speaking
+from equipoise.i18n import localized, speaking
 from equipoise.web.gallery import SAMPLES, titles
 from equipoise.web.session import Session
 from support.chosen import few
@@ -24,8 +24,8 @@ def test_every_machine_is_offered_with_a_picture_and_a_sentence(language: str) -
     for reply in offered:
         told, machine = reply.content, eq.load(reply.content["name"])
         with speaking(language):
-            assert told["title"] == said(machine.title)
-            assert told["line"] and told["line"][:8] == said(machine.description).lstrip()[:8]
+            assert told["title"] == localized(machine.title)
+            assert told["line"] and told["line"][:8] == localized(machine.description).lstrip()[:8]
         assert not set(told["line"]) & set("()（）")
         assert told["scene"]["signs"]
     asking = [eq.load(reply.content["name"]).balance is not None for reply in offered]

@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.handheld.modes import vibrate_tool
-from equipoise.i18n import said, speaking
+from equipoise.i18n import localized, speaking
 from equipoise.web.desk import PageBackend, begun
 from equipoise.web.messages import message_of
 from equipoise.web.tools import tool_of_file
@@ -196,4 +196,4 @@ def test_numbers_do_not_say_again_what_their_heading_names(language):
         for field in shown([tool.reply(1)])["fields"]:
             if field["path"].startswith(("shaft.", "work", "excitations")):
                 assert field["group"] not in field["label"].split()
-                assert len(field["label"]) < len(said(tool.template.words(field["path"])))
+                assert len(field["label"]) < len(localized(tool.template.words(field["path"])))

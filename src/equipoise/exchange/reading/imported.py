@@ -9,7 +9,7 @@ from math import pi, remainder
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place, unknown
-from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.machine_draft import (
     STILL,
@@ -88,7 +88,7 @@ class Imported:
         }
         parts = series([Note(template, count=n) for template, n in counts.items() if n])
         yield Text(
-            say("{parts}; mobility {mobility}", parts=said(parts), mobility=outline.mobility)
+            say("{parts}; mobility {mobility}", parts=localized(parts), mobility=outline.mobility)
         )
         heads = ("link", "points", Column("mass", "mass"))
         yield Table.of("", heads, (self._row(name, link) for name, link in outline.links.items()))

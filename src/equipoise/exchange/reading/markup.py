@@ -96,11 +96,11 @@ def numbers(
     items = [*_floats(text.replace(",", " "))]
     wanted = " or ".join(map(str, count))
     if None in items or (count and len(items) not in count):
-        shown = text if len(text) <= 60 else f"{text[:57]}..."
+        given = text if len(text) <= 60 else f"{text[:57]}..."
         what = Note("{count} numbers", count=wanted) if count else Note("numbers")
         raise ModelError(
             called(element),
-            at_place(key, Note("got {shown!r}; give {what}", shown=shown, what=what)),
+            at_place(key, Note("got {given!r}; give {what}", given=given, what=what)),
         )
     return tuple(item for item in items if item is not None)
 

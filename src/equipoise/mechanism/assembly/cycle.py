@@ -202,7 +202,7 @@ class _Grid:
         """Newton's method follows a branch, which may come back only after further turns."""
         solved: Any = next(step for step in group.motion if hasattr(step, "turning"))
         if (at := solved.singular(self.state)) is not None:
-            names = all_of([repr(link) for link in solved.shown])
+            names = all_of([repr(link) for link in solved.visible_links])
             reason = bifurcation(at, Note("{links} can go on in two ways", links=names))
             raise ChangePointError(Note(WITHOUT_CURE, reason=reason), at, reason=reason)
         q = self.tables[solved.reference] = self.state[solved.reference]

@@ -125,13 +125,13 @@ class Flank:
         """
         line, name, turn = self.line, self.coupling.name, f"u({self.coupling.carrier})"
         sense, (force, moment) = f"flank({name})", demand_names(self.driven.body)
-        asked = KernelCall(kernels.flank, (moment,), (), (sense,))
+        sense_call = KernelCall(kernels.flank, (moment,), (), (sense,))
         inputs: tuple[str, ...] = (force, moment, turn, sense)
         outputs = (*ground.outputs, *self.push.outputs, f"T({name})")
         numbers: tuple[Any, ...]
         if isinstance(line, StrandLine):
             numbers = (line.radius, line.across, line.along)
-            return asked, KernelCall(kernels.strand_forces, inputs, numbers, outputs)
+            return sense_call, KernelCall(kernels.strand_forces, inputs, numbers, outputs)
         pitch = f"p({self.push.at})"
         if isinstance(line, RollingLine):
             place = lever, _ = f"lever({name})", f"slope({name})"
@@ -140,14 +140,14 @@ class Flank:
             return (
                 KernelCall(rolled, angles, (line.law, line.centres), place),
                 KernelCall(kernels.pitch_place, (f"p({self.pin})", turn, lever), (), (pitch,)),
-                asked,
+                sense_call,
                 KernelCall(kernel, (*inputs, *place), (line.radial,), outputs),
             )
         at = KernelCall(kernels.point, (*p(self.pin), *u(self.coupling.carrier)), (line.lever,),
                   p(self.push.at))  # fmt: skip
         if self.driven.guide is None:
             numbers = (line.lever, line.slope)
-            return at, asked, KernelCall(kernels.flank_forces, inputs, numbers, outputs)
+            return at, sense_call, KernelCall(kernels.flank_forces, inputs, numbers, outputs)
         along = self.driven.guide.along
         inputs = (force, moment, f"p({self.driven.point})", pitch, turn, sense)
         return (

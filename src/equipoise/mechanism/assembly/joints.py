@@ -87,10 +87,6 @@ class Structure:
         """Whether a joint of these bodies is inside of another, and not what stands for that."""
         return joint not in self.riders and not self.riders.keys().isdisjoint(bodies)
 
-    def shown(self, body: str) -> str:
-        """A body, or the one that holds it where it is inside of a joint."""
-        return self.riders[body].on if body in self.riders else body
-
     @property
     def pinned_points(self) -> frozenset[str]:
         """Points at which bodies are pinned to each other or have a pin in a slot."""

@@ -266,8 +266,8 @@ def _check_sides(machine: Machine, joints: Structure, grouping: Grouping) -> Non
     held_kinds = ("pointed", "loops") if joints.surplus else ("pointed",)
     held_at = {point for group in groups if group.kind in held_kinds
                for link in group.links for point in machine.assembled_points(link)}  # fmt: skip
-    asked = builder.sides | held_at  # of links that more joints hold lengths decide the side
-    idle = [joint for joint in machine.assembly if joint not in asked]
+    sided = builder.sides | held_at  # of links that more joints hold lengths decide the side
+    idle = [joint for joint in machine.assembly if joint not in sided]
     if choices:
 
         def turns_fully(tried: Mapping[str, str]) -> None:  # never by `ordered`, which asks again

@@ -350,7 +350,7 @@ def _solve_start(
                 "missing; no dyad solves {names}, so the file must say roughly where they "
                 "are: {crank_angle}, and points or angles of these links",
                 **key_names("crank_angle"),
-                names=", ".join(group.shown),
+                names=", ".join(group.visible_links),
             ),
         )
     meshes = {loop.name: loop for loop in loops if isinstance(loop, CouplingLoop) and loop.starts}
@@ -425,10 +425,13 @@ def _rough(
     riding = [place for place in group.tree if isinstance(place, Riding)]
     free = set(group.links).difference(place.link for place in riding)
     values: list[float] = []
-    links = [*group.shown, *(link for link in group.links if link not in group.shown)]
+    links = [
+        *group.visible_links,
+        *(link for link in group.links if link not in group.visible_links),
+    ]
     links = [link for link in links if link in free]
     for link in links:
-        visible = known if link in group.shown else poses
+        visible = known if link in group.visible_links else poses
         x, y, angle = _guess(builder, anchors, link, visible, position)
         values += [x, y, angle]
         here = (x, y, (np.exp(1j * angle), angle))

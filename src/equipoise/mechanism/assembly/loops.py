@@ -436,7 +436,7 @@ class LoopGroup:
     """A group of links with as many loop equations as unknowns, or more that go together.
 
     links, anchors : the unknown links and their anchor points.
-    shown : those of the links that are not inside of joints.
+    visible_links : those of the links that are not inside of joints.
     known : other bodies that the loops touch -> their anchors.
     tree : where each link is, in an order in which the bodies that this asks for come first.
     equations : the joints that the tree leaves.
@@ -451,7 +451,7 @@ class LoopGroup:
     equations: tuple[Loop, ...]
     start: Any
     size: Any
-    shown: tuple[str, ...] = ()
+    visible_links: tuple[str, ...] = ()
 
     @property
     def reference(self) -> str:
@@ -654,7 +654,7 @@ class LoopGroup:
             "the links {links} cannot be moved past crank angle {angle:.4g} deg: the loop "
             "equations have no solution nearby; change the geometry, or start from another "
             "position in [position]",
-            links=", ".join(self.shown),
+            links=", ".join(self.visible_links),
             angle=degrees(angle),
         )
 

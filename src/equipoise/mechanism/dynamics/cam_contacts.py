@@ -129,8 +129,8 @@ def _forces_at(like: Forces, angles: int | Array) -> Forces:
 
 def _let_go(cam: Cam, forces: Forces, fine: Forces) -> LetGo:
     theta, normal = forces.motion.crank_angle, forces.cams[cam.name].normal
-    found = forces.motion.figures(normal)
-    least = found.min, found.min_at
+    figures = forces.motion.figures(normal)
+    least = figures.min, figures.min_at
     return LetGo(cam, _ranges(theta, normal), least, *_limit(cam.name, fine))
 
 

@@ -85,13 +85,13 @@ def _no_dead_centre(diagram: IndicatorDiagram, row: int, strokes: _Strokes) -> N
     kind: Dimension = "length" if diagram.over == "position" else "volume"
     ways = np.sort(strokes.travel(strokes.dead)) * (diagram.span / strokes.length)
     dead = min(diagram.places) + ways
-    shown = [format_quantity(float(place), kind, scale=diagram.span) for place in dead]
+    dead_centers = [format_quantity(float(place), kind, scale=diagram.span) for place in dead]
     return Note(
         "row {row}: the diagram turns back at {place}, which is no dead centre of the piston "
         "({dead}); give the rows in the order in which it passes them",
         row=row + 1,
         place=format_quantity(diagram.places[row], kind),
-        dead=", ".join(dict.fromkeys(shown)),
+        dead=", ".join(dict.fromkeys(dead_centers)),
     )
 
 
@@ -151,10 +151,11 @@ def _pressures(diagram: IndicatorDiagram, strokes: _Strokes) -> tuple[Array, Arr
     ways, pressure = (np.array(column) for column in diagram.loop)
     branches = [*_branches(ways * (strokes.length / diagram.span), pressure, diagram.ends)]
     bounds = [*strokes.dead.tolist(), float(strokes.dead[0]) + strokes.period]
-    made = [_Branch.of(strokes.travel, *ends) for ends in pairwise(bounds)]
-    first = _first_branch(diagram, branches, made, strokes.period)
+    branches_of_strokes = [_Branch.of(strokes.travel, *ends) for ends in pairwise(bounds)]
+    first = _first_branch(diagram, branches, branches_of_strokes, strokes.period)
     passed = [
-        stroke.pressures(*branches[(first + k) % len(branches)]) for k, stroke in enumerate(made)
+        stroke.pressures(*branches[(first + k) % len(branches)])
+        for k, stroke in enumerate(branches_of_strokes)
     ]
     angle, values = (np.concatenate([piece[place] for piece in passed]) for place in (0, 1))
     return np.append(angle, angle[0] + strokes.period), np.append(values, values[0])
@@ -174,7 +175,7 @@ def _branches(ways: Array, pressure: Array, ends: tuple[int, ...]) -> Iterator[t
 def _first_branch(
     diagram: IndicatorDiagram,
     branches: list[tuple[Array, Array]],
-    made: list[_Branch],
+    branches_of_strokes: list[_Branch],
     period: float,
 ) -> int:
     """Number of the branch that the first stroke passes: of those that go the same way the one with
@@ -184,9 +185,10 @@ def _first_branch(
     holds, row = (0, 0) if ends[0] == 0 else (count - 1, len(diagram.loop[0]) - ends[-1])
     ways, _ = branches[holds]
     rising = ways[-1] > ways[0]
-    passing = [k for k in range(count) if made[k].rising == rising]
+    passing = [k for k in range(count) if branches_of_strokes[k].rising == rising]
     earliest = min(
-        passing, key=lambda k: float(np.mod(made[k].angles_of(ways)[row] + BESIDE, period))
+        passing,
+        key=lambda k: float(np.mod(branches_of_strokes[k].angles_of(ways)[row] + BESIDE, period)),
     )
     return (holds - earliest) % count
 
@@ -214,8 +216,8 @@ class _Branch:
         """
         sense = 1 if self.rising else -1
         angles = np.interp(sense * ways, sense * self.way, self.angle)
-        beside = BESIDE * np.arange(len(angles))
-        return np.asarray(np.maximum.accumulate(angles - beside) + beside)
+        offsets = BESIDE * np.arange(len(angles))
+        return np.asarray(np.maximum.accumulate(angles - offsets) + offsets)
 
     def pressures(self, ways: Array, pressure: Array) -> tuple[Array, Array]:
         """Crank angles (N,) of the rows and between them, without the end, and pressures, Pa."""

@@ -213,7 +213,7 @@ class Motion(Displayed):
         """
         if self.sampling is None:
             return self.crank_angle, values
-        places = self.sampling.shown
+        places = self.sampling.curve_places
         at, taken = self.sampling.at[places], self.sampling.crank_angle[places]
         period = 2 * np.pi * self.turns
         at = np.where(taken - at > period / 2, at + period, at)  # just before a jump at 0

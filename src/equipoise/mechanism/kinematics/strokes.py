@@ -61,8 +61,8 @@ def least_value(declared: Field[Any], part: Any) -> float | None:
     least, unless = declared.metadata["at_least"], declared.metadata["unless"]
     if unless and getattr(part, unless) is not None:
         return None
-    asked: float | None = getattr(part, least) if isinstance(least, str) else least
-    return asked
+    limit: float | None = getattr(part, least) if isinstance(least, str) else least
+    return limit
 
 
 @dataclass(frozen=True)

@@ -191,10 +191,10 @@ class Declared:
 
     def title(self, item: str = "") -> str:
         """Heading of a table of this output, in the language that is spoken."""
-        said = replace(self, part="").say(item)
+        text = replace(self, part="").say(item)
         if self.part in ("x", "y"):
-            said = say("{what} along {axis}", what=said, axis=self.part)
-        return said[:1].upper() + said[1:]
+            text = say("{what} along {axis}", what=text, axis=self.part)
+        return text[:1].upper() + text[1:]
 
     def say(self, item: str = "", of_one: bool = False) -> str:
         """What it is called, in the language that is spoken; where that lacks it, in English.
@@ -257,9 +257,9 @@ def kept_until_declared(most: int) -> Callable[[Callable[..., Result]], Callable
     """
 
     def keeping(function: Callable[..., Result]) -> Callable[..., Result]:
-        kept = lru_cache(most)(function)
-        _FORGETTING.append(kept.cache_clear)
-        return kept
+        cached = lru_cache(most)(function)
+        _FORGETTING.append(cached.cache_clear)
+        return cached
 
     return keeping
 
@@ -383,10 +383,10 @@ def declared(name: str) -> tuple[Declared, str] | None:
 def _said(declared: Declared, item: str, of_one: bool, language: str) -> str:
     """What a member is called in a language; a page says a hundred names at each move of a drag."""
     with speaking(language):
-        said = declared.note(item).said()
+        text = declared.note(item).localized()
         if not Note(declared.label).is_translated:
-            said = f"{said} (en)"
-        return say("one row: {what}", what=said) if of_one else said
+            text = f"{text} (en)"
+        return say("one row: {what}", what=text) if of_one else text
 
 
 def looked_up(name: str) -> Callable[[Callable[[str], Any]], Any]:

@@ -87,8 +87,8 @@ def with_density(given: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     if f"{prefix}density" in given:
         raise ModelError("", Note("give either {prefix}material or {prefix}density", prefix=prefix))
     if material not in MATERIALS:
-        shown = material if len(material) <= 60 else f"{material[:57]}..."
-        sentence = unknown(shown, MATERIALS, "material")
+        name = material if len(material) <= 60 else f"{material[:57]}..."
+        sentence = unknown(name, MATERIALS, "material")
         raise ModelError(
             f"{prefix}material",
             Note("{sentence} ({density} stands for any other)", sentence=sentence,

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, all_of, said, say, series, to_say
+from equipoise.i18n import Note, all_of, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import Conditions, Listing, Quantity, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
@@ -115,21 +115,21 @@ class Bushing(BetweenPoints, RatedElement):
         Listing(Quantity("stiffness"), (2,)),
         "along its direction and across it",
         default=(0.0, 0.0),
-        shown=["0 N/m", "0 N/m"],
+        written_default=["0 N/m", "0 N/m"],
         example=["20 kN/m", "400 kN/m"],
     )
     damping: Pair = key(
         Listing(Quantity("damping"), (2,)),
         "along its direction and across it",
         default=(0.0, 0.0),
-        shown=["0 N s/m", "0 N s/m"],
+        written_default=["0 N s/m", "0 N s/m"],
         example=["50 N s/m", "90 N s/m"],
     )
     preload: Pair = key(
         Listing(Quantity("force"), (2,)),
         "force on the link along its direction and across it, where its points meet",
         default=(0.0, 0.0),
-        shown=["0 N", "0 N"],
+        written_default=["0 N", "0 N"],
         example=["-200 N", "0 N"],
     )
     torsional_stiffness: float | None = key(
@@ -283,7 +283,7 @@ class Bushing(BetweenPoints, RatedElement):
         for pair, dimension, unit in pairs:
             if any(pair):
                 parts.append(
-                    said(all_of([format_quantity(number, dimension, unit) for number in pair]))
+                    localized(all_of([format_quantity(number, dimension, unit) for number in pair]))
                 )
         if self.torsional_stiffness is not None:
             rate = format_quantity(self.torsional_stiffness, "torsional stiffness", "N m/rad")
@@ -294,4 +294,4 @@ class Bushing(BetweenPoints, RatedElement):
             parts.append(format_quantity(self.torsional_damping, "torsional damping", "N m s/rad"))
         if self.torque:
             parts.append(format_quantity(self.torque, "torque"))
-        return said(series(parts))
+        return localized(series(parts))

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
@@ -234,5 +234,5 @@ class CurvedSlot(JointKind):
             point=self.point,
             link=self.link,
             on=self.on,
-            parts=said(series(parts)),
+            parts=localized(series(parts)),
         )

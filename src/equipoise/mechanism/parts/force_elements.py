@@ -224,7 +224,7 @@ class Load(AlongLine, Frozen):
         "on the other side of the piston, in the same way absolute or gauge as the pressure of "
         "`gas` or `indicator`",
         default=0.0,
-        shown="0 bar",
+        written_default="0 bar",
     )
     side: Literal["ahead", "behind"] = key(
         TextKind(SIDES),

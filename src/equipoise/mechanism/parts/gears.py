@@ -57,7 +57,9 @@ class Gear(Turning):
     order = 1
     extra_keys: ClassVar[Keys] = {
         **Turning.extra_keys,
-        "mesh": Key("mesh", TextKind(MESHES), "goes with `teeth`", default=None, shown="external"),
+        "mesh": Key(
+            "mesh", TextKind(MESHES), "goes with `teeth`", default=None, written_default="external"
+        ),
     }
     file_order = ("between", "ratio", "teeth", "mesh")
     conditions: ClassVar[Conditions] = {

@@ -190,8 +190,8 @@ class JointProperties(Frozen):
 
         drags : whether it keeps what resists whatever presses in it: its damping and its drag.
         """
-        kept = (*APART, *UNLOADED) if drags else APART
-        return JointProperties(self.joint, **{name: getattr(self, name) for name in kept})
+        own_names = (*APART, *UNLOADED) if drags else APART
+        return JointProperties(self.joint, **{name: getattr(self, name) for name in own_names})
 
 
 def wrong_joint(

@@ -226,7 +226,7 @@ class Machine(Driven, Displayed, PartLists):
         Listing(Quantity("acceleration"), (2,)),
         'along x and y; `["0 m/s^2", "0 m/s^2"]` for a machine that lies flat',
         default=STANDARD_GRAVITY,
-        shown=["0 m/s^2", "-9.80665 m/s^2"],
+        written_default=["0 m/s^2", "-9.80665 m/s^2"],
     )
     position: Position | None = key(
         KeyTable(Position), "rough position, needed only where dyads do not suffice", default=None
@@ -500,7 +500,7 @@ class Machine(Driven, Displayed, PartLists):
         first, last = steps[0], steps[-1]
         if first == PARAMETERS:
             what = Note("numbers are worked out from it when the file is read; change it there")
-            raise ModelError(steps.shown, what)
+            raise ModelError(steps.abbreviated, what)
 
         def put(_: Any) -> float | str:
             return number

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
@@ -320,4 +320,4 @@ class Resistance(BetweenPoints, TableRows, RatedElement):
             parts.append(format_quantity(self.damping, "damping", "N s/m"))
         if rows := len(self.rows[0]):
             parts.append(say("{count} rows", count=rows))
-        return said(series(parts))
+        return localized(series(parts))

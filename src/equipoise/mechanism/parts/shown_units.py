@@ -221,7 +221,7 @@ def worked_out(expression: str, dimension: Dimension | None, names: Names) -> fl
 
 
 def _place(name: object) -> str:
-    return KeyPath((PARAMETERS, str(name))).shown
+    return KeyPath((PARAMETERS, str(name))).abbreviated
 
 
 def _named_by(name: object, value: object) -> set[str]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
@@ -120,7 +120,7 @@ class Spring(BetweenPoints, RowLaw, ForceElement):
         "length",
         "at which it pulls with `preload`, or with nothing; shorter it pulls less, or pushes",
         default=0.0,
-        shown="0 m",
+        written_default="0 m",
         at_least=0,
         why=Note("a length cannot be negative, give 0 or more"),
     )
@@ -244,7 +244,7 @@ class Spring(BetweenPoints, RowLaw, ForceElement):
             point=self.point,
             link=self.link,
             to=self.to,
-            parts=said(series([*self._rates()])),
+            parts=localized(series([*self._rates()])),
         )
 
     def _rates(self) -> Iterator[str]:

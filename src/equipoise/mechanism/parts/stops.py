@@ -7,7 +7,7 @@ from math import log
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import Number, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
@@ -208,5 +208,5 @@ class Stop(BetweenPoints, RatedElement):
             point=self.point,
             link=self.link,
             to=self.to,
-            parts=said(series(parts)),
+            parts=localized(series(parts)),
         )

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, said, say, series, to_say
+from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
@@ -205,7 +205,7 @@ class TorsionSpring(BetweenBodies, RowLaw, ForceElement):
 
     def summary(self) -> str:
         """All its numbers, in a line of `check`."""
-        parts = said(series([*self._rates()]))
+        parts = localized(series([*self._rates()]))
         template = to_say("torsion spring: {link} on {on}, {parts}")
         return say(template, link=self.link, on=self.on, parts=parts)
 

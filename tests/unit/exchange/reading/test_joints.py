@@ -82,7 +82,7 @@ def test_connectors_that_slide_have_blocks(tmp_path: Path) -> None:
     [
         (linkage2('gear="true"'), {"place": "Link 'crank'"}),
         (linkage2(more='<connector id="x" x="1" y="1"/>'), {"place": "connector", "given": "x"}),
-        (linkage2().replace('x="0.0"', 'x="inf"', 1), {"place": "connector 'A'", "shown": "inf"}),
+        (linkage2().replace('x="0.0"', 'x="inf"', 1), {"place": "connector 'A'", "given": "inf"}),
         (linkage2()[:-4], {"lineno": 14}),
         ("<linkage2/>", {}),
     ],
