@@ -1,7 +1,7 @@
 """What friction costs an analysis: processor time with all pins and sliders rubbing, over that
 without, of each bundled machine that can have friction; in turn, the median of the rounds.  Warm,
 the same machine is analysed again and again; cold, each time one of which nothing is known yet, as
-a point of its frame is elsewhere by some nanometres.
+its frame is elsewhere by some nanometres.
 
     python benchmarks/friction.py [NAME ...]
 """
@@ -40,9 +40,9 @@ def rubbing(machine: eq.Machine) -> eq.Machine:
 
 
 def changed(machine: eq.Machine, number: int) -> eq.Machine:
-    """The machine with another place of its first point of the frame, by 1e-9 m a number."""
-    name, (x, y) = next(iter(machine.frame.items()))
-    return replace(machine, frame={**machine.frame, name: (x + 1e-9 * number, y)})
+    """The machine with its frame shifted by 1e-9 m a number."""
+    shift = 1e-9 * number
+    return replace(machine, frame={name: (x + shift, y) for name, (x, y) in machine.frame.items()})
 
 
 def processor_time(task: Callable[[], object]) -> float:

@@ -6,7 +6,7 @@ b_n = -Im Y_n multiplies sin n theta; Y_0 is the mean.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache, cached_property, partial
 from math import pi, sqrt
 from typing import Any
@@ -90,10 +90,9 @@ def highest_at(values: Array, smooth: bool = True) -> Array:
             after = np.where(k < count - 1, values[(*row, (k + 1) % count)], -np.inf)
             least, steady = rounding[..., 0][row], (high - low <= rounding)[..., 0][row]
             candidates[where] = (value >= np.maximum(before, after) - least) | steady
-    numbers: Array = np.where(
-        candidates.any(axis=-1), candidates.argmax(axis=-1), values.argmax(axis=-1)
-    )
-    return numbers
+    numbers: Array = candidates.argmax(axis=-1)
+    chosen = np.take_along_axis(candidates, numbers[..., None], axis=-1)[..., 0]
+    return numbers if np.all(chosen) else np.where(chosen, numbers, values.argmax(axis=-1))
 
 
 def first_below(angle: Array, values: Array, limit: float) -> float | None:
@@ -170,7 +169,7 @@ def figures_of_each(
         the curves through the samples (`smooth_tops`), else the largest and smallest samples.
     """
     tops = partial(sampled_tops, crank_angle) if period is None else partial(smooth_tops, period)
-    return _figures_of_each(samples, tops)
+    return _figures_of_each(samples, *tops(np.concatenate([samples, -samples])))
 
 
 Tops = tuple[Array, Array]
@@ -178,9 +177,9 @@ Tops = tuple[Array, Array]
 
 
 def _figures_of_each(
-    samples: Array, tops: Callable[[Array], Tops], shares: Array | None = None
+    samples: Array, values: Array, at: Array, shares: Array | None = None
 ) -> list[Figures]:
-    values, at = tops(np.concatenate([samples, -samples]))
+    """From samples (M, N), and the tops (2 M,) of these and of their opposites."""
     (high, depth), (high_at, low_at) = values.reshape(2, -1), at.reshape(2, -1)
     average, rms = mean(samples, shares), np.sqrt(mean(np.square(samples), shares))
     peak_at = place_of_peak(high, -depth, high_at, low_at)
@@ -264,7 +263,7 @@ def _smoothest(find: Callable[[Array], tuple[Array, Array, Array]], values: Arra
     find : of values top, place and roughness (...); where this is above 1, of a value.
     """
     top, place, rough = find(values)
-    below = np.max(values, axis=-1) <= 0
+    below = (np.max(values, axis=-1) <= 0) & (rough > 0)  # smoother than 0 is nothing
     if np.any(below):
         squared, other, roughness = find(-np.square(values[below]))
         better = roughness < np.fmin(rough[below], 1.0)
@@ -307,13 +306,10 @@ def stencils_above(values: Array, least: float) -> tuple[Array, Array]:
 
 
 def _times(rows: Array, matrix: Array) -> Array:
-    """Product (..., m) of rows (..., n) with a matrix (n, m), each to the same bits whatever others
-    there are, as products of BLAS are not.
+    """Product (..., m) of rows (..., n) with a matrix (n, m), or with one of each row, row by row:
+    each to the same bits whatever others there are, as a product of all rows at once is not.
     """
-    result = rows[..., :1] * matrix[0]
-    for k in range(1, len(matrix)):
-        result += rows[..., k : k + 1] * matrix[k]
-    return np.asarray(result)
+    return np.asarray(np.matmul(np.ascontiguousarray(rows)[..., None, :], matrix)[..., 0, :])
 
 
 def _polynomial(powers: Array, x: Array) -> Array:
@@ -367,13 +363,11 @@ class JumpSampling:
         jump_ends = _ends_of_pieces(jumps, period, 4 * offset)
         ends = _ends_of_pieces(np.concatenate([jumps, bends]), period, 4 * offset)
         longest = min(steps * period / len(grid), LONGEST_PANEL)
-        counts = np.ceil(np.diff(ends) / longest * (1 - ROUNDING))
-        panels = [
-            np.linspace(begin, end, max(int(count), 1) + 1)
-            for begin, end, count in zip(ends[:-1], ends[1:], counts, strict=True)
-        ]
-        begins = np.concatenate([panel[:-1] for panel in panels])
-        widths = np.concatenate([np.diff(panel) for panel in panels])
+        pieces = np.diff(ends)
+        counts = np.maximum(np.ceil(pieces / longest * (1 - ROUNDING)).astype(int), 1)
+        number = np.arange(np.sum(counts)) - np.repeat(np.cumsum(counts) - counts, counts)
+        begins = np.repeat(ends[:-1], counts) + number * np.repeat(pieces / counts, counts)
+        widths = np.diff(begins, append=period)
         nodes, weights = _gauss_points()
         inside = (begins[:, None] + widths[:, None] * (1 + nodes) / 2).ravel()
         shares = (widths[:, None] * weights / (2 * period)).ravel()
@@ -405,7 +399,7 @@ class JumpSampling:
 
     def figures_of_each(self, samples: Array) -> list[Figures]:
         """Mean, RMS and extremes of each of several signals (M, N)."""
-        return _figures_of_each(samples, self.tops, self.shares)
+        return _figures_of_each(samples, *self.tops(samples, (1, -1)), self.shares)
 
     def stencils_above(self, values: Array, least: float) -> tuple[Array, Array]:
         """Tops above a value of a signal (N,), as `stencils_above`."""
@@ -422,22 +416,28 @@ class JumpSampling:
         )
         return places, np.vstack([alone[: len(k)], between])
 
-    def tops(self, values: Array) -> Tops:
-        """Highest values of signals (M, N): of the grid, of both sides of jumps, and of the
-        polynomial through the Gauss points of each panel, its ends too, where it is smooth.
-
-        Of equal tops the first counts.
+    def tops(self, values: Array, signs: Sequence[int] = (1,)) -> Tops:
+        """Highest values of signals (M, N) times each of some signs, one after the other: of the
+        grid, of both sides of jumps, and of the polynomial through the Gauss points of each panel,
+        its ends too, where it is smooth.  Of equal tops the first counts.
         """
-        sampled, at = sampled_tops(self.at[self.curve_places], values[:, self.curve_places])
-        panels = values[:, self.inside].reshape(len(values), -1, GAUSS_POINTS)
+        shown = np.take(values, self.curve_places, axis=-1)
+        panels = np.take(values, self.inside, axis=-1).reshape(len(values), -1, GAUSS_POINTS)
+        ends = np.max(panels, axis=-1), np.min(panels, axis=-1)
+        highest, lowest = np.hstack(
+            [ends if sign > 0 else np.negative(ends[::-1]) for sign in signs]
+        )
+        shown = np.concatenate([sign * shown for sign in signs])
+        sampled, at = sampled_tops(self.at[self.curve_places], shown)
         with np.errstate(invalid="ignore"):
-            highest = np.max(panels, axis=-1)
-            span = np.maximum(sampled, np.max(highest, axis=-1)) - np.min(values, axis=-1)
+            span = np.maximum(sampled, np.max(highest, axis=-1))
+            span -= np.minimum(np.min(shown, axis=-1), np.min(lowest, axis=-1))
             slack = np.maximum(EQUAL * span, ROUNDING * np.abs(sampled))
             # a smooth curve, ends too, exceeds Gauss points by a thirtieth of their range at most
-            lift = LIFT * (highest - np.min(panels, axis=-1))
-            row, k = np.nonzero(highest + lift >= (sampled - slack)[:, None])
-            top, x = tops_of_panels(panels[row, k])
+            reach = highest + LIFT * (highest - lowest)
+            row, k = np.nonzero(reach >= (sampled - slack)[:, None])
+            sign, own = np.divmod(row, len(values))
+            top, x = tops_of_panels(np.array(signs)[sign, None] * panels[own, k])
             best = np.array(sampled)
             np.maximum.at(best, row, top)
             slack = np.maximum(EQUAL * span, ROUNDING * np.abs(best))
@@ -483,30 +483,60 @@ def tops_of_panels(values: Array) -> Tops:
 
 
 def _tops_of_panels(values: Array) -> tuple[Array, Array, Array]:
-    legendre, nodes, to_series, places, dense = panel_series()
-    series = _times(values, to_series)
-    sizes = np.abs(series)
+    _, nodes, _, places, _ = panel_series()
+    to_both, to_taylor, scale, limits = _panel_matrices()
+    both = _times(values, to_both)
+    sizes, curves = np.abs(both[..., :GAUSS_POINTS]), both[..., GAUSS_POINTS:]
     rounding = ROUNDING * np.max(sizes, axis=-1)
     tail, whole = np.max(sizes[..., -3:], axis=-1), np.max(sizes[..., 1:], axis=-1)
     rough = np.where(tail <= rounding, 0.0, tail / (TAIL * whole))
-    curves = _times(series, dense)
     k, highest = np.argmax(curves, axis=-1), np.argmax(values, axis=-1)
     top, x = np.max(curves, axis=-1), places[k]
     some = np.nonzero(rough <= 1)
-    around = places[np.maximum(k[some] - 1, 0)], places[np.minimum(k[some] + 1, DENSE - 1)]
-    powers, at = series[some].T, x[some]
-    slope = legendre.legder(powers)
-    slopes = np.stack([slope, np.zeros_like(slope)], axis=1)
-    slopes[:-1, 1] = legendre.legder(slope)
-    for _ in range(NEWTON_STEPS):
-        down, curve = legendre.legval(at, slopes, False)
-        at = np.clip(at - np.where(curve < 0, down / curve, 0.0), *around)
-    value = legendre.legval(at, powers, False)
+    near = k[some]
+    value, move = _tops_of_taylor(_times(values[some], to_taylor[near]), *limits[near].T)
     higher = value > top[some] + rounding[some]
-    x[some], top[some] = np.where(higher, (at, value), (x[some], top[some]))
+    moved = x[some] + move * scale[near]
+    x[some], top[some] = np.where(higher, (moved, value), (x[some], top[some]))
     kinked = ~(rough <= 1)
     top[kinked], x[kinked] = np.max(values, axis=-1)[kinked], nodes[highest[kinked]]
     return top, x, rough
+
+
+def _tops_of_taylor(powers: Array, low: Array, high: Array) -> Tops:
+    """Tops (K,) of polynomials by their powers (K, 16), and where between limits, from 0 on."""
+    slope = powers[:, 1:] * np.arange(1, GAUSS_POINTS)
+    bend = slope[:, 1:] * np.arange(1, GAUSS_POINTS - 1)
+    at, down, curve, waves = np.zeros(len(powers)), slope[:, 0], bend[:, 0], np.ones_like(powers)
+    for step in range(NEWTON_STEPS):
+        if step:
+            down = np.sum(slope * waves[:, :-1], axis=1)
+            curve = np.sum(bend * waves[:, :-2], axis=1)
+        at = np.clip(at - np.where(curve < 0, down / curve, 0.0), low, high)
+        waves[:, 1:] = at[:, None]
+        np.multiply.accumulate(waves, axis=1, out=waves)
+    return np.sum(powers * waves, axis=1), at
+
+
+@cache
+def _panel_matrices() -> tuple[Array, Array, Array, Array]:
+    """What values (16,) at the Gauss points of a panel are multiplied by.
+
+    to_both : (16, 49), by which they give their Legendre series, and values at 33 places.
+    to_taylor : (33, 16, 16), by which they give their powers about each place, of what is
+        scaled (33,) by the distance to the farther of its neighbours.
+    limits : (33, 2), where these neighbours are, so scaled.
+    """
+    legendre, _, to_series, places, dense = panel_series()
+    apart = np.diff(places, prepend=places[0], append=places[-1])
+    scale = np.maximum(apart[:-1], apart[1:])
+    to_taylor = np.empty((DENSE, GAUSS_POINTS, GAUSS_POINTS))
+    derivative, factor = to_series.T, np.ones(DENSE)
+    for power in range(GAUSS_POINTS):
+        to_taylor[..., power] = (legendre.legval(places, derivative) * factor).T
+        derivative, factor = legendre.legder(derivative), factor * scale / (power + 1)
+    limits = np.stack([-apart[:-1], apart[1:]], axis=1) / scale[:, None]
+    return np.hstack([to_series, to_series @ dense]), to_taylor, scale, limits
 
 
 @cache

@@ -23,9 +23,11 @@ from equipoise.codegen.gram import MassBatch
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.dynamics.loads import work_in_cycle
+from equipoise.mechanism.kinematics.friction_joints import rubbing_joints, ways_of
 from equipoise.mechanism.kinematics.jumps import jumps_of
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.force_elements import Load, LoadTable
+from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.laws import LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
@@ -126,6 +128,18 @@ def test_both_sides_of_a_jump_are_looked_at() -> None:
     assert (torque.min if low else torque.max) == pytest.approx(just_before, rel=1e-4)
     assert (torque.min_at if low else torque.max_at) == pytest.approx(end, abs=1e-9)
     assert torque.peak > np.max(np.abs(analysis.forces.drive_torque)) * 1.05
+
+
+def test_friction_jumps_where_a_joint_turns_back() -> None:
+    """To rounding of the crank angle: rates change by about their size in a rad."""
+    machine = eq.load("class-three")
+    pins = [*eq.analyze(machine, [0.0]).forces.joints]
+    rubbing = [JointProperties(f"joints.{name}", friction=0.02, radius=0.005) for name in pins]
+    linkage = assemble(replace(machine, joints=tuple(rubbing)))
+    jumps = jumps_of(linkage)
+    assert len(jumps) == 4
+    ways = np.abs(ways_of(rubbing_joints(linkage), move(linkage.machine, jumps)))
+    assert np.max(np.min(ways, axis=0)) < 1e-13
 
 
 def test_rows_of_a_table_that_are_a_step() -> None:

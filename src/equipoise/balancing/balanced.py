@@ -26,7 +26,6 @@ from equipoise.balancing.workshop import Change, covers
 from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import bodies_at
-from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Balance, Objective
@@ -301,7 +300,7 @@ class Balanced(Result):
             motion = move(machine, angles, acceleration=0.0)
             columns += [
                 (f"{item.name}.{name}", item.unit, item.values)
-                for item in AnalysisOutputs(Analysis(motion, forces(motion))).ordered
+                for item in AnalysisOutputs(Analysis.of(motion)).ordered
                 if item.declared.compared
             ]
         return columns

@@ -25,7 +25,6 @@ from equipoise.balancing.rounding import NEARLY, TINY
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.jumps import bends_of, jumps_of
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.balance import Measure, Objective, cost_factor
@@ -170,9 +169,7 @@ class PhasedRows:
     def _read(self, output: str, motion: Motion) -> Array:
         """An output (1, N) of one row that is the same wherever the row is."""
         declared = output_of(output, self.machine)
-        return declared.values(Analysis(motion, forces(motion)), declared.item_of(output) or "")[
-            None
-        ]
+        return declared.values(Analysis.of(motion), declared.item_of(output) or "")[None]
 
     def _gauge(self, name: str, speeds: Sequence[float]) -> RowSignals:
         chosen_model(self.machine, None, False)  # refuses a machine without a support

@@ -343,8 +343,8 @@ def soil_crossings(curve: TipCurve) -> tuple[Array, Array]:
         return curve.height(theta) - level
 
     def between(k: Array) -> Array:
-        ends = (np.take_along_axis(nodes, k + step, axis=1) for step in (0, 1))
-        return np.where(value, roots(over, *ends)[:, 0], np.nan)
+        low, high = (np.take_along_axis(nodes, k + step, axis=1) for step in (0, 1))
+        return np.where(value, roots(over, low, high)[:, 0], np.nan)
 
     return between(k_entry) - sense[:, 0] * curve.period, between(k_leave - 1)
 
@@ -442,8 +442,8 @@ def pick_up(curve: TipCurve, entry: Array) -> Array:
     passed = sides[:, 1:] != sides[:, :-1]
     most = max(1, int(np.max(np.sum(passed, axis=1))))
     first = np.argsort(~passed, axis=1, kind="stable")[:, :most]
-    ends = (np.take_along_axis(nodes, first + step, axis=1) for step in (0, 1))
-    crossing = roots(edge.side, *ends)
+    low, high = (np.take_along_axis(nodes, first + step, axis=1) for step in (0, 1))
+    crossing = roots(edge.side, low, high)
     meant = np.take_along_axis(passed, first, axis=1) & edge.reached(crossing)
     last = np.take_along_axis(crossing, np.argmax(meant, axis=1)[:, None], axis=1)[:, 0]
     return np.where(np.any(meant, axis=1), last, np.nan)

@@ -40,7 +40,7 @@ def html_of(value: Displayed) -> str:
             analysis = Analysis(value, None)
             return part_of_page(title, motion_blocks(analysis), _picture(analysis))
         if isinstance(value, Forces):
-            analysis = Analysis(value.motion, value)
+            analysis = Analysis(value.motion, value.about)
             return part_of_page(title, (*force_blocks(analysis), *joint_blocks(analysis)))
         assert isinstance(value, Tool)
         return part_of_page(title, tool_blocks(value))

@@ -67,7 +67,8 @@ LEAST_ANGLES = 90
 class Analysis(Result):
     """What a machine does over its crank angles.
 
-    motion : always there.  solved : its forces, or None where masses are missing.
+    motion : always there.  about : point of the frame's plane (m, complex) about which moments are
+        taken; None without forces, as where masses are missing.
     """
 
     blocks_in = "results.analysis_blocks.shown_blocks"
@@ -75,7 +76,20 @@ class Analysis(Result):
     headline_in: ClassVar[str] = "vibration.headline.analysis_headline"
 
     motion: Motion
-    solved: Forces | None
+    about: complex | None
+
+    @classmethod
+    def of(cls, motion: Motion, about: str | Vector | complex | None = None) -> Analysis:
+        """With forces where all masses are given.
+
+        about : point about which moments are taken, a name or (x, y) in m; the drive pivot if None.
+
+        Raises
+        ------
+        UsageError : there is no such point, be there masses or not.
+        """
+        pole = in_frame(motion.machine.frame, motion.linkage.pivot if about is None else about)
+        return cls(motion, None if massless(motion.machine) else pole)
 
     @property
     def machine(self) -> Machine:
@@ -85,6 +99,16 @@ class Analysis(Result):
     def crank_angle(self) -> Array:
         """(N,) rad."""
         return self.motion.crank_angle
+
+    @property
+    def has_forces(self) -> bool:
+        """Whether there are forces: all masses are given."""
+        return self.about is not None
+
+    @cached_property
+    def solved(self) -> Forces | None:
+        """Its forces; None without."""
+        return None if self.about is None else forces(self.motion, self.about)
 
     @property
     def forces(self) -> Forces:
@@ -146,33 +170,33 @@ class Analysis(Result):
         motion = resolved(self.motion)
         if motion is self.motion:
             return self
-        return Analysis(motion, None if self.solved is None else forces(motion, self.solved.about))
+        return Analysis(motion, self.about)
 
     @cached_property
     def losses(self) -> Losses | None:
         """What friction in joints costs in a cycle; None where there is none, or no whole cycle
         that is turned evenly.
         """
-        return None if self.solved is None else losses_of(self.resolved.forces)
+        return losses_of(self.resolved.forces) if self.has_forces else None
 
     @cached_property
     def rolling_bearings(self) -> Mapping[str, BearingLife]:
         """Life of rolling bearings by joint; none where the crank is not turned evenly, or the
         crank angles are no whole cycle.
         """
-        return {} if self.solved is None else bearing_lives(self.resolved.forces)
+        return bearing_lives(self.resolved.forces) if self.has_forces else {}
 
     @cached_property
     def plain_bearings(self) -> Mapping[str, PlainBearingDuty]:
         """Pressure, and pressure times speed, of plain bearings by joint."""
-        return {} if self.solved is None else plain_bearing_duties(self.resolved.forces)
+        return plain_bearing_duties(self.resolved.forces) if self.has_forces else {}
 
     @cached_property
     def sections(self) -> Mapping[str, LinkStress]:
         """Stress, buckling and life of links whose section is given, by link; none where the crank
         is not turned evenly, or the crank angles are no whole cycle.
         """
-        return {} if self.solved is None else link_stresses(self.resolved.forces)
+        return link_stresses(self.resolved.forces) if self.has_forces else {}
 
     @cached_property
     def outputs(self) -> AnalysisOutputs:
@@ -198,7 +222,7 @@ class Analysis(Result):
     def has_rows_total(self) -> bool:
         """Whether there are figures of all rows together: see `rows_total`."""
         several = len(self.machine.rows) > 1
-        return several and self.motion.whole_cycle and self.solved is not None
+        return several and self.motion.whole_cycle and self.has_forces
 
     @cached_property
     def rows_total(self) -> Mapping[str, Array]:
@@ -558,11 +582,9 @@ def analyze(
     UsageError : an argument cannot be used.
     """
     motion = move(machine, angles, speed, acceleration)
-    if about is not None:
-        in_frame(machine.frame, about)  # refuse a wrong point even where a model has no masses
-    if massless(machine):
-        return Analysis(motion, None)
-    analysis = Analysis(motion, forces(motion, about))
-    if machine.rubs:  # where friction locks it, there are no forces, and no figures
+    analysis = Analysis.of(motion, about)
+    if not machine.rubs:
+        _ = analysis.solved
+    elif analysis.has_forces:  # where friction locks it, there are no forces, and no figures
         _ = analysis.resolved.forces.solved
     return analysis

@@ -128,7 +128,7 @@ class AnalysisOutputs:
     def __init__(self, analysis: Any) -> None:
         # with friction that is solved already, and names are the same
         named = analysis.resolved if analysis.machine.rubs else analysis
-        had = analysis.solved is not None, analysis.has_rows_total
+        had = analysis.has_forces, analysis.has_rows_total
         members = tuple(tuple(of.items_of(named)) for of in _families(*had))
         self._analysis = analysis
         self._items = _indexed(*had, members)

@@ -29,7 +29,12 @@ from equipoise.mechanism.dynamics.friction import (
     pressing_rows,
     unit_demands,
 )
-from equipoise.mechanism.kinematics.friction_joints import STILL, RubbingJoint, rubbing_joints
+from equipoise.mechanism.kinematics.friction_joints import (
+    STILL,
+    RubbingJoint,
+    rates_of,
+    rubbing_joints,
+)
 from equipoise.running.drives_linkage import DrivesPose
 from equipoise.running.friction import check_shared_friction, on_flanks, sided_meshes
 from equipoise.running.linkage_rows import LinkageRows
@@ -92,7 +97,7 @@ class DrivesFriction:
     def of(self, pose: DrivesPose, demands: Demands) -> JointPressing:
         """In K states of all rows, where all but friction and accelerations makes some demands."""
         motion, count = pose.moving, len(self.linkage.machine.driven)
-        rates = np.array([joint.rate(pose.along) for joint in self.joints])
+        rates = rates_of(self.joints, pose.along)
         rates = rates.reshape(len(self.joints), count + 1, pose.count)
         units = unit_demands(motion, self.joints)
         rows = [demands, *pose.accelerated, *units]

@@ -40,7 +40,12 @@ from equipoise.mechanism.dynamics.friction import (
 from equipoise.mechanism.dynamics.rated_elements import effort_demands, rated_efforts, rated_ways
 from equipoise.mechanism.dynamics.reactions import Acting, JointReactions, demands_of
 from equipoise.mechanism.dynamics.reduced import reduced_inertia
-from equipoise.mechanism.kinematics.friction_joints import RubbingJoint, guide_of, rubbing_joints
+from equipoise.mechanism.kinematics.friction_joints import (
+    RubbingJoint,
+    guide_of,
+    rates_of,
+    rubbing_joints,
+)
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
@@ -135,7 +140,7 @@ class Friction(Source):
         rates, ways = [], []
         for row, motion in enumerate(motions):
             own = rubbing_joints(motion.linkage)
-            rates += [joint.rate(motion) for joint in own]
+            rates += [*rates_of(own, motion)]
             ways += rated_ways(motion, self.elements)
             pressed, causes = self._places(row)
             whole[np.ix_(pressed, (0, 1), causes)] = _parts(motion, own, self.elements)

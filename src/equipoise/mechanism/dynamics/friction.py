@@ -44,7 +44,7 @@ from equipoise.mechanism.dynamics.reactions import (
     reactions,
 )
 from equipoise.mechanism.formulas.kernels import cross
-from equipoise.mechanism.kinematics.friction_joints import RubbingJoint, rubbing_joints
+from equipoise.mechanism.kinematics.friction_joints import RubbingJoint, rates_of, rubbing_joints
 from equipoise.mechanism.kinematics.motion import Motion
 
 Demands = Mapping[str, Demand]
@@ -89,15 +89,16 @@ class FrictionLaw:
         """From speeds (J, N) of the joints, and the signs that count where they are 0."""
         grip, given = np.zeros((2, *rates.shape))
         for k, joint in enumerate(joints):
-            item, reach = joint.given, joint.reach
-            mu = np.full(rates.shape[1:], joint.coefficient)
+            item, mu = joint.given, joint.coefficient
             if item.static_friction is not None and item.stribeck_speed is not None:
-                slides = reach * rates[k] / item.stribeck_speed
-                mu = mu + (item.static_friction - mu) * np.exp(-(slides**2))
-            grip[k] = senses[k] * mu * reach
+                slides = joint.reach * rates[k] / item.stribeck_speed
+                grip[k] += (item.static_friction - mu) * np.exp(-(slides**2))
+            grip[k] += mu
+            grip[k] *= joint.reach
             damping, drag = joint.unloaded
-            given[k] = senses[k] * drag + damping * rates[k]
-        return cls(tuple(joints), rates, grip, given)
+            if damping or drag:
+                given[k] = senses[k] * drag + damping * rates[k]
+        return cls(tuple(joints), rates, grip * senses, given)
 
     def with_sides(self, sides: Sequence[RubbingJoint]) -> FrictionLaw:
         """With efforts of backward flanks of so many meshes, each as large as what presses."""
@@ -146,9 +147,12 @@ class FrictionLaw:
             slopes[-self.sides :, 0] = np.where(parts[-self.sides :, 0] < 0, -1.0, 0.0)
         return np.asarray(slopes * self.levers[..., None])
 
-    def followed(self, efforts: Array, press: Press) -> Array:
-        """Friction (J, N) of what presses with some friction (J, N)."""
-        return np.asarray(-(self.grip * self.pressing(press.parts(efforts)) + self.given))
+    def followed(self, parts: Array) -> Array:
+        """Friction (J, N) of what presses, by its parts (J, 2, N)."""
+        size = self.pressing(parts)
+        size *= self.grip
+        size += self.given
+        return np.negative(size, out=size)
 
     def residual(self, efforts: Array, share: Array, press: Press) -> tuple[Array, Array]:
         """Residual (J, N) of the law at efforts (J, N), and its derivatives (J, J, N) by them.
@@ -199,8 +203,9 @@ class Press:
 
     def parts(self, efforts: Array) -> Array:
         """(J, 2, N), with friction (J, N)."""
-        added = np.einsum("jckn,kn->jcn", self.response, efforts)
-        return np.asarray(self.without + added)
+        parts = np.einsum("jckn,kn->jcn", self.response, efforts)
+        parts += self.without
+        return np.asarray(parts)
 
     def at(self, some: Array) -> Press:
         """At some of the N crank angles."""
@@ -214,7 +219,9 @@ def most_added(response: Array) -> Array:
 
 def _length(x: Array, y: Array) -> Array:
     """Of vectors, in a fifth of the time that `hypot` takes to keep forces of 1e154 N and more."""
-    return np.asarray(np.sqrt(x * x + y * y))
+    size = x * x
+    size += y * y
+    return np.asarray(np.sqrt(size, out=size))
 
 
 # -- the law and the balance of forces together ----------------------------------------------------
@@ -224,7 +231,7 @@ def balanced(law: FrictionLaw, press: Press, start: Array | None = None) -> tupl
     """Friction (J, N) that obeys the law with the forces that it makes itself, and the share (N,)
     of the coefficients up to which there is one: 1 where it is that of the whole.
     """
-    efforts = np.zeros_like(law.rates) if start is None else start.copy()
+    efforts = law.followed(press.without if start is None else press.parts(start))
     whole, contraction = np.ones(law.rates.shape[1]), law.contraction(press)
     contracts = contraction < 1
     good = np.zeros_like(contracts)
@@ -249,16 +256,30 @@ def _inserted(
     """Efforts (J, N) by the law put into itself, and where (N,) they obey it: what the last time
     has changed, times the contraction (N,), is what they miss it by at most.
     """
-    given = np.max(np.abs(law.given), axis=0)
-    for _ in range(FIRST_INSERTIONS):
-        efforts = law.followed(efforts, press)
+    for _ in range(1, FIRST_INSERTIONS):
+        efforts = law.followed(press.parts(efforts))
+    size = np.max(np.abs(efforts), axis=0) + np.max(np.abs(law.given), axis=0)
+    start, last = efforts, None
     for _ in range(MOST_INSERTIONS - FIRST_INSERTIONS):
-        before, efforts = efforts, law.followed(efforts, press)
-        size = np.max(np.abs(before), axis=0) + given
-        good = contraction * np.max(np.abs(efforts - before), axis=0) <= CLOSE * size
+        efforts = law.followed(press.parts(start))
+        change = efforts - start
+        good = contraction * np.max(np.abs(change), axis=0) <= CLOSE * size
         if np.all(good):
             break
+        start, last = _ahead(efforts, change, last), (efforts, change)
     return efforts, good
+
+
+def _ahead(efforts: Array, change: Array, last: tuple[Array, Array] | None) -> Array:
+    """Efforts (J, N) from which the law is put into itself next: what makes the change (J, N) the
+    least on the line through these and the last, as of Anderson; these themselves at first.
+    """
+    if last is None:
+        return efforts
+    turned = change - last[1]
+    size = np.sum(turned * turned, axis=0)
+    share = np.sum(turned * change, axis=0) / np.where(size > 0, size, 1.0)
+    return np.asarray(efforts - share * (efforts - last[0]))
 
 
 def _newton(
@@ -339,8 +360,7 @@ def _grown(law: FrictionLaw, press: Press) -> tuple[Array, Array]:
 def law_of(motion: Motion) -> FrictionLaw:
     """The law of the joints of a motion."""
     joints = rubbing_joints(motion.linkage)
-    rates = _cached(motion, "rates of friction", joints,
-                  lambda: np.array([joint.rate(motion) for joint in joints]))  # fmt: skip
+    rates = _cached(motion, "rates of friction", joints, lambda: rates_of(joints, motion))
     return FrictionLaw.of(joints, rates * motion.speed, np.sign(rates * motion.speed))
 
 
@@ -370,11 +390,12 @@ def unit_demands(motion: Motion, joints: Sequence[RubbingJoint]) -> list[dict[st
     """What holds a unit of friction in each joint, on both its bodies."""
     demands = []
     for joint in joints:
-        lever = joint.lever(motion)
-        ends: list[Acting] = [(joint.on, None, 0j, lever), (joint.by, None, 0j, -lever)]  # type: ignore[list-item]
-        if joint.slides:
-            at, along = joint.place(motion), joint.direction(motion)
-            ends = [(joint.on, at, along, 0.0), (joint.by, at, -along, 0.0)]
+        if not joint.slides:
+            lever = joint.lever(motion)
+            demands.append({joint.on: (0j, -lever), joint.by: (0j, lever)})
+            continue
+        at, along = joint.place(motion), joint.direction(motion)
+        ends: list[Acting] = [(joint.on, at, along, 0.0), (joint.by, at, -along, 0.0)]
         demands.append(demands_of(motion, ends))
     return demands
 
@@ -512,7 +533,8 @@ def added(demands: Demands, units: Sequence[Demands], efforts: Array) -> dict[st
     for effort, unit in zip(efforts, units, strict=True):
         for body, (force, moment) in unit.items():
             own = total.get(body, (0j, 0.0))
-            total[body] = own[0] + effort * force, own[1] + effort * moment
+            pushes = own[0] + effort * force if np.ndim(force) else own[0]  # else it only turns
+            total[body] = pushes, own[1] + effort * moment
     return total
 
 

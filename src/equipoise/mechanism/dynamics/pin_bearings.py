@@ -47,7 +47,9 @@ class PlainBearing:
 
 def plain_bearings(motion: Motion, joints: Mapping[str, JointForce]) -> Mapping[str, PlainBearing]:
     """Plain bearings by joint: pins whose radius and width are given."""
-    by_name = {}
+    by_name: dict[str, PlainBearing] = {}
+    if all(item.width is None for item in motion.machine.joints):
+        return by_name
     for name, (reaction, item) in joint_properties(motion).items():
         if item.width is not None and item.radius is not None and name in joints:
             pressure = joints[name].size / (item.width * 2 * item.radius)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -118,19 +118,18 @@ class RubbingJoint:
         return bool(self.coefficient or given.static_friction or given.drag_force
                     or given.drag_torque)  # fmt: skip
 
-    def rate(self, motion: Motion) -> Array:
-        """How fast it turns (rad) or slides (m) by rad of the crank (N,); 0 where it rests."""
+    def way(self, motion: Motion) -> Array:
+        """How fast it turns (rad) or slides (m) by rad of the crank, (N,) or the same everywhere;
+        with the rounding of what rests.
+        """
         if self.slot is not None:
-            rate = self._rate_along(self.slot, motion)
-        elif self.on_surface:
-            rate = self._rate_on_surface(motion)
-        elif self.slider is None:
-            turns = [motion.state[f"w({body})"] for body in (self.on, self.by)]
-            rate = np.asarray(turns[0] - turns[1], float) * self.lever(motion)
-            rate = np.broadcast_to(rate, motion.crank_angle.shape)
-        else:
-            rate = motion.slider(self.slider).travel_1
-        return np.where(np.abs(rate) > self.still, rate, 0.0)
+            return self._rate_along(self.slot, motion)
+        if self.on_surface:
+            return self._rate_on_surface(motion)
+        if self.slider is not None:
+            return motion.slider(self.slider).travel_1
+        rate = motion.state[f"w({self.on})"] - motion.state[f"w({self.by})"]
+        return np.asarray(rate * self.lever(motion) if self.centres else rate)
 
     def place(self, motion: Motion) -> Array:
         """Where what slides rubs (N,), m, complex: of a rack where it meets its pinion, of a
@@ -181,6 +180,23 @@ class RubbingJoint:
         turning = motion.state[f"w({slot.on})"]
         moving = pin.place_1 - base.place_1 - 1j * turning * (pin.place - base.place)
         return np.asarray(dot(self.direction(motion), moving))
+
+
+def ways_of(joints: Sequence[RubbingJoint], motion: Motion) -> Array:
+    """How fast joints turn (rad) or slide (m) by rad of the crank (J, N), with the rounding of what
+    rests.
+    """
+    rates = np.empty((len(joints), len(motion.crank_angle)))
+    for rate, joint in zip(rates, joints, strict=True):
+        rate[:] = joint.way(motion)
+    return rates
+
+
+def rates_of(joints: Sequence[RubbingJoint], motion: Motion) -> Array:
+    """How fast joints turn (rad) or slide (m) by rad of the crank (J, N); 0 where they rest."""
+    rates = ways_of(joints, motion)
+    still = np.array([joint.still for joint in joints]).reshape(-1, 1)
+    return np.where(np.abs(rates) > still, rates, 0.0)
 
 
 def rubbing_joints(linkage: Linkage) -> tuple[RubbingJoint, ...]:

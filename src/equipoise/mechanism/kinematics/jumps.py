@@ -16,7 +16,7 @@ import numpy as np
 
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, size_of_links
-from equipoise.mechanism.kinematics.friction_joints import STILL, rubbing_joints
+from equipoise.mechanism.kinematics.friction_joints import STILL, rubbing_joints, ways_of
 from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move, move_again
 from equipoise.mechanism.kinematics.tip import crossings, roots, surface_of
@@ -29,6 +29,8 @@ ANGLES = 720
 """In a turn, between two of which a law passes a knot at most once, or a tip the surface."""
 SAME = 1e-9
 """rad, within which jumps are one."""
+BESIDE = np.arange(-2, 4)
+"""Samples about one after which a signal passes zero, from which it is estimated where."""
 ACCELERATION = 2
 """Order of the derivative of a motion law that forces follow from."""
 
@@ -43,7 +45,7 @@ def jumps_of(linkage: Linkage) -> Array:
     known: Array | None = linkage.memory.get("jumps")
     if known is None:
         known = np.empty(0)
-        if may_jump(linkage) or linkage.machine.rubs:
+        if linkage.machine.rubs or may_jump(linkage):
             turns = linkage.cycle.turns
             every = [*declared_jumps(linkage, turns), *_jumps_on_the_way(linkage)]
             known = _within(every, turns)
@@ -111,15 +113,16 @@ def resolved(motion: Motion) -> Motion:
     """A motion over a whole cycle at crank angles that resolve its jumps; itself without any."""
     if not motion.whole_cycle or motion.sampling is not None:
         return motion
-    jumps = jumps_of_rows(motion.linkage)
-    if not len(jumps):
+    linkage, theta = motion.linkage, motion.crank_angle
+    last_key, sampling = linkage.memory.get("sampling", (None, None))
+    if (key := (len(theta), motion.turns)) != last_key:
+        jumps, sampling = jumps_of_rows(linkage), None
+        if len(jumps):
+            bends = bends_of_rows(linkage, motion.turns)
+            sampling = JumpSampling.of(theta, motion.turns, jumps, bends)
+        linkage.memory["sampling"] = key, sampling  # the last alone, as they take memory
+    if sampling is None:
         return motion
-    bends, theta = bends_of_rows(motion.linkage, motion.turns), motion.crank_angle
-    key = len(theta), jumps.tobytes(), bends.tobytes()
-    last_key, sampling = motion.linkage.memory.get("sampling", (None, None))
-    if key != last_key:
-        sampling = JumpSampling.of(theta, motion.turns, jumps, bends)
-        motion.linkage.memory["sampling"] = key, sampling  # the last alone, as they take memory
     moved = move_again(motion.machine, sampling.crank_angle, motion.speed, motion.acceleration)
     return replace(moved, whole_cycle=True, sampling=sampling)
 
@@ -131,9 +134,8 @@ def _jumps_on_the_way(linkage: Linkage) -> Iterator[Array]:
         yield from _knots(linkage, coupling)
     joints = [joint for joint in rubbing_joints(linkage) if joint.jumps]
     if joints:
-        yield _signs_changed(
-            linkage, lambda motion: np.array([joint.rate(motion) for joint in joints])
-        )
+        still = np.array([[joint.still] for joint in joints])
+        yield _signs_changed(linkage, partial(ways_of, joints), still)
     if machine.planting is not None and machine.planting.soil is not None:
         surface = surface_of(machine)
         for arm in machine.planting.every_arm:
@@ -183,9 +185,13 @@ def resisted_back(linkage: Linkage) -> Array:
     return of_rows(machine, _within([_signs_changed(linkage, signals)], turns), turns)
 
 
-def _signs_changed(linkage: Linkage, read: Callable[[Motion], Array]) -> Array:
+def _signs_changed(
+    linkage: Linkage, read: Callable[[Motion], Array], still: Array | float = 0.0
+) -> Array:
     """Crank angles of a cycle at which signals (J, N) that are read of a motion change their signs:
     of all of them from the same motions.
+
+    still : (J, 1) size up to which a signal is rounding.
     """
     turns = linkage.cycle.turns
     nodes = np.linspace(0.0, 2 * pi * turns, ANGLES * turns + 1)
@@ -193,7 +199,9 @@ def _signs_changed(linkage: Linkage, read: Callable[[Motion], Array]) -> Array:
     def rates(theta: Array) -> Array:
         return read(move(linkage.machine, theta))
 
-    back = rates(nodes) < 0
+    sampled = rates(nodes)
+    sampled[np.abs(sampled) <= still] = 0.0
+    back = sampled < 0
     back[:, -1] = back[:, 0]  # the same instant, whatever rounding says
     joint, k = np.nonzero(back[:, :-1] != back[:, 1:])
     if not k.size:
@@ -202,8 +210,24 @@ def _signs_changed(linkage: Linkage, read: Callable[[Motion], Array]) -> Array:
     def signal(theta: Array) -> Array:
         return rates(theta[0])[joint, np.arange(k.size)][None]
 
-    values: Array = roots(signal, nodes[None, k], nodes[None, k + 1])[0]
+    near = (k[:, None] + BESIDE) % (len(nodes) - 1)
+    first = nodes[k] + nodes[1] * _zeros_between(sampled[joint[:, None], near])
+    known = sampled[None, joint, k], sampled[None, joint, k + 1], first[None]
+    values: Array = roots(signal, nodes[None, k], nodes[None, k + 1], known)[0]
     return values
+
+
+def _zeros_between(values: Array) -> Array:
+    """Where signals are about zero between the middle two of six equally spaced values (K, 6), as
+    shares (K,) of the step: by the polynomial of the step in their values; 0.5 where it leads out.
+    """
+    with np.errstate(all="ignore"):
+        weights = np.ones_like(values)
+        for k in range(1, len(BESIDE)):
+            other = np.roll(values, k, axis=1)
+            weights *= other / (other - values)
+        share = weights @ BESIDE
+    return np.where((share > 0) & (share < 1), share, 0.5)
 
 
 def _crossed(linkage: Linkage, read: Callable[[Motion], Array]) -> Array:

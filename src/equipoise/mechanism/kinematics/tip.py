@@ -38,23 +38,28 @@ RIVALS = 3
 highest top."""
 
 
-def roots(signal: Signal, low: Array, high: Array) -> Array:
+def roots(
+    signal: Signal, low: Array, high: Array, known: tuple[Array, Array, Array] | None = None
+) -> Array:
     """Crank angles (P, K) between `low` and `high`, at which a signal passes zero.
+
+    known : values (P, K) there, and crank angles (P, K) at which it is looked first; else in the
+        middle.
 
     Chandrupatla's method, on all brackets at once: inverse quadratic interpolation where it can be
     trusted, else bisection, so that no peak is too sharp.  Where the signal has the same sign at
     both ends, the end at which it is smaller comes back.
     """
     with np.errstate(all="ignore"):
-        return _roots(signal, low, high)
+        return _roots(signal, low, high, known or (signal(low), signal(high), (low + high) / 2))
 
 
-def _roots(signal: Signal, low: Array, high: Array) -> Array:
+def _roots(signal: Signal, low: Array, high: Array, known: tuple[Array, Array, Array]) -> Array:
     x1, x2 = high, low
-    f1, f2 = signal(x1), signal(x2)
+    f2, f1, first = known
     bracketed = np.signbit(f1) != np.signbit(f2)
     nearer = np.where(np.abs(f1) < np.abs(f2), x1, x2)
-    share: Array = np.full_like(x1, 0.5)
+    share: Array = (high - first) / (high - low)
     for _ in range(MOST_ROUNDS):
         narrow = np.abs(x2 - x1) <= 2 * CLOSE
         over = narrow | ~bracketed | np.equal(f1, 0) | np.equal(f2, 0)

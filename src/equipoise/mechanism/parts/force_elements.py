@@ -112,12 +112,13 @@ class LoadTable(CsvTable):
     @property
     def steps(self) -> Iterator[float]:
         """Crank angles of the rows between which it changes suddenly, rad."""
-        rows = [*zip(self.crank_angle, zip(*self.values, strict=True), strict=True)]
+        close = [k for k, (a, b) in enumerate(pairwise(self.crank_angle)) if b - a <= STEP_WIDTH]
+        if not close:
+            return
         largest = max((abs(value) for column in self.values for value in column), default=0.0)
-        for (begin, item), (end, other) in pairwise(rows):
-            change = max(abs(b - a) for a, b in zip(item, other, strict=True))
-            if end - begin <= STEP_WIDTH and change > STEP_SHARE * largest:
-                yield from (begin, end)
+        for k in close:
+            if max(abs(column[k + 1] - column[k]) for column in self.values) > STEP_SHARE * largest:
+                yield from self.crank_angle[k : k + 2]
 
 
 @declared
