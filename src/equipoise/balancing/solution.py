@@ -150,12 +150,33 @@ def _settled(problem: Problem, progress: Progress | None, above: float) -> Solut
         if solution.settled:
             if solution.best.nodes < FEW_NODES or solution.best.bound > above:
                 return solution
-            solution, proofs = _solve_once(solution.problem, progress), proofs + 1
+            proved, proofs = _solve_once(solution.problem, progress), proofs + 1
+            solution = _stays(solution, proved) or proved
             if solution.settled or proofs == PROOFS:
                 return solution
         linearized = problem.linearized_at(solution.numbers)
-        solution = _solve_once(linearized, None, most=FEW_NODES)
+        towards = _solve_once(linearized, None, most=FEW_NODES)
+        solution = _stays(solution, towards) or towards
     return _solve_once(solution.problem, progress)
+
+
+def _stays(solution: Solution, other: Solution) -> Solution | None:
+    """The numbers of a solution, where another that takes their friction as known is better by no
+    more than what counts as settled, and they keep the limits; else None.
+
+    Where an optimum is flat, the best numbers wander, and with them friction, without an end.
+    """
+    problem, numbers = other.problem, solution.numbers
+    known = problem.close.numbers
+    if known is None or not np.array_equal(np.concatenate(numbers), known):
+        return None
+    cost = problem.cost_of(solution.machine)
+    if cost - other.best.bound > SAME_FRICTION * problem.whole:
+        return None
+    if problem.limits_passed_with_friction(solution.machine):
+        return None
+    best = replace(other.best, value=cost)
+    return replace(other, best=best, numbers=numbers, machine=solution.machine)
 
 
 def _within_limits(problem: Problem, kept: list[Array], progress: Progress | None) -> Solution:
