@@ -13,7 +13,7 @@ from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints, wrong_end_points
 from equipoise.quantities import Dimension, format_quantity
 
 Pair = tuple[float, float]
@@ -206,7 +206,7 @@ class Bushing(BetweenPoints, RatedElement):
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
         itself = Note("{link!r} cannot be held by itself", link=self.link)
-        yield from self.wrong_points(where, bodies, itself)
+        yield from wrong_end_points(where, self, bodies, itself)
         for name in ("stiffness", "damping"):
             if any(number < 0 for number in getattr(self, name)):
                 least = Note("a bushing pulls back and takes power away; give numbers of 0 or more")

@@ -186,7 +186,5 @@ class Damper(BetweenPoints, Damping):
             point=self.point,
             link=self.link,
             to=self.to,
-            size=say("{count} rows", count=len(self.rows[0]))
-            if self.damping is None
-            else format_quantity(self.damping, "damping", "N s/m"),
+            size=self.size("damping", "N s/m"),
         )

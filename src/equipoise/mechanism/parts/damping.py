@@ -7,10 +7,11 @@ from itertools import pairwise
 from typing import Any
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.parts.force_kinds import RatedElement
 from equipoise.mechanism.parts.ramps import ramp_value, ramps_of
 from equipoise.mechanism.parts.row_laws import RowLaw
+from equipoise.quantities import Dimension, format_quantity
 
 ZERO = 1e-9
 """Of the largest effort of a table, below which its effort at standstill is rounding."""
@@ -28,6 +29,12 @@ class Damping(RowLaw, RatedElement):
     @property
     def linear(self) -> bool:
         return self.damping is not None
+
+    def size(self, dimension: Dimension, unit: str) -> str:
+        """Its damping, of a dimension, in a unit, or how many rows it has."""
+        if self.damping is None:
+            return say("{count} rows", count=len(self.rows[0]))
+        return format_quantity(self.damping, dimension, unit)
 
     def resistance(self, speed: Any) -> Any:
         """What it resists a speed with, of the sign of this."""

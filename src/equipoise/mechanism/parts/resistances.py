@@ -28,7 +28,7 @@ from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement, TableArgument
 from equipoise.mechanism.parts.ramps import table_value
 from equipoise.mechanism.parts.row_laws import TableRows
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints, wrong_end_points
 from equipoise.quantities import Dimension, format_quantity
 
 TINY = 1e-300
@@ -262,7 +262,7 @@ class Resistance(BetweenPoints, TableRows, RatedElement):
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
         itself = Note("{link!r} cannot resist itself", link=self.link)
-        yield from self.wrong_points(where, bodies, itself)
+        yield from wrong_end_points(where, self, bodies, itself)
         yield from self._wrong_law(where)
 
     def _wrong_law(self, where: str) -> Iterator[ModelError]:

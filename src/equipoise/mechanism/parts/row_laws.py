@@ -7,9 +7,10 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 from equipoise.keys import Conditions, lacks, needs
 from equipoise.mechanism.parts.ramps import wrong_rows
+from equipoise.quantities import Dimension, format_quantity
 
 
 def one_law(constant: str, lists: tuple[str, str], beside: tuple[str, ...] = ()) -> Conditions:
@@ -44,6 +45,12 @@ class TableRows:
     def rising(self) -> Iterator[Any]:
         """What has to be true of the places of rows, or of columns of them."""
         return (after > before for before, after in pairwise(self.rows[0]))
+
+    def rows_in_words(self, dimension: Dimension) -> str:
+        """How many rows there are, and between which places; dimension : of these."""
+        places = self.rows[0]
+        first, last = (format_quantity(places[end], dimension) for end in (0, -1))
+        return say("{count} rows from {first} to {last}", count=len(places), first=first, last=last)
 
     def wrong_rows(self, where: str) -> Iterator[ModelError]:
         """What is wrong with the rows."""

@@ -20,13 +20,13 @@ from equipoise.keys import (
     key,
 )
 from equipoise.keys.csv_tables import CsvTable
-from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
+from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement, TableArgument
 from equipoise.mechanism.parts.ramps import Ramps, ramp_value, ramps_of
 from equipoise.mechanism.parts.row_laws import RowLaw, one_law
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints, wrong_end_points
 from equipoise.quantities import Dimension, format_quantity
 
 MEETING = to_say(
@@ -249,11 +249,7 @@ class Spring(BetweenPoints, RowLaw, ForceElement):
 
     def _rates(self) -> Iterator[str]:
         if self.stiffness is None:
-            lengths, _ = self.rows
-            first, last = (format_quantity(lengths[end], "length") for end in (0, -1))
-            yield say(
-                "{count} rows from {first} to {last}", count=len(lengths), first=first, last=last
-            )
+            yield self.rows_in_words("length")
             return
         yield format_quantity(self.stiffness, "stiffness", "N/m")
         length = format_quantity(self.free_length, "length")
@@ -277,28 +273,14 @@ def wrong_ends(where: str, spring: Any, bodies: Bodies, idle: str = IDLE) -> Ite
     idle : sentence for a point that is pinned to the frame.
     """
     link, point, to, on = spring.link, spring.point, spring.to, getattr(spring, "on", FRAME)
-    problem = [
-        *unknown_link(f"{where}.link", link, bodies),
-        *unknown_body(f"{where}.on", on, bodies),
-    ]
+    itself = Note("{link!r} cannot pull on itself", link=link)
+    problem = [*wrong_end_points(where, spring, bodies, itself)]
+    yield from problem
     if problem:
-        yield from problem
         return
-    points, frame = bodies[link], bodies[FRAME]
-    if point not in points:
-        sentence = unknown(point, points, Note("point of {body}", body=link))
-        yield ModelError(f"{where}.point", sentence)
-    elif on == link:
-        yield ModelError(f"{where}.on", Note("{link!r} cannot pull on itself", link=link))
-    elif to not in bodies[on]:
-        of = "point of the frame" if on == FRAME else Note("point of {body}", body=on)
-        yield ModelError(f"{where}.to", unknown(to, bodies[on], of))
-    elif on != FRAME and (point in bodies[on] or to in points):
+    if on != FRAME and (point in bodies[on] or to in bodies[link]):
         yield ModelError(
             where, Note("{link!r} and {on!r} are pinned there; give other points", link=link, on=on)
         )
-    elif point in frame and on == FRAME:
-        yield ModelError(
-            f"{where}.point",
-            Note(idle, point=point),
-        )
+    elif point in bodies[FRAME] and on == FRAME:
+        yield ModelError(f"{where}.point", Note(idle, point=point))

@@ -14,7 +14,7 @@ from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas.kernels import cross, positive
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, RatedElement
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints
+from equipoise.mechanism.parts.two_body_elements import BetweenPoints, wrong_end_points
 from equipoise.quantities import Dimension, format_quantity
 
 LEAST_RESTITUTION = 0.01
@@ -176,7 +176,7 @@ class Stop(BetweenPoints, RatedElement):
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
         itself = Note("{link!r} cannot stop itself", link=self.link)
-        yield from self.wrong_points(where, bodies, itself)
+        yield from wrong_end_points(where, self, bodies, itself)
         if (self.speed is None) != (self.restitution is None):
             sentence = Note("give restitution and speed together, or none of them")
             yield ModelError(where, sentence)

@@ -10,7 +10,7 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
 from equipoise.keys.csv_tables import CsvTable
-from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
+from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.parts.damping import Damping
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action
@@ -139,11 +139,7 @@ class TorsionDamper(BetweenBodies, Damping):
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
-        yield from unknown_link(f"{where}.link", self.link, bodies)
-        yield from unknown_body(f"{where}.on", self.on, bodies)
-        if self.link == self.on:
-            wrong = Note("{link!r} cannot be turned against itself", link=self.link)
-            yield ModelError(f"{where}.on", wrong)
+        yield from self.wrong_bodies(where, bodies)
         yield from self.wrong_law(where)
 
     def sentence(self) -> Note:
@@ -163,7 +159,5 @@ class TorsionDamper(BetweenBodies, Damping):
             "torsion damper: {link} on {on}, {size}",
             link=self.link,
             on=self.on,
-            size=say("{count} rows", count=len(self.rows[0]))
-            if self.damping is None
-            else format_quantity(self.damping, "torsional damping", "N m s/rad"),
+            size=self.size("torsional damping", "N m s/rad"),
         )

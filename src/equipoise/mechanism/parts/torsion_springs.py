@@ -20,7 +20,7 @@ from equipoise.keys import (
     key,
 )
 from equipoise.keys.csv_tables import CsvTable
-from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
+from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement, TableArgument
 from equipoise.mechanism.parts.ramps import Ramps, ramp_integral, ramp_value, ramps_of
@@ -172,11 +172,7 @@ class TorsionSpring(BetweenBodies, RowLaw, ForceElement):
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
-        yield from unknown_link(f"{where}.link", self.link, bodies)
-        yield from unknown_body(f"{where}.on", self.on, bodies)
-        if self.link == self.on:
-            wrong = Note("{link!r} cannot be turned against itself", link=self.link)
-            yield ModelError(f"{where}.on", wrong)
+        yield from self.wrong_bodies(where, bodies)
         yield from self.wrong_law(where)
 
     def demands(self) -> Iterator[Any]:
@@ -211,11 +207,7 @@ class TorsionSpring(BetweenBodies, RowLaw, ForceElement):
 
     def _rates(self) -> Iterator[str]:
         if self.stiffness is None:
-            angles = self.rows[0]
-            first, last = (format_quantity(angles[end], "angle") for end in (0, -1))
-            yield say(
-                "{count} rows from {first} to {last}", count=len(angles), first=first, last=last
-            )
+            yield self.rows_in_words("angle")
             return
         yield format_quantity(self.stiffness, "torsional stiffness", "N m/rad")
         preload, angle = (

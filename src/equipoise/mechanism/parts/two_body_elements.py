@@ -57,25 +57,31 @@ class BetweenPoints:
         )
         return arm, along, ways
 
-    def wrong_points(self, where: str, bodies: Bodies, itself: Note) -> Iterator[ModelError]:
-        """What is wrong with its bodies and points; itself : sentence for a link on itself."""
-        wrong = [
-            *unknown_link(f"{where}.link", self.link, bodies),
-            *unknown_body(f"{where}.on", self.on, bodies),
-        ]
-        yield from wrong
-        if wrong:
-            return
-        if self.link == self.on:
-            yield ModelError(f"{where}.on", itself)
-        if self.point not in bodies[self.link]:
-            of = Note("point of {body}", body=self.link)
-            yield ModelError(f"{where}.point", unknown(self.point, bodies[self.link], of))
-        if self.to not in bodies[self.on]:
-            kind: Note | str = "point of the frame"
-            if self.on != FRAME:
-                kind = Note("point of {body}", body=self.on)
-            yield ModelError(f"{where}.to", unknown(self.to, bodies[self.on], kind))
+
+def wrong_end_points(where: str, item: Any, bodies: Bodies, itself: Note) -> Iterator[ModelError]:
+    """What is wrong with bodies and points of something between two points, of which the other is
+    one of the frame where it names no body.
+
+    itself : sentence for a link on itself.
+    """
+    link, point, to, on = item.link, item.point, item.to, getattr(item, "on", FRAME)
+    wrong = [
+        *unknown_link(f"{where}.link", link, bodies),
+        *unknown_body(f"{where}.on", on, bodies),
+    ]
+    yield from wrong
+    if wrong:
+        return
+    if link == on:
+        yield ModelError(f"{where}.on", itself)
+    if point not in bodies[link]:
+        of = Note("point of {body}", body=link)
+        yield ModelError(f"{where}.point", unknown(point, bodies[link], of))
+    if to not in bodies[on]:
+        kind: Note | str = "point of the frame"
+        if on != FRAME:
+            kind = Note("point of {body}", body=on)
+        yield ModelError(f"{where}.to", unknown(to, bodies[on], kind))
 
 
 class BetweenBodies:
@@ -98,3 +104,11 @@ class BetweenBodies:
     def route(self) -> tuple[str, str]:
         """From the other body to the link."""
         return self.on, self.link
+
+    def wrong_bodies(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """What is wrong with the link and the other body."""
+        yield from unknown_link(f"{where}.link", self.link, bodies)
+        yield from unknown_body(f"{where}.on", self.on, bodies)
+        if self.link == self.on:
+            wrong = Note("{link!r} cannot be turned against itself", link=self.link)
+            yield ModelError(f"{where}.on", wrong)
