@@ -13,6 +13,8 @@ from pathlib import Path
 import pytest
 
 import equipoise
+from equipoise.mechanism import Machine
+from equipoise.mechanism.parts.element_kinds import part_kinds
 from support.syntax import nodes, text_of, tree_of
 
 ROOT = Path(equipoise.__file__).parent
@@ -226,3 +228,33 @@ def test_nothing_is_written_into_objects_past_their_fields() -> None:
     """
     written = re.compile(r"__dict__(\[[^]]*\] *=[^=]|\.(update|pop|setdefault|clear)\()")
     assert {named(file) for file in FILES if written.search(text_of(file))} == set()
+
+
+BY_KIND = {
+    "balancing/design_variables.py": "springs that balancing adds",
+    "balancing/geared.py": "counterweights on gears that balancing adds",
+    "design/lifts.py": "parameters of the gears of a planting arm",
+    "exchange/reading/imported.py": "gears of imported files",
+    "figures/changes.py": "springs that balancing added",
+    "mechanism/assembly/cam_fits.py": "the cams themselves",
+    "planting": "arms on a carrier, which gears turn",
+    "symbols/scene.py": "springs, which are stretched between points",
+}
+"""Files beside those that kinds of parts name, in which lists of one kind are read, and why."""
+
+
+def test_lists_of_kinds_are_read_by_what_belongs_to_the_kind() -> None:
+    """All else goes through every kind that a machine has, so that a new one is not forgotten."""
+    kinds = part_kinds(Machine)
+    classes = {of for kind in kinds.values() for of in kind.__mro__}
+    values = [value for of in classes for value in vars(of).values()]
+    texts = [text for value in values if isinstance(value, dict) for text in value.values()]
+    own = {text.partition(":")[0] for text in (*values, *texts) if isinstance(text, str)}
+    own |= {kind.__module__ for kind in kinds.values()}
+    names = "|".join(kind.__name__ for kind in kinds.values())
+    read = re.compile(rf"\bmachine\.(?:{'|'.join(kinds)})\b|isinstance\([\w.]+, (?:{names})\)")
+    files = {file for file in FILES if read.search(text_of(file))}
+    others = {file.relative_to(ROOT).as_posix() for file in files if named(file) not in own}
+    assert {name for name in others if not name.startswith((*BY_KIND,))} == set()
+    idle = {place for place in BY_KIND if not any(name.startswith(place) for name in others)}
+    assert idle == set(), "their reason is gone"

@@ -28,7 +28,8 @@ def unbalances(machine: Machine) -> dict[str, complex]:
     support = machine.support
     if support is None or not support.mounts or massless(machine):
         return {}
-    if machine.sliders or machine.cams:
+    swings = any(not coupling.speed_ratio for coupling in machine.couplings)
+    if machine.sliders or swings:
         return {}
     speed = max(map(abs, (machine.drive.speed, *(machine.drive.range or ()))))
     rotors: dict[str, complex] = {}
