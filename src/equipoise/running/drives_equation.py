@@ -199,10 +199,12 @@ class DrivesEquation:
         """
         starts = self.start + self.rows.phases
         each = [references_at(self.linkage, angle) for angle in starts.tolist()]
-        near = {name: np.concatenate([row[name] for row in each], axis=-1) for name in each[0]}
+        references = {
+            name: np.concatenate([row[name] for row in each], axis=-1) for name in each[0]
+        }
         if self.strokes is not None:
-            near |= self.strokes.references_at(starts)
-        return self._by_row(near)
+            references |= self.strokes.references_at(starts)
+        return self._by_row(references)
 
     def references(self, state: DriveState) -> References:
         """What references have come to in K states (..., R, K)."""
@@ -251,13 +253,13 @@ class DrivesEquation:
             crank, whole[0], whole[1], jacobian, whole[2], virtual, whole[1], none, none[:, None]
         )
 
-    def in_rows(self, time: Array, where: DriveAngles, near: References) -> DriveAngles:
+    def in_rows(self, time: Array, where: DriveAngles, references: References) -> DriveAngles:
         """All drives of each row (R K), at times (K,), s, with those that push.
 
         Shafts that follow from torques turn the links of all rows by the same angles, from where
         the file has each at the start; a given motion is that of the row's own crank angle.
 
-        where : as of `placed`.  near : references in these states.
+        where : as of `placed`.  references : in these states.
 
         Raises
         ------
@@ -272,7 +274,7 @@ class DrivesEquation:
             where = self._placed(crank, crank_speed, angles + shifts, speeds)
         if self.strokes is None:
             return where
-        return self.strokes.placed(where, crank_speed, self._of_rows(near))
+        return self.strokes.placed(where, crank_speed, self._of_rows(references))
 
     @cached_property
     def _shifts(self) -> Array:
@@ -314,20 +316,22 @@ class DrivesEquation:
         """
         return [load.line_after(since)(time) for load in self.machine.timed_loads]
 
-    def at(self, time: Array, since: float, where: DriveAngles, near: References) -> DriveState:
+    def at(
+        self, time: Array, since: float, where: DriveAngles, references: References
+    ) -> DriveState:
         """What acts in K states.
 
         where : as of `placed`.
         since : an instant, s, after which loads over time follow the line that counts.
-        near : references in these states.
+        references : in these states.
 
         Raises
         ------
         MotionError, ModelError : the machine cannot be there.
         """
         rows = self.rows
-        where = self.in_rows(time, where, near)
-        pose = self.pose(where, self._of_rows(near))
+        where = self.in_rows(time, where, references)
+        pose = self.pose(where, self._of_rows(references))
         crank_speed = self._crank_speed(rows.repeated(time), where.speeds[self.free])
         factors = self.factors_at(rows.repeated(time), since)
         inputs = SourceInputs(crank_speed, factors, pose.gravity)
@@ -345,11 +349,13 @@ class DrivesEquation:
         """Generalized forces (0, N, R K) of mounts of the support: none on a fixed frame."""
         return np.zeros((0, self.coordinates, pose.count))
 
-    def pose(self, where: DriveAngles, near: References) -> DrivesPose:
+    def pose(self, where: DriveAngles, references: References) -> DrivesPose:
         """The linkages of all rows, at coordinates as of `in_rows`, near references (..., R K)."""
         drives = slice(len(self.drives))
         angles, speeds = where.angles[drives], where.speeds[drives]
-        return pose_of(self.linkage, where.crank_angle, angles, speeds, near, 1 / self.rows.count)
+        return pose_of(
+            self.linkage, where.crank_angle, angles, speeds, references, 1 / self.rows.count
+        )
 
     def with_rotors(self, inertia: Array) -> Array:
         """Inertia (C, C, R K), kg m2, of links with that of motors."""
@@ -400,12 +406,12 @@ class DrivesEquation:
             demand = self.strokes.efforts(state.where.slopes, demand)
         return np.asarray(demand[[*self.given]])
 
-    def energy(self, where: DriveAngles, near: References) -> Array:
+    def energy(self, where: DriveAngles, references: References) -> Array:
         """Kinetic energy (K,), J.
 
-        where : as of `in_rows`.  near : references there (..., R, K).
+        where : as of `in_rows`.  references : there (..., R, K).
         """
-        inertia = self.with_rotors(self.pose(where, self._of_rows(near)).inertia)
+        inertia = self.with_rotors(self.pose(where, self._of_rows(references)).inertia)
         doubled = np.einsum("ik,ijk,jk->k", where.speeds, inertia, where.speeds)
         return np.asarray(self.rows.total(doubled) / 2)
 

@@ -147,9 +147,9 @@ class DrivesIntegration:
         timed = {time for load in equation.machine.timed_loads for time in load.times}
         self.corners = sorted({*ramps, *timed} - {0.0})
         self._observe(0.0, state)
-        near = equation.references_at_start()
-        values = self._first_values(state, near)
-        self.sizes, works = rates.sizes(self._usual_energy(state, near))
+        references = equation.references_at_start()
+        values = self._first_values(state, references)
+        self.sizes, works = rates.sizes(self._usual_energy(state, references))
         self.works = works
         self.start = self.mark = self._crank_angle(0.0, state)
         self._mark_span = 2 * pi * equation.machine.turns_given
@@ -193,9 +193,9 @@ class DrivesIntegration:
             Note("the motion takes too long to be followed; give a shorter time or fewer turns")
         )
 
-    def _first_values(self, state: Array, near: References) -> NodeValues:
+    def _first_values(self, state: Array, references: References) -> NodeValues:
         """What is known at the start, at all nodes of a span that does not move."""
-        nodes = {name: np.repeat(value, NODES, axis=-1) for name, value in near.items()}
+        nodes = {name: np.repeat(value, NODES, axis=-1) for name, value in references.items()}
         values = self.rates.at(np.zeros(NODES), np.repeat(state[:, None], NODES, axis=1), nodes)
         if values is None and isinstance(self.rates.failure, ModelError | LockError):
             raise self.rates.failure
@@ -223,13 +223,13 @@ class DrivesIntegration:
         while True:
             width = min(self.width, most)
             nodes = time + width * (POINTS + 1) / 2
-            gain, near = before[0].beyond(before[1], nodes)
-            guess = start[0][:, None] + gain, near
+            gain, references = before[0].beyond(before[1], nodes)
+            guess = start[0][:, None] + gain, references
             span = solved_span(
                 self.rates.at, (time, width), start, guess, self.sizes, self.rates.count
             )
             if width <= shortest:
-                return span or self._passed(time, width, start, near)
+                return span or self._passed(time, width, start, references)
             if span is None:
                 self.width = width / 4
                 continue
@@ -243,7 +243,7 @@ class DrivesIntegration:
             self.width = width * min(max(change, 0.2), 0.7 / tried)
 
     def _passed(
-        self, time: float, width: float, start: tuple[Array, Array], near: References
+        self, time: float, width: float, start: tuple[Array, Array], references: References
     ) -> TimeSpan:
         """A span so short that nothing moves in it, over what changes suddenly.
 
@@ -253,7 +253,7 @@ class DrivesIntegration:
         """
         state, _ = start
         values = self.rates.at(
-            time + width * (POINTS + 1) / 2, np.repeat(state[:, None], NODES, axis=1), near
+            time + width * (POINTS + 1) / 2, np.repeat(state[:, None], NODES, axis=1), references
         )
         if values is not None:
             return TimeSpan(time, width, *start, values)
@@ -272,10 +272,10 @@ class DrivesIntegration:
     def _first_in(self, span: TimeSpan) -> tuple[float, DriveWatch | None]:
         """Place in a span at which something happens first, and what; 1 where nothing does."""
         places = np.linspace(-1.0, 1.0, LOOKED + 1)
-        seen = self._look(span, places)
+        margins = self._look(span, places)
         result: tuple[float, DriveWatch | None] = (1.0, None)
         for watch in self._watched():
-            ends = self._fall(span, watch.left, places, watch.left(seen))
+            ends = self._fall(span, watch.left, places, watch.left(margins))
             if ends is not None and ends[0] < result[0]:
                 place = self._zero(span, watch.left, ends)
                 if place < result[0] or result[1] is None:
@@ -348,13 +348,13 @@ class DrivesIntegration:
     def _crank_angle(self, time: float, state: Array) -> float:
         return float(self.rates.where(np.array([time]), state[:, None]).crank_angle[0])
 
-    def _usual_energy(self, state: Array, near: References) -> float:
+    def _usual_energy(self, state: Array, references: References) -> float:
         """Kinetic energy at the start with all drives at the usual speed, J."""
         where = self.rates.where(np.zeros(1), state[:, None])
-        where = self.equation.in_rows(np.zeros(1), where, near)
+        where = self.equation.in_rows(np.zeros(1), where, references)
         speeds = np.zeros_like(where.angles)
         speeds[: len(self.drivers)] = self.usual
-        return float(self.equation.energy(where._replace(speeds=speeds), near)[0]) or 1.0
+        return float(self.equation.energy(where._replace(speeds=speeds), references)[0]) or 1.0
 
     @property
     def _moved_drives(self) -> list[tuple[int, int]]:

@@ -225,8 +225,8 @@ def pose_of(
         state.update(zip(u(drive.link), values, strict=True))
         state[f"phi({drive.link})"] = angle
     for name in linkage.needed_references:
-        near = references[name]
-        state[f"reference({name})"] = np.tile(near, (*[1] * (near.ndim - 1), count + 1))
+        reference = references[name]
+        state[f"reference({name})"] = np.tile(reference, (*[1] * (reference.ndim - 1), count + 1))
     run(linkage.motion, state)
     return DrivesPose(linkage, Motion(linkage, theta, 1.0, 0.0, False, state), share)
 

@@ -106,12 +106,12 @@ class DrivesRates:
             rows[:drives], rows[drives:before], rows[before:rubbing], rows[rubbing:]
         )
 
-    def at(self, time: Array, states: Array, near: References) -> NodeValues | None:
+    def at(self, time: Array, states: Array, references: References) -> NodeValues | None:
         """Rates in K states; None where the machine cannot be, or does not obey the laws."""
         self.failure = None
         with np.errstate(all="ignore"):  # of what is tried
             try:
-                values = self._at(time, states, near)
+                values = self._at(time, states, references)
             except EquipoiseError as error:
                 self.failure = error
                 return None
@@ -119,10 +119,10 @@ class DrivesRates:
                 return None
         return values if values is not None and np.all(np.isfinite(values.rates)) else None
 
-    def _at(self, time: Array, states: Array, near: References) -> NodeValues | None:
+    def _at(self, time: Array, states: Array, references: References) -> NodeValues | None:
         equation = self.equation
         where, rows = self.where(time, states), equation.rows
-        state = equation.at(time, just_after(self.since), where, near)
+        state = equation.at(time, just_after(self.since), where, references)
         margins = equation.margins(state)
         if not np.all(margins >= 0):  # before friction, which would seem to lock such a machine
             return None
@@ -199,5 +199,7 @@ class DrivesRates:
 
     def _braking(self, where: DriveAngles) -> Array:
         """Torque (K,) of the brake on the first drive, N m, which changes its sense smoothly."""
-        speed, near = where.speeds[0], BRAKED * self.usual
-        return np.asarray(-self.drivers[0].holding() * speed / np.sqrt(speed**2 + near**2))
+        speed, smoothing_speed = where.speeds[0], BRAKED * self.usual
+        return np.asarray(
+            -self.drivers[0].holding() * speed / np.sqrt(speed**2 + smoothing_speed**2)
+        )

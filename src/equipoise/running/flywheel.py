@@ -112,11 +112,11 @@ class Shooting:
         return None
 
     @staticmethod
-    def _step(missed: Array, slopes: Array) -> tuple[Array, bool]:
+    def _step(residual: Array, slopes: Array) -> tuple[Array, bool]:
         """Step of a state, and whether cycles come nearer to where it leads."""
         if np.max(np.abs(np.linalg.eigvals(slopes))) >= 1:
-            return missed, False
-        return np.linalg.solve(np.eye(len(missed)) - slopes, missed), True
+            return residual, False
+        return np.linalg.solve(np.eye(len(residual)) - slopes, residual), True
 
     def _cycle(self, state: Array) -> tuple[Array, Array]:
         """The state at the end of a cycle that begins in another, and rows of its track.
@@ -305,14 +305,14 @@ class SteadyCycle:
             energy = work - np.min(work) + least
             return np.asarray(np.sqrt(np.maximum(energy, 1e-300) * 2 / inertia))
 
-        def missed(least: float) -> float:
+        def misfit(least: float) -> float:
             return period / self._integral(1 / at(least)) - self.mean_speed
 
         high = float(np.max(inertia)) * self.mean_speed**2 / 2
         low = 1e-9 * (high + float(np.ptp(work)))
-        if missed(low) > 0:
+        if misfit(low) > 0:
             return None
-        return at(brentq(missed, low, 2 * high + low, xtol=1e-16 * high, rtol=1e-14))
+        return at(brentq(misfit, low, 2 * high + low, xtol=1e-16 * high, rtol=1e-14))
 
     @cached_property
     def fluctuation(self) -> float:
@@ -420,15 +420,15 @@ def _least(fluctuation: Callable[[float], float], wanted: float, about: float) -
     """The inertia, kg m2, with which the fluctuation is the wanted one."""
     from scipy.optimize import brentq
 
-    def missed(added: float) -> float:
+    def misfit(added: float) -> float:
         return min(fluctuation(added), 10.0) - wanted
 
     low, high = 0.0, about
-    while missed(high) > 0:
+    while misfit(high) > 0:
         low, high = high, high * MANY_TIMES
         if high > LARGEST * about:
             raise ResponseError(Note("no flywheel of any size achieves this fluctuation"))
-    return float(brentq(missed, low, high, rtol=CLOSE))
+    return float(brentq(misfit, low, high, rtol=CLOSE))
 
 
 @dataclass(eq=False)

@@ -295,11 +295,11 @@ class Integration:
         corners = (time for time in self.corners if now.time < time < until)
         for begin, end in pairwise([now.time, *corners, until]):
             self.since = begin  # where a load may change suddenly
-            held, free = replace(now, time=begin), replace(now, time=end)
-            if not self._held_by(held)[0]:
-                return held
+            begin_instant, free = replace(now, time=begin), replace(now, time=end)
+            if not self._held_by(begin_instant)[0]:
+                return begin_instant
             if end < inf and not self._held_by(free)[0]:
-                return self._let_go(held, free)
+                return self._let_go(begin_instant, free)
         return None
 
     def _held_by(self, now: Instant) -> tuple[str, float]:
@@ -420,15 +420,15 @@ class Integration:
             torques = self._torques(
                 part.values, speed, driving, self._times_at(speed, paths, begin)
             )
-            missed = began + paths @ torques.sum(axis=0) - energy
-            most = float(np.abs(missed).max())
+            residual = began + paths @ torques.sum(axis=0) - energy
+            most = float(np.abs(residual).max())
             if most <= CLOSE * energy.max():
                 return (energy - began, inverse), speed, current, torques
             if inverse is None or most > QUICK * before:
                 slopes = self._slopes(part.values, speed, torques, (paths, begin)) / energy
                 inverse = np.linalg.inv(np.eye(NODES) - paths @ slopes)
             before = most
-            energy = energy + inverse @ missed
+            energy = energy + inverse @ residual
         return None
 
     def _current(self, speed: Array, paths: Array, begin: Instant) -> Array:

@@ -62,8 +62,8 @@ class Passage:
         """Forces at some of the instants, after one from which loads over time follow a line."""
         equation = self.equation
         where = DriveAngles(*(values[..., places] for values in self.where))
-        near = {name: values[..., places] for name, values in self.references.items()}
-        state = equation.at(self.time[places], just_after(since), where, near)
+        references = {name: values[..., places] for name, values in self.references.items()}
+        state = equation.at(self.time[places], just_after(since), where, references)
         changes, pose = self._changes(state, places), state.pose
         demanded = (
             {link: (force * change, moment * change) for link, (force, moment) in unit.items()}
@@ -113,12 +113,12 @@ def passage_of_crank(
     """
     crank = machine.drive if machine.drive.moves_freely else replace(machine.drive, free=True)
     equation = DrivesEquation(replace(machine, drive=crank))
-    names, near = equation.linkage.needed_references, {}
+    names, references = equation.linkage.needed_references, {}
     if names:
         states = [move(machine, angle + phase).state for phase in equation.rows.phases]
         for name in names:
             key = name if name in states[0] else f"phi({name})"
             each = [state[key] + np.zeros(len(time)) for state in states]
-            near[name] = np.stack(each, axis=-2)
+            references[name] = np.stack(each, axis=-2)
     where = equation.placed(time, angle[None], speed[None])
-    return Passage(equation, time, where, near, torques=torque[None])
+    return Passage(equation, time, where, references, torques=torque[None])

@@ -88,12 +88,12 @@ class Strokes:
     def _usual_lever(self) -> float:
         """Lever at the start, with all drives as the file has them."""
         angles = drives_at(self.linkage.machine, self.start)[0][:, None]
-        near = references_at(self.linkage, self.start)
+        references = references_at(self.linkage, self.start)
         crank = np.array([self.start])
-        _, slopes, _ = self._lengths_at(crank, angles, np.zeros_like(angles), near)
+        _, slopes, _ = self._lengths_at(crank, angles, np.zeros_like(angles), references)
         return float(self._lever(slopes)[0])
 
-    def placed(self, where: DriveAngles, crank_speed: Array, near: References) -> DriveAngles:
+    def placed(self, where: DriveAngles, crank_speed: Array, references: References) -> DriveAngles:
         """All drives, of which those that push are about where references have them.
 
         where : all others.  crank_speed : (K,), rad/s.
@@ -103,7 +103,7 @@ class Strokes:
         MotionError : a stroke cannot be as long as it is to be.
         """
         pushed, crank = self._pushed, where.crank_angle
-        angles = self._angles(crank, where.angles, near)
+        angles = self._angles(crank, where.angles, references)
         speeds, jacobian, bias, virtual = (
             part.copy()
             for part in (
@@ -111,7 +111,7 @@ class Strokes:
             )
         )  # fmt: skip
         speeds[pushed] = 0.0
-        lengths, slopes, _ = self._lengths_at(crank, angles, speeds, near)
+        lengths, slopes, _ = self._lengths_at(crank, angles, speeds, references)
         _, first, second = self._commanded(crank)
         commanded = np.zeros((len(pushed), *jacobian.shape[1:]))
         virtual[pushed] = self._rates(slopes, commanded, virtual)
@@ -119,7 +119,7 @@ class Strokes:
             commanded[:, 0] = first
         jacobian[pushed] = self._rates(slopes, commanded, jacobian)
         speeds[pushed] = self._rates(slopes, first * crank_speed, speeds)
-        bent = self._lengths_at(crank, angles, speeds, near)[2]
+        bent = self._lengths_at(crank, angles, speeds, references)[2]
         bias[pushed] = self._rates(slopes, second * crank_speed**2 - bent, bias)
         effort_speeds = speeds.copy()
         effort_speeds[pushed] = first * crank_speed
@@ -152,7 +152,7 @@ class Strokes:
         values = [law.value(crank_angle) for law in laws if law is not None]
         return np.swapaxes(np.array(values), 0, 1)
 
-    def _angles(self, crank_angle: Array, angles: Array, near: References) -> Array:
+    def _angles(self, crank_angle: Array, angles: Array, references: References) -> Array:
         """Angles of all drives (N, K), rad, where all lengths are as commanded.
 
         angles : (N, K), of which those of links that are pushed do not count.
@@ -163,9 +163,11 @@ class Strokes:
         """
         wanted, angles = self._commanded(crank_angle)[0], np.array(angles)
         for k, name in zip(self.places, self._names, strict=True):
-            angles[k] = near[name]
+            angles[k] = references[name]
         for _ in range(ITERATIONS):
-            length, slopes, _ = self._lengths_at(crank_angle, angles, np.zeros_like(angles), near)
+            length, slopes, _ = self._lengths_at(
+                crank_angle, angles, np.zeros_like(angles), references
+            )
             changes = _solved(slopes[:, self._pushed], (wanted - length)[:, None])[:, 0]
             largest = np.max(np.abs(changes))
             if not np.isfinite(largest):
@@ -176,14 +178,14 @@ class Strokes:
         raise MotionError(Note("a stroke cannot be as long as it is to be"))
 
     def _lengths_at(
-        self, crank: Array, angles: Array, speeds: Array, near: References
+        self, crank: Array, angles: Array, speeds: Array, references: References
     ) -> tuple[Array, Array, Array]:
         """Lengths (P, K), m, at crank angles (K,), rad, with coordinates (C, K) and their rates;
         their derivatives by all coordinates (P, C, K), and what they accelerate (P, K), m/s2, while
         no drive does.
         """
         drives = len(self.linkage.machine.driven)
-        pose = pose_of(self.linkage, crank, angles[:drives], speeds[:drives], near)
+        pose = pose_of(self.linkage, crank, angles[:drives], speeds[:drives], references)
         lengths, by_drive, accelerations = self.lengths(pose)
         slopes = np.zeros((len(lengths), len(angles), pose.count))
         slopes[:, :drives] = by_drive

@@ -108,9 +108,9 @@ class SupportedEquation(DrivesEquation):
         place[self.body.free], rate[self.body.free] = coordinates[drives:], rates[drives:]
         return SupportPlace(place, rate)
 
-    def pose(self, where: DriveAngles, near: References) -> SupportedPose:
+    def pose(self, where: DriveAngles, references: References) -> SupportedPose:
         """Linkages and support with coordinates (N + D, R K) and their rates."""
-        own = super().pose(where, near)
+        own = super().pose(where, references)
         at = self.support_place(where.angles, where.speeds)
         origins = self.rows.of_each(self._origins, own.count // self.rows.count)
         return SupportedPose(

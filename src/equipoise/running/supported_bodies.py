@@ -51,10 +51,10 @@ class SupportedBodies:
         for name in self.links:
             link, anchor = self.linkage.machine.links[name], self.linkage.anchors[name]
             mass, moment, inertia = inertia_about(link, anchor)
-            across, beside = moments_across(link, anchor)
+            across, out_of_plane = moments_across(link, anchor)
             thickness = sum(part * plane**2 for part, _, plane in masses_of(link))
             twice = moment**2 / (2 * mass) if mass else 0j
-            rows.append([mass, moment, across, inertia / 2, twice, beside, thickness])
+            rows.append([mass, moment, across, inertia / 2, twice, out_of_plane, thickness])
         return np.array(rows, complex).reshape(-1, 7).T[..., None]
 
     def inertias(self, turn: Array) -> Array:
@@ -63,11 +63,11 @@ class SupportedBodies:
 
         turn : unit vectors (L, K), complex, of the links.
         """
-        mass, moment, across, half, twice, beside, thickness = self._constants
+        mass, moment, across, half, twice, out_of_plane, thickness = self._constants
         matrices = np.zeros((len(turn) + 1, 6, 6, turn.shape[-1]))
         matrices[-1] = self.share * self.body.mass[..., None]
         own, even = matrices[:-1], half.real + thickness.real
-        first, squares, tilted = moment * turn, twice * turn**2, -beside * turn
+        first, squares, tilted = moment * turn, twice * turn**2, -out_of_plane * turn
         for axis in range(3):
             own[:, axis, axis] = mass.real
         own[:, 3, 3], own[:, 4, 4] = even - squares.real, even + squares.real

@@ -37,7 +37,7 @@ QUICK = 1e-2
 NUDGE = 1e-7
 """Share of its size by which a state is changed for derivatives, which only set how fast rounds
 converge."""
-GROWS = 1e3
+DIVERGED = 1e3
 """Sizes of the states beyond which a round goes nowhere."""
 
 
@@ -104,10 +104,10 @@ class TimeSpan:
         """
         at, late = np.array([x]), times - self.time(x)
         rate, change = self.rates(at), self._by_time(self.values.rates, x)
-        near = {}
+        references = {}
         for name, values in self.values.references.items():
-            near[name] = between_nodes(values, at) + self._by_time(values, x) * late
-        return rate * late + change * late**2 / 2, near
+            references[name] = between_nodes(values, at) + self._by_time(values, x) * late
+        return rate * late + change * late**2 / 2, references
 
     def changes(self, x: float) -> Array:
         """Derivative (O,) of the others by time at a place."""
@@ -143,26 +143,26 @@ def solved_span(
     """
     begin, width = span
     times, paths = begin + width * (POINTS + 1) / 2, width / 2 * PATHS
-    states, near = guess
+    states, references = guess
     newton, before = None, np.inf
     for _ in range(MOST_ROUNDS):
-        values = function(times, states, near)
+        values = function(times, states, references)
         if values is None:
             return None
-        near = values.references or near
-        missed = start[0][:, None] + values.rates @ paths.T - states
-        most = float(np.max(np.abs(missed) / sizes[:, None]))
+        references = values.references or references
+        residual = start[0][:, None] + values.rates @ paths.T - states
+        most = float(np.max(np.abs(residual) / sizes[:, None]))
         if most <= CLOSE:
             return TimeSpan(begin, width, *start, values)
-        if not most < GROWS:
+        if not most < DIVERGED:
             return None
         if newton is None or most > QUICK * before:
-            slopes = _slopes(function, (times, states, near), values.rates, sizes)
+            slopes = _slopes(function, (times, states, references), values.rates, sizes)
             if slopes is None:
                 return None
             newton = NewtonStep(slopes, paths, places)
         before = most
-        states = states + newton.step(missed)
+        states = states + newton.step(residual)
     return None
 
 
@@ -173,13 +173,14 @@ def _slopes(
     sizes: Array,
 ) -> Array | None:
     """Derivatives (n, n, NODES) of the rates (n, NODES) by the states at the nodes."""
-    times, states, near = at
+    times, states, references = at
     count, nodes = states.shape
     moved = np.repeat(states[:, None], count, axis=1)
     for k in range(count):
         moved[k, k] += NUDGE * sizes[k]
     many = {
-        name: np.tile(values, (*[1] * (values.ndim - 1), count)) for name, values in near.items()
+        name: np.tile(values, (*[1] * (values.ndim - 1), count))
+        for name, values in references.items()
     }
     values = function(np.tile(times, count), moved.reshape(count, -1), many)
     if values is None:
@@ -214,9 +215,9 @@ class NewtonStep:
         except np.linalg.LinAlgError:
             self._inverse = np.full((size, size), np.nan)
 
-    def step(self, missed: Array) -> Array:
+    def step(self, residual: Array) -> Array:
         """Change (n, NODES) of states whose integrals miss them by so much (n, NODES)."""
-        of_places, others = missed[: self._places], missed[self._places :]
+        of_places, others = residual[: self._places], residual[self._places :]
         right = others + np.einsum("ijl,jl->il", self._by_place, of_places) @ self._paths.T
         changes = (self._inverse @ right.ravel()).reshape(others.shape)
         return np.concatenate([of_places + changes[: self._places] @ self._paths.T, changes])

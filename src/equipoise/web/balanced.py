@@ -68,10 +68,10 @@ def balanced(base: Design, hold: bool = False) -> Balanced:
         result = balance(_without_shafts(base.without(free)).machine, plan)
         if not (free or base.shafts):
             return result
-        shown = base.machine.with_balance(None)
-        before = _aims_of(shown, plan)
+        unplanned = base.machine.with_balance(None)
+        before = _aims_of(unplanned, plan)
         aims = {name: (before[name], after) for name, (_, after) in result.objectives.items()}
-        return replace(result, original=shown, objectives=aims)
+        return replace(result, original=unplanned, objectives=aims)
 
     own = base.machine.balance
     frees = own is not None and not own.changes_nothing

@@ -206,9 +206,9 @@ def _tidy(value: float) -> float:
     return float(f"{value:.1g}")
 
 
-def _asked(sketch: Sketch, asked: Message) -> Sketch:
-    ends = asked.text("driver"), asked.text("driven")
-    return with_cam(sketch, *ends, asked.spot("spot"), asked.text("rides", RIDES[0]))
+def _asked(sketch: Sketch, message: Message) -> Sketch:
+    ends = message.text("driver"), message.text("driven")
+    return with_cam(sketch, *ends, message.spot("spot"), message.text("rides", RIDES[0]))
 
 
 OPERATIONS: Mapping[str, tuple[str, Callable[[Sketch, Message], Sketch]]] = {

@@ -56,22 +56,22 @@ class CellRunner:
         ModuleNotFoundError : a package is missing that could still be loaded, `missing`.
         """
         self.missing = None
-        printed, shown = io.StringIO(), list[CellOutput]()
+        printed, outputs = io.StringIO(), list[CellOutput]()
         try:
             with redirect_stdout(printed):
                 value = self._value_of(source)
                 if value is not None:
-                    shown = [self._shown(value)]
+                    outputs = [self._shown(value)]
         except ModuleNotFoundError as error:
             self._ask_for(error)
-            shown = [CellOutput("error", str(error))]
+            outputs = [CellOutput("error", str(error))]
         except EquipoiseError as error:
             topic = known_topic(error.topic)
-            shown = [CellOutput("error", f"{type(error).__name__}: {error}", topic)]
+            outputs = [CellOutput("error", f"{type(error).__name__}: {error}", topic)]
         except Exception as error:  # whatever a reader types
-            shown = [CellOutput("error", f"{type(error).__name__}: {error}")]
+            outputs = [CellOutput("error", f"{type(error).__name__}: {error}")]
         text = printed.getvalue()
-        return [CellOutput("text", text)] * bool(text) + shown
+        return [CellOutput("text", text)] * bool(text) + outputs
 
     def run_in_page(self, source: str) -> str | None:
         """Run a cell; its outputs in JSON, None where a package is missing."""

@@ -133,11 +133,11 @@ def _carrier(sketch: Sketch, driver: str, driven: str, given: str | None) -> str
     )
 
 
-def _wheels(make: Callable[..., Sketch], sketch: Sketch, asked: Message) -> Sketch:
+def _wheels(make: Callable[..., Sketch], sketch: Sketch, message: Message) -> Sketch:
     """What two bodies have that turn on a carrier, as a page asks for it."""
-    teeth = asked.whole("teeth"), asked.whole("driven_teeth")
-    ends = asked.text("driver"), asked.text("driven")
-    return make(sketch, *ends, teeth, asked.optional("carrier"))
+    teeth = message.whole("teeth"), message.whole("driven_teeth")
+    ends = message.text("driver"), message.text("driven")
+    return make(sketch, *ends, teeth, message.optional("carrier"))
 
 
 OPERATIONS: Mapping[str, tuple[str, Callable[[Sketch, Message], Sketch]]] = {
@@ -145,7 +145,7 @@ OPERATIONS: Mapping[str, tuple[str, Callable[[Sketch, Message], Sketch]]] = {
     "belt": (to_say("add a belt"), partial(_wheels, with_belt)),
     "rack": (
         to_say("add a rack"),
-        lambda sketch, asked: with_rack(sketch, asked.text("driver"), asked.text("driven")),
+        lambda sketch, message: with_rack(sketch, message.text("driver"), message.text("driven")),
     ),
 }
 """Read by `sketch_edits`."""

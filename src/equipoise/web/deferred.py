@@ -40,33 +40,33 @@ def can_be_shaken(machine: Machine) -> bool:
 
 
 @kept_with_first
-def responded(shown: Computed) -> Response:
+def responded(computed: Computed) -> Response:
     """The response of a design at its own speed, with the errors of `respond`."""
     from equipoise.vibration.forced import respond
 
-    return respond(shown.analysis.machine)
+    return respond(computed.analysis.machine)
 
 
 @kept_with_first
-def _curves(shown: Computed, speed: float, progress: Callable[[int, int], None]) -> Sweep:
+def _curves(computed: Computed, speed: float, progress: Callable[[int, int], None]) -> Sweep:
     """The response of a design over speeds around one, rad/s."""
     from equipoise.vibration.linear import COARSE, around
     from equipoise.vibration.sweep import sweep_speed
 
-    ends = around(shown.analysis.machine.drive, speed)
-    return sweep_speed(shown.analysis.machine, *ends, speeds=COARSE, progress=progress)
+    ends = around(computed.analysis.machine.drive, speed)
+    return sweep_speed(computed.analysis.machine, *ends, speeds=COARSE, progress=progress)
 
 
-def response_of(shown: Computed) -> tuple[Values, bytes] | None:
+def response_of(computed: Computed) -> tuple[Values, bytes] | None:
     """What the gauges read over a turn at the machine's speed; None where nothing can be shaken.
 
     Where there is no steady state, no gauges and a note that says so.
     """
-    machine, block = shown.analysis.machine, FloatBlock()
+    machine, block = computed.analysis.machine, FloatBlock()
     if not can_be_shaken(machine):
         return None
     try:
-        response = responded(shown)
+        response = responded(computed)
     except EquipoiseError as error:
         return {
             "charts": [],
@@ -75,21 +75,21 @@ def response_of(shown: Computed) -> tuple[Values, bytes] | None:
             "swing": None,
             "modes": [],
         }, b""
-    return _displacements(shown, response, block), block.data
+    return _displacements(computed, response, block), block.data
 
 
-def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
+def swept(computed: Computed, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
     """Response over speeds around the machine's own, which is kept with it.
 
     progress : as of `sweep_speed`; what it raises ends the work.
     """
     try:
-        response = responded(shown)
-        curves = _curves(shown, response.speed, progress)
+        response = responded(computed)
+        curves = _curves(computed, response.speed, progress)
     except EquipoiseError:  # which `response_of` has reported
         return None
     block = FloatBlock()
-    content = _displacements(shown, response, block)
+    content = _displacements(computed, response, block)
     block.add("sweep.speed", curves.speed)
     choices: list[Values] = []
     for name, curve in curves.gauges.items():
@@ -104,7 +104,7 @@ def swept(shown: Computed, progress: Callable[[int, int], None]) -> tuple[Values
     return content, block.data
 
 
-def _displacements(shown: Computed, response: Response, block: FloatBlock) -> Values:
+def _displacements(computed: Computed, response: Response, block: FloatBlock) -> Values:
     """Displacements against the crank angle, which runs as the crank does, and how to draw them."""
     count = SAMPLES * response.turns
     choices: list[Values] = []
@@ -117,8 +117,8 @@ def _displacements(shown: Computed, response: Response, block: FloatBlock) -> Va
 
     charts = [chart("response", choices, chooser=say("Response of"))]
     notes = list(map(localized, response.notes))
-    swing = _swing(swinging(shown.scene, response), block)
-    modes = [*_modes(shown.scene, response)]
+    swing = _swing(swinging(computed.scene, response), block)
+    modes = [*_modes(computed.scene, response)]
     return {
         "charts": charts,
         "notes": notes,
@@ -238,13 +238,13 @@ def _compared_figures(
 
 def _shown(name: str, figure: FigureValue, other: FigureValue | None) -> Values:
     """A figure in its display unit; None where it is not finite."""
-    shown = display(figure.dimension, [figure.value], figure.unit)
+    unit_display = display(figure.dimension, [figure.value], figure.unit)
 
     def there(value: float) -> float | None:
-        return shown.factor * value if isfinite(value) else None
+        return unit_display.factor * value if isfinite(value) else None
 
     now = there(figure.value)
-    text = {"name": name, "label": figure.label, "unit": shown.name, "value": now}
+    text = {"name": name, "label": figure.label, "unit": unit_display.name, "value": now}
     was = {} if other is None else {"was": was_of(there(other.value), now)}
     return {**text, "text": text_of(now), **was}
 
@@ -344,11 +344,11 @@ def _plants(computed: Computed) -> bool:
 
 
 @kept_with_first
-def planted(shown: Computed) -> PlantingFigures:
+def planted(computed: Computed) -> PlantingFigures:
     """What a design plants, with the errors of `plant`."""
     from equipoise.planting.summary import plant
 
-    return plant(shown.analysis.machine)
+    return plant(computed.analysis.machine)
 
 
 def _planted(computed: Computed) -> _Figures:

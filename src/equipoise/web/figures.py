@@ -221,14 +221,14 @@ def _figures(read: _Read, old: _Read | None) -> Iterator[Values]:
         values = read.signals[name]
         least = NOTHING * loudest * (1.0 if _is_force(name) else size)
         label = declared.say("", several)
-        for measure, shown in MEASURES.items():
+        for measure, measure_label in MEASURES.items():
             value = _plain(getattr(read.figures[name], measure), least)
             unit = display(declared.dimension)
             entry = {
                 "name": f"{name}.{measure}",
                 "signal": label,
                 "measure": measure,
-                "label": f"{label}, {say(shown)}",
+                "label": f"{label}, {say(measure_label)}",
                 "unit": unit.name,
                 "value": value,
                 "text": text_of(_in(unit, value and _signed(measure, values, value))),
@@ -368,15 +368,15 @@ def _choice(analysis: Analysis, signals: Signals, name: str) -> Values | None:
     if name not in signals or output not in analysis.outputs:
         return None
     item = analysis.outputs[output]
-    shown = display(item.dimension)
+    unit_display = display(item.dimension)
     of = None if name != output else ROWS if name.startswith(ROWS) else ""
     parts = "xy" if np.iscomplexobj(signals[name]) else ("",)
     return {
         "name": name.removeprefix(ROWS),
         "label": capital(item.label()),
         "of": of,
-        "unit": shown.name,
-        "factor": shown.factor,
+        "unit": unit_display.name,
+        "factor": unit_display.factor,
         "log": False,
         "curves": [
             {"array": name, "stride": len(parts), "part": number, "label": part}
@@ -418,13 +418,13 @@ def gauge_choice(name: str, label: str, rotation: bool, array: str, log: bool = 
 
     log : whether it is drawn over a logarithmic scale.
     """
-    shown = display("angle", (), "mrad") if rotation else display("length")
+    unit_display = display("angle", (), "mrad") if rotation else display("length")
     return {
         "name": name,
         "label": capital(label),
         "of": None,
-        "unit": shown.name,
-        "factor": shown.factor,
+        "unit": unit_display.name,
+        "factor": unit_display.factor,
         "log": log,
         "curves": [{"array": array, "stride": 1, "part": 0, "label": ""}],
     }

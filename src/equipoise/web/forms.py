@@ -90,12 +90,12 @@ def text_of(key: keys.Key, siblings: Mapping[str, keys.Key] = MappingProxyType({
     """What a key means; of keys beside it in what a form calls them."""
     values = getattr(key.kind, "names", ())
 
-    def shown(match: re.Match[str]) -> str:
+    def key_word(match: re.Match[str]) -> str:
         name = match[1]
         other = siblings.get(name) if name not in values else None
         return name if other is None else say("“{name}”", name=word_of(other))
 
-    return re.sub("`([^`]*)`", shown, say(key.text))
+    return re.sub("`([^`]*)`", key_word, say(key.text))
 
 
 def _control(kind: keys.Kind) -> Values:

@@ -137,12 +137,12 @@ def opened_text(
 
     files : texts of the CSV files that it names.  tables : others that there are.
     """
-    shown = printable(name)
+    place = printable(name)
     if kind_of_text(text) == "tool":
-        raise ModelError("", TOOLS, shown)
-    with in_file(shown):
+        raise ModelError("", TOOLS, place)
+    with in_file(place):
         content = content_of(text.removeprefix("\ufeff"), "linkage")
-        return Design(shown, machine_of(content, HeldFiles(tables, files)))
+        return Design(place, machine_of(content, HeldFiles(tables, files)))
 
 
 def wants_tool(message: Message) -> bool:

@@ -315,14 +315,14 @@ class Interactive:
             key = template.key(path)
             is_cycle_speed = path == "drive.speed" and not self.machine.crank_turns
             per_minute = is_cycle_speed and self.machine.turns_given == 1
-            shown = _per_minute(unit) if per_minute else unit
+            printed_unit = _per_minute(unit) if per_minute else unit
             yield {
                 "path": path,
                 "steps": [*steps],
                 "label": say(CYCLE_SPEED) if is_cycle_speed else localized(template.words(path)),
                 "heading": str(steps[1]) if steps[0] == "links" else _section(str(steps[0])),
                 "value": float(number.value),
-                **_unit_content(shown),
+                **_unit_content(printed_unit),
                 "written": unit.unit,
                 "units": _factors(number),
                 "least": key and key.at_least,

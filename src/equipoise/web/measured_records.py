@@ -66,11 +66,11 @@ def record_of_text(name: str, text: str) -> MeasuredSignals:
     ------
     ModelError : one sentence: file, line and column, what was given and what would be right.
     """
-    shown = printable(name)
+    place = printable(name)
     try:
-        return _record(shown, text)
+        return _record(place, text)
     except ModelError as error:
-        raise ModelError("", Note("{place}, {what}", place=shown, what=error.what)) from error
+        raise ModelError("", Note("{place}, {what}", place=place, what=error.what)) from error
 
 
 def _record(name: str, text: str) -> MeasuredSignals:
@@ -194,13 +194,13 @@ def compared_with(
     signals = {name: _over(angle, values, *cycle) for name, values in result.items()}
     shift = _shift(signals, analysis) if record.over == "time" else 0
     signals = {name: np.roll(values, shift) for name, values in signals.items()}
-    said = [*_sizes(signals, analysis)]
+    lines = [*_sizes(signals, analysis)]
     if record.over == "time":
         whole = 360 * analysis.motion.turns
         degrees = round(shift / len(analysis.crank_angle) * whole + whole / 2) % whole - whole // 2
         moved = typeset(str(degrees))
-        said.append(say("moved by {angle}° to where it fits best", angle=moved))
-    return Compared(signals, tuple(said), tuple(left_out))
+        lines.append(say("moved by {angle}° to where it fits best", angle=moved))
+    return Compared(signals, tuple(lines), tuple(left_out))
 
 
 def _known(analysis: Analysis, gauges: Sequence[str]) -> dict[str, tuple[str, Dimension | None]]:

@@ -88,9 +88,14 @@ def panel_charts(result: str, charts: Iterable[Chart], block: FloatBlock) -> Ite
     for name, panel in panels.items():
         x = panel.curves[0].x
         if id(x) not in shared:
-            curves = [curve.y for one in panels.values() for curve in one.curves if curve.x is x]
-            kept = drawn_places(x, curves) if len(x) > MOST_POINTS else slice(None)
-            shared[id(x)] = (x if isinstance(kept, slice) else x[kept]), kept
+            curves = [
+                curve.y
+                for panel_item in panels.values()
+                for curve in panel_item.curves
+                if curve.x is x
+            ]
+            chosen = drawn_places(x, curves) if len(x) > MOST_POINTS else slice(None)
+            shared[id(x)] = (x if isinstance(chosen, slice) else x[chosen]), chosen
         yield _panel_chart(name, panel, shared[id(x)], block)
 
 
@@ -150,32 +155,32 @@ def drawn_places(x: Array, curves: Sequence[Array]) -> Array:
     starts = np.unique(np.searchsorted(x, np.linspace(x[0], x[-1], steps, endpoint=False)))
     ends = np.append(starts[1:], len(x))
     step = np.repeat(np.arange(len(starts)), ends - starts)
-    kept = [np.array([0, len(x) - 1])]
+    chosen = [np.array([0, len(x) - 1])]
     for y in curves:
         rising = np.lexsort((y, step))  # in each step, from its lowest value to its highest
-        kept += [rising[starts], rising[ends - 1]]
-    return np.unique(np.concatenate(kept))
+        chosen += [rising[starts], rising[ends - 1]]
+    return np.unique(np.concatenate(chosen))
 
 
 def _panel_chart(
     name: str, panel: Panel, shared: tuple[Array, Array | slice], block: FloatBlock
 ) -> Values:
     """A chart; `shared` are the values of its x axis that are sent, and their places."""
-    x, kept = shared
+    x, chosen = shared
     block.add(f"{name}.x", x)
     label = panel.title or capital(panel.y.label)
-    choice = _panel_choice(name, panel, label, block, kept)
+    choice = _panel_choice(name, panel, label, block, chosen)
     return chart(name, [choice], x={"array": f"{name}.x", "at": None, **_unit(panel.x)})
 
 
 def _panel_choice(
-    name: str, panel: Panel, label: str, block: FloatBlock, kept: Array | slice = slice(None)
+    name: str, panel: Panel, label: str, block: FloatBlock, chosen: Array | slice = slice(None)
 ) -> Values:
     """Curves of a panel, of which the values at the places `kept` go to the block."""
     curves = panel.curves
     arrays = [f"{name}.{number}" for number in range(len(curves))]
     for array, curve in zip(arrays, curves, strict=True):
-        block.add(array, curve.y[kept])
+        block.add(array, curve.y[chosen])
     return {
         "name": name,
         "label": label,

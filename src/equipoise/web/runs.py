@@ -103,8 +103,8 @@ def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:
     if isinstance(run, Run):
         time, angle = run.time, run.crank_angle
         if len(time) > MOST_INSTANTS:
-            kept = np.linspace(0, len(time) - 1, MOST_INSTANTS).astype(int)
-            time, angle = time[kept], angle[kept]
+            instants = np.linspace(0, len(time) - 1, MOST_INSTANTS).astype(int)
+            time, angle = time[instants], angle[instants]
         cycles = angle / (2 * pi * base.motion.turns)
     else:
         places = _frames_of(run)

@@ -96,9 +96,9 @@ class Session:
         """Answer a message; what takes long comes last, and may be left unasked."""
         good = self.history, self.current_state, self.preview
         try:
-            for asked in (file_requests.ASKED, table_requests.ASKED, ASKED):
-                if message.kind in asked:
-                    yield from asked[message.kind](self, message)
+            for handlers in (file_requests.ASKED, table_requests.ASKED, ASKED):
+                if message.kind in handlers:
+                    yield from handlers[message.kind](self, message)
                     return
             yield from getattr(self, f"_{message.kind}")(message)
         except EquipoiseError as error:
@@ -233,10 +233,10 @@ class Session:
 
         result : the design, if it has been computed.
         """
-        shown = result or computed(design)
+        first = result or computed(design)
         with self.lock:
-            self._go(History(HistoryStep(design, "")), shown)
-            self._measure(shown, True)
+            self._go(History(HistoryStep(design, "")), first)
+            self._measure(first, True)
 
     def _measure(self, computed: Computed | Incomplete, new: bool) -> None:
         """What goes by the build of a machine: ranges of sliders, and outputs that are drawn.
@@ -400,8 +400,8 @@ class Session:
 
     def number_of(self, result: Computed | Incomplete) -> int:
         """By which a page knows that it shows a design; 0 of one that it does not show."""
-        shown, number = self.numbered
-        return number if shown is result else 0
+        newest, number = self.numbered
+        return number if newest is result else 0
 
     def _numbers_of(self, computed: Computed) -> Values:
         """The part of a state that a page writes: figures, and the numbers of the machine."""
@@ -430,8 +430,8 @@ class Session:
     def _against(self) -> Computed | None:
         """The design that figures are compared with, if any."""
         state = self.current_state if self.preview is not None else None
-        shown = state if isinstance(state, Computed) else None
-        return self.view_state.against(shown) or self.before
+        current = state if isinstance(state, Computed) else None
+        return self.view_state.against(current) or self.before
 
 
 def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:

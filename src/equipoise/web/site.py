@@ -236,8 +236,8 @@ NEEDS_PAGE = re.compile(r'(<\w+ [^>]*class="(?:open-page|run-cell|runs-here)") h
 def _link_page(docs: Path) -> None:
     """Show what opens machines of a gallery in the live page, and runs the cells of tutorials."""
     for page in (*docs.rglob("examples.html"), *docs.glob("tutorials/*.html")):
-        shown = NEEDS_PAGE.sub(r"\1", page.read_text(encoding="utf-8"))
-        page.write_text(shown, encoding="utf-8")
+        text = NEEDS_PAGE.sub(r"\1", page.read_text(encoding="utf-8"))
+        page.write_text(text, encoding="utf-8")
 
 
 OWN = {*PAGE, "index.html", "site.json", "runtime", "wheels", "docs"}

@@ -30,25 +30,25 @@ from equipoise.web.structure_edits import (
 Operation = Callable[[Sketch, Message], Sketch]
 
 
-def _point(sketch: Sketch, asked: Message) -> Sketch:
-    return with_point(sketch, asked.spot("spot"), asked.text("on", FRAME))
+def _point(sketch: Sketch, message: Message) -> Sketch:
+    return with_point(sketch, message.spot("spot"), message.text("on", FRAME))
 
 
-def _link(sketch: Sketch, asked: Message) -> Sketch:
-    return with_link(sketch, asked.spot("from"), asked.spot("to"))
+def _link(sketch: Sketch, message: Message) -> Sketch:
+    return with_link(sketch, message.spot("from"), message.spot("to"))
 
 
-def _slider(sketch: Sketch, asked: Message) -> Sketch:
-    spots = asked.spot("from"), asked.spot("to")
-    return with_slider(sketch, *spots, asked.optional("on"), asked.optional("link"))
+def _slider(sketch: Sketch, message: Message) -> Sketch:
+    spots = message.spot("from"), message.spot("to")
+    return with_slider(sketch, *spots, message.optional("on"), message.optional("link"))
 
 
-def _pin(sketch: Sketch, asked: Message) -> Sketch:
-    return pinned(sketch, asked.text("point"), asked.text("to"))
+def _pin(sketch: Sketch, message: Message) -> Sketch:
+    return pinned(sketch, message.text("point"), message.text("to"))
 
 
-def _separate(sketch: Sketch, asked: Message) -> Sketch:
-    return separated(sketch, asked.text("point"), asked.optional("link"))
+def _separate(sketch: Sketch, message: Message) -> Sketch:
+    return separated(sketch, message.text("point"), message.optional("link"))
 
 
 DELETED: Mapping[str, Callable[[Sketch, str], Sketch]] = {
@@ -60,26 +60,26 @@ DELETED: Mapping[str, Callable[[Sketch, str], Sketch]] = {
 """What can be taken away, by its name."""
 
 
-def _delete(sketch: Sketch, asked: Message) -> Sketch:
-    what = asked.text("what")
+def _delete(sketch: Sketch, message: Message) -> Sketch:
+    what = message.text("what")
     if what not in DELETED:
         raise UsageError(unknown(what, DELETED, "part that can be deleted"))
-    return DELETED[what](sketch, asked.text("name"))
+    return DELETED[what](sketch, message.text("name"))
 
 
-def _drive(sketch: Sketch, asked: Message) -> Sketch:
+def _drive(sketch: Sketch, message: Message) -> Sketch:
     """The crank; a bar that was drawn off the frame, and named after that, is called so too."""
-    link = asked.text("link")
+    link = message.text("link")
     driven = with_drive(sketch, link)
     named_so = link == "coupler" and "crank" not in sketch.links
     return renamed(driven, "link", link, "crank") if named_so else driven
 
 
-def _rename(sketch: Sketch, asked: Message) -> Sketch:
-    what = asked.text("what")
+def _rename(sketch: Sketch, message: Message) -> Sketch:
+    what = message.text("what")
     if what not in {"point", "link"}:
         raise UsageError(unknown(what, ("point", "link"), "part that can be renamed"))
-    return renamed(sketch, what, asked.text("name"), asked.text("to"))
+    return renamed(sketch, what, message.text("name"), message.text("to"))
 
 
 OPERATIONS: Mapping[str, tuple[str, Operation]] = {
@@ -93,11 +93,11 @@ OPERATIONS: Mapping[str, tuple[str, Operation]] = {
     "separate": (to_say("separate"), _separate),
     "ground": (
         to_say("pin to the frame"),
-        lambda sketch, asked: grounded(sketch, asked.text("point")),
+        lambda sketch, message: grounded(sketch, message.text("point")),
     ),
     "free": (
         to_say("free from the frame"),
-        lambda sketch, asked: freed(sketch, asked.text("point")),
+        lambda sketch, message: freed(sketch, message.text("point")),
     ),
     "delete": (to_say("delete"), _delete),
     "rename": (to_say("rename"), _rename),
@@ -115,17 +115,17 @@ def lost(before: Sketch, after: Sketch) -> Iterator[str]:
         yield say("also deleted, because they refer to it: {tables}", tables=", ".join(tables))
 
 
-def sketch_after(sketch: Sketch, asked: Message) -> tuple[Sketch, str]:
+def sketch_after(sketch: Sketch, message: Message) -> tuple[Sketch, str]:
     """The sketch after an operation, and what the step is called.
 
     Raises
     ------
     UsageError : there is no such operation, or it cannot be done.
     """
-    do = asked.text("do")
+    do = message.text("do")
     if do not in OPERATIONS:
         raise UsageError(unknown(do, OPERATIONS, "operation"))
     label, operation = OPERATIONS[do]
-    named = asked.values.get("name") or asked.values.get("point") or asked.values.get("link")
+    named = message.values.get("name") or message.values.get("point") or message.values.get("link")
     text = say(label)
-    return operation(sketch, asked), f"{text} {named}" if isinstance(named, str) else text
+    return operation(sketch, message), f"{text} {named}" if isinstance(named, str) else text

@@ -159,12 +159,12 @@ def _called(item: Any, place: KeyPath) -> str:
 def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> Values:
     own = own_keys(of)
     values = {name: value for name, value in entry.items() if name in own}
-    shown = ((item, values[name]) for name, item in own.items() if name in values)
-    said = [f"{word_of(item)} {_brief(_said(item, value))}" for item, value in shown]
+    given_values = ((item, values[name]) for name, item in own.items() if name in values)
+    words = [f"{word_of(item)} {_brief(_said(item, value))}" for item, value in given_values]
     return {
         "place": str(place),
         "where": place.abbreviated,
-        "words": ", ".join(said[:MOST_WORDS]),
+        "words": ", ".join(words[:MOST_WORDS]),
         "values": values,
         "below": [
             name for name, value in entry.items()

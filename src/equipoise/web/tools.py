@@ -266,10 +266,10 @@ def _written(number: FileNumber, value: float, unit: str) -> Values:
     if number.dimension is None:
         text = f"{value:.{SHOWN}g}"
         return {"text": repr(value), "shown": typeset(text), "unit": "", "factor": 1.0}
-    shown = in_unit(unit or KINDS[number.dimension].printed[0])
-    text = f"{shown.factor * value:.12g} {shown.unit}"
-    read = shown.with_unit(typeset(f"{shown.factor * value:.{SHOWN}g}"))
-    return {"text": text, "shown": read, "unit": shown.unit, "factor": shown.factor}
+    unit_display = in_unit(unit or KINDS[number.dimension].printed[0])
+    text = f"{unit_display.factor * value:.12g} {unit_display.unit}"
+    read = unit_display.with_unit(typeset(f"{unit_display.factor * value:.{SHOWN}g}"))
+    return {"text": text, "shown": read, "unit": unit_display.unit, "factor": unit_display.factor}
 
 
 def tool_asked(message: Message, disk: Disk | None) -> ToolDesk:
