@@ -15,7 +15,7 @@ from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.objectives import LinearizationPoint, measured, signals_of, unit_of
 from equipoise.balancing.problem import Problem
 from equipoise.dataclass import dataclass
-from equipoise.figures.analysis import rounding, settled
+from equipoise.figures.analysis import about, rounding, settled
 from equipoise.figures.changes import grams
 from equipoise.figures.chart_parts import (
     GAUGES,
@@ -205,7 +205,7 @@ def aims(balanced: Balanced) -> Iterator[Chart]:
 SIGNALS = {
     "moment": (
         "shaking_moment",
-        to_say("Shaking moment about the drive's pivot"),
+        to_say("Shaking moment about {point}"),
         to_say("shaking moment"),
     ),
     "torque": ("drive_torque", to_say("Drive torque"), to_say("drive torque")),
@@ -250,7 +250,8 @@ def signals(balanced: Balanced) -> dict[str, Chart]:
     """
     columns = {name: values for name, _, values in balanced.columns()}
     angles, drive = columns["crank_angle"], balanced.original.drive
-    least_force, least_moment = rounding(analyze(balanced.original, SAMPLES))
+    analysis = analyze(balanced.original, SAMPLES)
+    (least_force, least_moment), point = rounding(analysis), about(analysis)
     title, when = balanced.original.title, _caption(balanced)
 
     def pair_of(output: str, least: float) -> Pair:
@@ -278,7 +279,9 @@ def signals(balanced: Balanced) -> dict[str, Chart]:
         pair = pair_of(output, least_force if kind == "force" else least_moment)
         if changed(pair) and output not in aimed:
             panel = compare(drive, angles, pair, say(label), kind)
-            result[name] = Chart(name, title, f"{say(text)}, {when}", (panel,), keys=keys(pair))
+            result[name] = Chart(
+                name, title, f"{say(text, point=point)}, {when}", (panel,), keys=keys(pair)
+            )
     return result
 
 

@@ -67,7 +67,7 @@ def spectrum(weighted: Weighted, title: str) -> Chart:
     if weighted.band_a_h is not None:
         label = say("RMS, {value} m/s²", value=four_digits(_root(weighted.a_h)))
         curves.append(_stairs(before, low, "unweighted", label))
-    label = say("weighted, total value a_hv = {value} m/s²", value=four_digits(weighted.a_hv))
+    label = say("weighted, total value aₕᵥ = {value} m/s²", value=four_digits(weighted.a_hv))
     curves.append(_stairs(after, low, "weighted", label))
     ticks = tuple(
         (float(10 ** (0.1 * round(10 * np.log10(item)))), decimals(f"{item:g}"))

@@ -236,9 +236,9 @@ def design(result: ToolDesign) -> Chart:
     curves = (*old, *curves_of(result.speed, after))
     panel = Panel(x, y, curves, marks, lines=work, height=209.0)
     figure = result.figures[MEASURES.index("rms" if plan is None else plan.measure)]
-    what = (
-        f"{figure_named(figure)}: {four_digits(figure.before)} → {four_digits(figure.after)} m/s²"
-    )
+    name = figure_named(figure).replace("a_hv", "aₕᵥ")  # as its axis has it
+    values = " → ".join(map(four_digits, (figure.before, figure.after)))
+    what = f"{name[:1].upper()}{name[1:]}: {values} m/s²"
     keys = (("dashed ink", say("before")), ("ink", say("after")))
     return Chart("design", result.tool.title, what, (panel,), keys=keys)
 

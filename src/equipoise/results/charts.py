@@ -25,6 +25,8 @@ Across = Literal["x", "y"]
 PLAIN = Display("", 1.0)
 DEGREES = Display("deg", 180 / pi)
 RPM = Display("rpm", 30 / pi)
+PLAIN_BELOW = 1e6
+"""Size of a number up to which it is written without a power of ten."""
 
 
 @dataclass(frozen=True)
@@ -340,5 +342,8 @@ def quantity(value: float, dimension: Dimension, unit: str | None = None) -> str
 
 
 def four_digits(value: float) -> str:
-    """Four significant digits, with a true minus."""
-    return typeset(f"{value:.4g}")
+    """Four significant digits, with a true minus; up to a million without a power of ten, as axes
+    have them.
+    """
+    text = f"{value:.4g}"
+    return typeset(f"{float(text):.0f}" if 1e4 <= abs(value) < PLAIN_BELOW else text)

@@ -157,6 +157,7 @@ def test_what_did_not_change_is_left_out() -> None:
     result = found("sector")
     same = replace(result, machine=result.original)
     assert not view.charts(same)
+    assert "Shaking moment about A, before and after" in words(pictures("moved")["moment"])
 
 
 def test_hands_are_the_cranks() -> None:

@@ -25,7 +25,7 @@ from equipoise.figures.style import look_of
 from equipoise.figures.view import AxisScale, ends_of, ticks_of
 from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.record import simulate_decay
-from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Panel
+from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Panel, four_digits
 from equipoise.signals import Figures, figures
 from support.refusals import refused
 from unit.figures.checks import check
@@ -63,7 +63,7 @@ def test_the_spectrum_before_and_after_weighting() -> None:
         total = np.sqrt(np.sum(wanted**2, axis=0))
         np.testing.assert_allclose(curve.y[::2], np.maximum(total, low))
     assert not chart.panels[0].areas  # nothing stands on a 0 that its axis does not have
-    assert f"weighted, total value a_hv = {found.a_hv:.4g} m/s²" in words(chart)
+    assert f"weighted, total value aₕᵥ = {found.a_hv:.4g} m/s²" in words(chart)
     assert len(measured.spectrum(weighted(weighted=True), "x").panels[0].curves) == 1
     names = measured.exposure_charts([("a", found), ("b", found)], tools(WORK), WORK)
     assert list(names) == ["spectrum", "spectrum-2", "exposure"]
@@ -256,3 +256,15 @@ def test_samples_of_legends_look_like_what_is_drawn() -> None:
     shown = line.dashes
     assert np.allclose(np.array(shown) / shown[0], np.array(look.lengths) / look.lengths[0])
     assert 1.5 * sum(shown) <= SAMPLE + 1e-9
+
+
+def test_numbers_are_plain_where_those_of_axes_are() -> None:
+    """A speed of 12000 rpm, or an acceleration beside the marks of its axis."""
+    written = {
+        11923.4: "11920",
+        -250123.0: "\N{MINUS SIGN}250100",
+        9549.3: "9549",
+        0.01235: "0.01235",
+    }
+    assert {value: four_digits(value) for value in written} == written
+    assert four_digits(2.5e6) == "2.5×10⁶"

@@ -335,7 +335,7 @@ def test_measures_and_many_changes() -> None:
     assert found.tool.design is not None
     plan = replace(found.tool.design, measure="peak", hands=("rear-grip",))
     told = words(tool_designs.design(replace(found, tool=replace(found.tool, design=plan))))
-    assert "a_hv of the worst hand, largest: " in told
+    assert "aₕᵥ of the worst hand, largest: " in told
     assert "rear-grip" in told and "front-handle:" not in told
     count = 11
     edges = ("", "highest") * count
