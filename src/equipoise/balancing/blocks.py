@@ -25,7 +25,6 @@ from equipoise.balancing.outcome import (
     with_more_room,
 )
 from equipoise.balancing.sentences import (
-    capital,
     deterioration_sentences,
     figure_named,
     figure_unit,
@@ -33,7 +32,7 @@ from equipoise.balancing.sentences import (
     worst_deteriorations,
 )
 from equipoise.balancing.workshop import in_short, sentences
-from equipoise.i18n import localized, say, to_say
+from equipoise.i18n import localized, say, sentence_start, to_say
 from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import Dimension, change, display, number, percent
 from equipoise.quantities.numbers import ROUNDING
@@ -166,7 +165,7 @@ def _aims(balanced: Balanced) -> Iterator[str]:
         )
         yield say(
             "{what}: {before} → {after} {unit} ({change})",
-            what=capital(what),
+            what=sentence_start(what),
             before=unit.text(before, digits=3),
             after=unit.text(after, max(before, after), 3),
             unit=unit.name,

@@ -26,7 +26,6 @@ from equipoise.balancing.poor_transmission import transmission_sentence
 from equipoise.balancing.remedies import is_worth, least_gain
 from equipoise.balancing.resonant_mounts import mount_sentences, outweighs
 from equipoise.balancing.sentences import (
-    capital,
     deterioration_sentences,
     freedoms,
     listed,
@@ -34,7 +33,7 @@ from equipoise.balancing.sentences import (
     proof_sentences,
 )
 from equipoise.balancing.workshop import in_its_plane, phases_text, sentences
-from equipoise.i18n import say, to_say
+from equipoise.i18n import say, sentence_start, to_say
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.quantities import change, display, format_quantity, percent
 from equipoise.results.blocks import Block, Cell, Column, RelativeChange, Table, Text
@@ -67,7 +66,7 @@ def benefit_sentences(balanced: Balanced, stated: str = "") -> Iterator[str]:
         unit = shown_in(unit_of(item, balanced.original), [before])
         yield say(
             "{what}: {before} → {after} {unit} ({change}).",
-            what=capital(objective_named(item, len(balanced.original.rows))),
+            what=sentence_start(objective_named(item, len(balanced.original.rows))),
             before=unit.text(before, digits=3),
             after=unit.text(after, before, 3),
             unit=unit.name,
@@ -111,7 +110,7 @@ def no_benefit_sentences(balanced: Balanced) -> Iterator[str]:
         unit = shown_in(unit_of(item, balanced.original), [before])
         yield say(
             "{what}, {value} {unit}, is {already}.",
-            what=capital(objective_named(item, len(balanced.original.rows))),
+            what=sentence_start(objective_named(item, len(balanced.original.rows))),
             value=unit.text(before, digits=3),
             unit=unit.name,
             already=good_already(balanced),
@@ -255,7 +254,7 @@ def preloads(balanced: Balanced) -> Iterator[str]:
     if balanced.advice is not None:
         machine = balanced.machine if balanced.helps else balanced.original
         for note in preloads_to_hold(machine):
-            yield say("{sentence}.", sentence=capital(note.localized()))
+            yield say("{sentence}.", sentence=sentence_start(note.localized()))
 
 
 def steadying_sentence(balanced: Balanced) -> str:

@@ -10,7 +10,7 @@ from operator import eq
 from typing import TYPE_CHECKING
 
 from equipoise.balancing.objectives import unit_of
-from equipoise.i18n import localized, say, spoken, to_say
+from equipoise.i18n import localized, say, to_say
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.balance import CUT, Balance, Objective, Weight, material_of
 from equipoise.quantities import PER_RPM, brief, format_quantity, percent
@@ -36,11 +36,6 @@ def listed(parts: Iterable[str]) -> str:
     """Parts of a sentence with "and" before the last."""
     *first, last = parts
     return say(" and ").join([*filter(None, [say(", ").join(first)]), last])
-
-
-def capital(text: str) -> str:
-    """A text that begins a sentence; in other languages names of the file do, as they are."""
-    return text[:1].upper() + text[1:] if spoken() == "en" else text
 
 
 # -- what got worse --------------------------------------------------------------------------------

@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.balancing.sentences import capital
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import COUNTERWEIGHT, Part, along, in_mm, parts
 from equipoise.figures.paint import fonts_for, settings
 from equipoise.figures.sheet import lines_of
 from equipoise.figures.style import INK, MAIN
-from equipoise.i18n import LANGUAGES, Note, localized, say, speaking, spoken
+from equipoise.i18n import LANGUAGES, Note, localized, say, sentence_start, speaking, spoken
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -92,7 +91,7 @@ def _texts(job: Job, part: Part) -> tuple[str, ...]:
     by = scale_of(part)
     ratio = f"1:{by:g}" if by >= 1 else f"{1 / by:g}:1"
     scale = say("scale {ratio}, dimensions in mm", ratio=ratio)
-    rounded = [capital(job.sizes)] if part.kind == COUNTERWEIGHT and job.sizes else []
+    rounded = [sentence_start(job.sizes)] if part.kind == COUNTERWEIGHT and job.sizes else []
     return localized(job.machine.title), *part.lines, *rounded, scale
 
 

@@ -193,6 +193,16 @@ def localized(text: Note | str) -> str:
     return text.localized() if isinstance(text, Note | Worded | KeyName) else text
 
 
+def capital(text: str) -> str:
+    """A label as a heading has it."""
+    return text[:1].upper() + text[1:]
+
+
+def sentence_start(text: str) -> str:
+    """A text that begins a sentence; in other languages names of the file do, as they are."""
+    return capital(text) if spoken() == "en" else text
+
+
 def in_english(text: Note | str) -> Note | str:
     """A sentence, with the remark that it is in English where the language spoken lacks it."""
     if spoken() == "en" or (isinstance(text, Note) and text.is_translated):

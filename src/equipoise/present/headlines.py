@@ -14,9 +14,9 @@ import numpy as np
 
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.outcome import good_already
-from equipoise.balancing.sentences import capital, figure_named, figure_unit
+from equipoise.balancing.sentences import figure_named, figure_unit
 from equipoise.dataclass import dataclass
-from equipoise.i18n import localized, say, to_say
+from equipoise.i18n import localized, say, sentence_start, to_say
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.outputs.declared import joint_named, named
 from equipoise.quantities import (
@@ -398,7 +398,7 @@ def peaked(analysis: Analysis, name: str, dimension: Dimension) -> str:
     name = analysis.whole(name)
     item, scale, what = analysis.summary[name], scale_of(analysis, dimension), output_named(name)
     if item.peak <= NOTHING * scale:
-        return say("{what}: none", what=capital(what))
+        return say("{what}: none", what=sentence_start(what))
     return topped(what, item, display_of_totals(analysis, name))
 
 
@@ -406,10 +406,10 @@ def topped(what: str, figures: Figures, unit: Display) -> str:
     """The largest size of something, and at which crank angle, where that is one."""
     size = unit.with_unit(unit.text(figures.peak, digits=3))
     if figures.is_constant():
-        return say("{what}: {value} at every crank angle", what=capital(what), value=size)
+        return say("{what}: {value} at every crank angle", what=sentence_start(what), value=size)
     return say(
         "{what}: up to {peak}, at crank angle {angle}",
-        what=capital(what),
+        what=sentence_start(what),
         peak=size,
         angle=angle(figures.peak_at),
     )
@@ -480,7 +480,7 @@ def aimed(findings: Findings) -> str:
     balanced = findings.balanced
     assert balanced is not None
     item, pair = next(iter(balanced.aims.items()))
-    what = capital(objective_named(item, len(findings.machine.rows)))
+    what = sentence_start(objective_named(item, len(findings.machine.rows)))
     if not findings.helped:
         return f"{what}: {good_already(balanced)}"
     return say("{what}: {change}", what=what, change=change(*pair) or percent(0))
@@ -528,7 +528,7 @@ def _changed(what: str, pair: tuple[float, float], si_unit: str) -> str:
     unit = shown_in(si_unit, pair)
     return say(
         "{what}: {before} → {after} {unit} ({change})",
-        what=capital(what),
+        what=sentence_start(what),
         before=unit.text(before, digits=3),
         after=unit.text(after, before, 3),
         unit=unit.name,

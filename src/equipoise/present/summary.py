@@ -8,9 +8,9 @@ from math import pi
 
 from equipoise.balancing.comparison import WORSE
 from equipoise.balancing.outcome import benefit_sentences, good_already
-from equipoise.balancing.sentences import capital, deterioration_sentences, listed
+from equipoise.balancing.sentences import deterioration_sentences, listed
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, say, to_say
+from equipoise.i18n import Note, say, sentence_start, to_say
 from equipoise.mechanism.outputs.declared import joint_named, named
 from equipoise.planting.blocks import LIMITED, is_over
 from equipoise.planting.names import FIGURES
@@ -329,7 +329,7 @@ def vibration_sentences(findings: Findings) -> Iterator[str]:
         return
     met = findings.sweep.resonances
     for note in (resonance_note(met, response.speed), *within(met, response.speed)):
-        yield say("{sentence}.", sentence=capital(note.localized()))
+        yield say("{sentence}.", sentence=sentence_start(note.localized()))
 
 
 def planting_sentences(findings: Findings) -> Iterator[str]:
@@ -383,7 +383,7 @@ def _tip_limits(planting: PlantingFigures) -> Iterator[tuple[str, bool]]:
         broken = is_over(speed, highest)
         sentence = say(
             over if broken else kept,
-            what=capital(say(FIGURES[limited].words)),
+            what=sentence_start(say(FIGURES[limited].words)),
             size=format_quantity(arm[limited], "acceleration", digits=3),
             limit=format_quantity(arm[f"limits.{name}.limit"], "acceleration", digits=3),
             highest=brief(highest / PER_RPM),

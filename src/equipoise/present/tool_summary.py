@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.balancing.comparison import WORSE
-from equipoise.balancing.sentences import capital, larger
+from equipoise.balancing.sentences import larger
 from equipoise.exposure.blocks import VERDICTS, clock, limit_broken
 from equipoise.exposure.daily import verdict_of
 from equipoise.handheld.blocks import UNITS
 from equipoise.handheld.hand_blocks import figure_named, varied_named
 from equipoise.handheld.hand_exposure import WORKING, grips
 from equipoise.handheld.response import respond_tool
-from equipoise.i18n import number_list, say, to_say
+from equipoise.i18n import number_list, say, sentence_start, to_say
 from equipoise.mechanism.outputs.declared import named
 from equipoise.present.findings import ToolFindings
 from equipoise.present.pages import SummaryAnswer, Tile
@@ -236,7 +236,7 @@ def _helps(design: ToolDesign, findings: ToolFindings) -> Iterator[str]:
             name = varied_named(variable.name)
             yield say(
                 "{name}: {before} → {after} {unit}.",
-                name=capital(name),
+                name=sentence_start(name),
                 before=before,
                 after=after,
                 unit=unit.name,

@@ -43,7 +43,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.i18n import Note, say, to_say
+from equipoise.i18n import Note, capital, say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.dynamics import applied_loads
 from equipoise.mechanism.dynamics.pin_bearings import joint_properties
@@ -329,7 +329,7 @@ def sentence(entry: FigureAssessment, crank_turns: bool = True) -> str:
         "value": unit_display.with_unit(unit_display.text(entry.value, digits=3)),
         "against": entry.against.localized(),
     }
-    values["what"] = values["what"][:1].upper() + values["what"][1:]
+    values["what"] = capital(values["what"])
     if entry.crank_angle is not None:
         of_crank = to_say("{value} at crank angle {angle}")
         of_cycle = to_say("{value} at {angle} of the cycle")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.i18n import localized, say, to_say
+from equipoise.i18n import localized, say, sentence_start, to_say
 from equipoise.mechanism.outputs.declared import joint_named
 from equipoise.quantities import PER_RPM, format_quantity, number, percent
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
@@ -100,7 +100,9 @@ def _trouble(run: Run) -> str:
     if run.lacking_torque is not None:
         needed, given = run.lacking_torque
         at = degrees(run.end.crank_angle) % 360
-        return localized(stall_note(at, needed, given, at_rest=not run.turned)) + "."
+        return (
+            sentence_start(localized(stall_note(at, needed, given, at_rest=not run.turned))) + "."
+        )
     return "" if run.driven_back is None else _driven_back(run, run.driven_back)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.errors import EquipoiseError
-from equipoise.i18n import localized, say, to_say
+from equipoise.i18n import capital, localized, say, to_say
 from equipoise.quantities import PER_RPM, brief, number
 from equipoise.results import headline
 from equipoise.results.analysis import Analysis, analyze
@@ -134,7 +134,7 @@ def _resonances(response: Response) -> Iterator[str]:
         return
     if met:
         text = localized(resonance_note(met, response.speed))
-        yield say("{sentence}.", sentence=text[:1].upper() + text[1:])
+        yield say("{sentence}.", sentence=capital(text))
 
 
 def sweep_headline(sweep: Sweep, alone: bool = False) -> Iterator[Block]:

@@ -9,7 +9,7 @@ from threading import Lock
 from typing import Any
 
 from equipoise.errors import UsageError
-from equipoise.i18n import LANGUAGES, Note, speaking
+from equipoise.i18n import LANGUAGES, Note, capital, speaking
 from equipoise.mechanism.checks import unknown
 from equipoise.results.charts import Chart
 from equipoise.schema.files import to_csv
@@ -97,7 +97,6 @@ def _over_crank(computed: Computed, output: str) -> Chart:
     from equipoise.figures.forces import over_crank
     from equipoise.mechanism.parts.objectives import ROWS
     from equipoise.results.scales import TOTALS
-    from equipoise.web.figures import capital
 
     outputs = computed.analysis.outputs
     item = outputs[f"{ROWS}{output}" if f"{ROWS}{output}" in outputs else output]

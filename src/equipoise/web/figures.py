@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.i18n import say, to_say
+from equipoise.i18n import capital, say, to_say
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.outputs.declared import DECLARED, Declared
 from equipoise.mechanism.parts.machine import Machine
@@ -434,8 +434,3 @@ def least_of(signals: Mapping[str, Any]) -> float:
     """Size below which what is drawn is nothing beside the largest, N and N m."""
     largest = max((float(np.max(np.abs(values))) for values in signals.values()), default=0.0)
     return LEAST * largest or 1.0
-
-
-def capital(text: str) -> str:
-    """A label as a heading has it."""
-    return text[:1].upper() + text[1:]

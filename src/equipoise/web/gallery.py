@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import Note, localized, say, speaking, to_say
+from equipoise.i18n import Note, capital, localized, say, speaking, to_say
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.links import Slider
@@ -42,7 +42,7 @@ def sections(of: type[Machine] = Machine) -> tuple[str, ...]:
     return (
         say("Planting mechanisms"),
         say("Linkages"),
-        coupled[:1].upper() + coupled[1:],
+        capital(coupled),
         say("Machines on mounts"),
         say("Machines to balance"),
     )

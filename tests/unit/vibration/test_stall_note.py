@@ -46,7 +46,7 @@ def test_a_run_from_rest_says_so() -> None:
     motor = Motor(no_load_speed=100.0, stall_torque=1e-3)
     run = eq.run(replace(machine, drive=replace(machine.drive, motor=motor)), "1 s")
     assert run.end.kind == "stall" and run.turned == 0
-    assert verdict(run).startswith("the motor stalls at rest, at crank angle 0.0 deg: ")
+    assert verdict(run).startswith("The motor stalls at rest, at crank angle 0.0 deg: ")
     assert "flywheel" not in verdict(run)
 
 

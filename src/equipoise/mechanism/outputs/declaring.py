@@ -18,7 +18,7 @@ from itertools import dropwhile
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from equipoise.dataclass import dataclass
-from equipoise.i18n import Note, say, speaking, spoken, to_say
+from equipoise.i18n import Note, capital, say, speaking, spoken, to_say
 from equipoise.quantities import SI, Dimension
 
 if TYPE_CHECKING:
@@ -194,7 +194,7 @@ class Declared:
         text = replace(self, part="").say(item)
         if self.part in ("x", "y"):
             text = say("{what} along {axis}", what=text, axis=self.part)
-        return text[:1].upper() + text[1:]
+        return capital(text)
 
     def say(self, item: str = "", of_one: bool = False) -> str:
         """What it is called, in the language that is spoken; where that lacks it, in English.
