@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -183,3 +184,18 @@ def test_words_that_have_to_be_seen_are_dark_in_grey_print():
     ink, gray = lightness("#1a1a1a"), lightness("#4d5359")
     assert ink < lightness(PRINTED_STRESS) < gray
     assert f".strong{{color:{PRINTED_STRESS}}}" in page(report_of("brush-cutter"))
+
+
+def test_no_text_of_a_report_on_paper_is_too_small_to_read(document):
+    """But in pictures, which have sizes of their own; so are the model's lines."""
+    style = pages._source(document).partition("#halves(")[0]
+    sizes = [float(size) for size in re.findall(r"text\((?:size: )?([\d.]+)pt", style)]
+    assert len(sizes) > 5 and min(sizes) >= 6
+    assert "#show raw: set text(6pt)" in style and "pt, raw(" not in pages._source(document)
+
+
+def test_names_of_sections_stand_with_what_follows_where_a_page_is_printed(html):
+    """Nothing in a heading or behind one that can be folded begins a new sheet of paper."""
+    printed = html.partition("@media print")[2]
+    assert "h2{break-inside:avoid}" in printed
+    assert "summary{break-after:avoid}" in printed
