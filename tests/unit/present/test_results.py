@@ -309,6 +309,9 @@ def test_a_daily_exposure_beyond_the_limit_value_stands_out() -> None:
     """In the table also of a day with one task, and in the tile of a report, by colour and word."""
     day = daily_exposure([Task("mowing", 20.0, 3600.0)])
     assert "7.071, over the limit of 5" in words(day.blocks())
+    cells = [cell for block in day.blocks() if isinstance(block, Table)
+             for row in grid(block).rows for cell in row if cell.emphasis == "broken"]  # fmt: skip
+    assert {cell.text_with_note for cell in cells} == {"7.071, over the limit of 5"}
     allowed = daily_exposure([Task("mowing", 5.0, 8 * 3600.0)])
     assert "over the limit" not in words(allowed.blocks())
     tile = next(one for one in tool_tiles(findings_of("brush-cutter")) if "A(8)" in one.label)
