@@ -150,33 +150,28 @@ def _settled(problem: Problem, progress: Progress | None, above: float) -> Solut
         if solution.settled:
             if solution.best.nodes < FEW_NODES or solution.best.bound > above:
                 return solution
-            proved, proofs = _solve_once(solution.problem, progress), proofs + 1
-            solution = _stays(solution, proved) or proved
+            solution = _solve_once(solution.problem, progress, kept=solution.numbers)
+            proofs += 1
             if solution.settled or proofs == PROOFS:
                 return solution
         linearized = problem.linearized_at(solution.numbers)
-        towards = _solve_once(linearized, None, most=FEW_NODES)
-        solution = _stays(solution, towards) or towards
+        solution = _solve_once(linearized, None, most=FEW_NODES, kept=solution.numbers)
     return _solve_once(solution.problem, progress)
 
 
-def _stays(solution: Solution, other: Solution) -> Solution | None:
-    """The numbers of a solution, where another that takes their friction as known is better by no
-    more than what counts as settled, and they keep the limits; else None.
+def _cost_kept(problem: Problem, numbers: list[Array], bound: float) -> float | None:
+    """Cost of numbers whose own friction is that of the problem, where nothing is better by more
+    than what counts as settled, and they keep the limits; else None.
 
     Where an optimum is flat, the best numbers wander, and with them friction, without an end.
     """
-    problem, numbers = other.problem, solution.numbers
     known = problem.close.numbers
     if known is None or not np.array_equal(np.concatenate(numbers), known):
         return None
-    cost = problem.cost_of(solution.machine)
-    if cost - other.best.bound > SAME_FRICTION * problem.whole:
+    cost = problem.cost_of(problem.close.machine)
+    if cost - bound > SAME_FRICTION * problem.whole:
         return None
-    if problem.limits_passed_with_friction(solution.machine):
-        return None
-    best = replace(other.best, value=cost)
-    return replace(other, best=best, numbers=numbers, machine=solution.machine)
+    return None if problem.limits_passed_with_friction(problem.close.machine) else cost
 
 
 def _within_limits(problem: Problem, kept: list[Array], progress: Progress | None) -> Solution:
@@ -276,8 +271,13 @@ def _on_the_way(
 
 
 def _solve_once(
-    problem: Problem, progress: Progress | None, above: float = inf, most: int = MOST_NODES
+    problem: Problem,
+    progress: Progress | None,
+    above: float = inf,
+    most: int = MOST_NODES,
+    kept: list[Array] | None = None,
 ) -> Solution:
+    """kept : numbers that stay where `_cost_kept` says so."""
     problem.check_influence()
     numbers = closed_form(problem)
     if numbers is not None:
@@ -296,8 +296,11 @@ def _solve_once(
         ) from error
     except NoSolutionError:
         raise infeasibility(problem) from None
-    numbers = _split(problem, best.x) if above < inf else _lightest_numbers(problem, best)
-    numbers = problem.minimize_added_mass(numbers)
+    if kept is not None and (own := _cost_kept(problem, kept, best.bound)) is not None:
+        best, numbers = replace(best, value=own), kept
+    else:
+        numbers = _split(problem, best.x) if above < inf else _lightest_numbers(problem, best)
+        numbers = problem.minimize_added_mass(numbers)
     holds = best.nodes == 1
     method = Note("cone program") if holds else Note("branch and bound")
     return Solution(problem, best, numbers, problem.machine_with(numbers), method)

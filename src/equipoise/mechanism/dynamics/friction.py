@@ -238,7 +238,7 @@ def balanced(law: FrictionLaw, press: Press, start: Array | None = None) -> tupl
     if np.any(contracts):
         inserted, converged = _inserted(law, press, efforts, contraction)
         good = converged & contracts
-        efforts = np.where(good, inserted, efforts)
+        efforts = inserted if np.all(good) else np.where(good, inserted, efforts)
     for some in (contracts, ~contracts):
         if len(rest := np.flatnonzero(some & ~good)):
             own, own_press = law.at(rest), press.at(rest)

@@ -283,7 +283,7 @@ class JointFriction(Brief):
     table: str = ""
     wears: bool = True
 
-    @property
+    @cached_property
     def loss(self) -> Array:
         """Power lost, W."""
         return -self.effort * self.rate
