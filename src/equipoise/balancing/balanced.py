@@ -236,11 +236,11 @@ class Balanced(Result):
         own = {price: self._shaking[1][names[price]] for price in self.prices if price in names}
         return {**self.prices, **{item: replace(self.prices[item], used=own[item]) for item in own}}
 
-    def _figures_of(self, asked: Iterable[Objective]) -> dict[str, str]:
+    def _figures_of(self, objectives: Iterable[Objective]) -> dict[str, str]:
         """Names of the figures before and after that objectives are, by the objective's name."""
         both = self._shaking[0].keys() & self._shaking[1].keys()
         rows = len(self.original.rows)
-        figures = {item.name: comparison.figure_of(item, rows, both) for item in asked}
+        figures = {item.name: comparison.figure_of(item, rows, both) for item in objectives}
         return {item: name for item, name in figures.items() if name is not None}
 
     @cached_property
@@ -273,10 +273,10 @@ class Balanced(Result):
         """
         from equipoise.balancing.sensitivity import known_outputs, sensitivities
 
-        asked = dict.fromkeys(objective.output for objective in self.plan.objectives)
-        asked |= {f"{name}.{axis}": None for name in asked for axis in "xy"}
+        names = dict.fromkeys(objective.output for objective in self.plan.objectives)
+        names |= {f"{name}.{axis}": None for name in names for axis in "xy"}
         known = known_outputs(self.original)
-        by_name = {name: sensitivities(self.original, name) for name in asked if name in known}
+        by_name = {name: sensitivities(self.original, name) for name in names if name in known}
         return {name: item.to_dict(signals=False) for name, item in by_name.items()}
 
     @property

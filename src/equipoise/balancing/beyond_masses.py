@@ -242,30 +242,30 @@ def sentences_beyond(beyond: Beyond, machine: Machine, changed: bool) -> dict[st
     changed : whether that is the machine with a change of masses that is offered.
     """
     crank = machine.drive.link
-    said: dict[str, list[str]] = {}
+    sentences: dict[str, list[str]] = {}
     if beyond.spaced is not None:
-        said["spaced"] = [*arms_sentences(beyond.spaced, crank)]
+        sentences["spaced"] = [*arms_sentences(beyond.spaced, crank)]
     if beyond.ends is not None:
-        said["ends"] = [*end_sentences(beyond.ends, crank)]
+        sentences["ends"] = [*end_sentences(beyond.ends, crank)]
     if beyond.arms is not None:
-        said["arms"] = [centered_arms_sentence(beyond.arms)]
+        sentences["arms"] = [centered_arms_sentence(beyond.arms)]
     if beyond.cylinder is not None:
-        said["cylinder"] = [*cylinder_sentences(beyond.cylinder)]
+        sentences["cylinder"] = [*cylinder_sentences(beyond.cylinder)]
     if beyond.flywheels is not None:
-        said["flywheels"] = [*flywheel_sentences(beyond.flywheels, crank, machine.mass)]
+        sentences["flywheels"] = [*flywheel_sentences(beyond.flywheels, crank, machine.mass)]
     piston = None if changed else beyond.piston
     if piston is not None:
-        said["piston"] = [*piston_sentences(piston, crank)]
+        sentences["piston"] = [*piston_sentences(piston, crank)]
     if beyond.shafts is not None:
-        said["shafts"] = [shafts_sentence(beyond.shafts, crank, changed, piston)]
+        sentences["shafts"] = [shafts_sentence(beyond.shafts, crank, changed, piston)]
     if beyond.counterbalance is not None and not changed:
-        said["counterbalance"] = [_weight_sentence(beyond.counterbalance, crank)]
+        sentences["counterbalance"] = [_weight_sentence(beyond.counterbalance, crank)]
     if beyond.transmission is not None:
         mending = [*mending_sentences(beyond.transmission)]
         poor = transmission_sentence(beyond.transmission, machine.crank_turns)
         # With a change the first of these stands with what is large after it.
-        said["transmission"] = mending if changed else [poor, *mending]
-    return said
+        sentences["transmission"] = mending if changed else [poor, *mending]
+    return sentences
 
 
 def _weight_sentence(weight: Counterbalance, crank: str) -> str:

@@ -216,14 +216,16 @@ def cylinder_sentences(cylinder: Cylinder) -> Iterator[str]:
         "{rod} not to buckle."
     )
     yield say(slender if cylinder.is_slender else usual, **words)
-    shown = display("length", [cylinder.closed, cylinder.open])
+    unit_display = display("length", [cylinder.closed, cylinder.open])
     if not cylinder.is_buildable:
         yield say(
             "Closed it is {closed}, which leaves no room for its stroke of {stroke} and {dead} of "
             "piston and ends: it cannot be built so.",
-            closed=shown.with_unit(shown.text(cylinder.closed, digits=3)),
-            stroke=shown.with_unit(shown.text(cylinder.open - cylinder.closed, digits=3)),
-            dead=shown.with_unit(shown.text(cylinder.dead, digits=3)),
+            closed=unit_display.with_unit(unit_display.text(cylinder.closed, digits=3)),
+            stroke=unit_display.with_unit(
+                unit_display.text(cylinder.open - cylinder.closed, digits=3)
+            ),
+            dead=unit_display.with_unit(unit_display.text(cylinder.dead, digits=3)),
         )
     if (lever := cylinder.lever) is not None:
         yield say(

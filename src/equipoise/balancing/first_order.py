@@ -249,10 +249,10 @@ def shafts_sentence(
 def piston_sentences(balance: PistonBalance, crank: str) -> Iterator[str]:
     """How much of a piston is balanced, and the choice of half of it, with both forces."""
     forces = (balance.along, balance.across, balance.half_along, balance.half_across)
-    shown = display("force", forces)
+    unit_display = display("force", forces)
     names = ("along", "across", "half_along", "half_across")
     values = {
-        name: shown.with_unit(shown.text(force, max(forces), 3))
+        name: unit_display.with_unit(unit_display.text(force, max(forces), 3))
         for name, force in zip(names, forces, strict=True)
     }
     if balance.is_half:

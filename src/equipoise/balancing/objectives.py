@@ -269,8 +269,8 @@ def measured_each(values: Array, measure: Measure, sampling: JumpSampling | None
 
 
 def _highest(values: Array, tops: Callable[[Array], Tops]) -> Array:
-    found, _ = tops(values.reshape(-1, values.shape[-1]))
-    return found.reshape(values.shape[:-1])
+    highest, _ = tops(values.reshape(-1, values.shape[-1]))
+    return highest.reshape(values.shape[:-1])
 
 
 def unit_of(objective: Objective, machine: Machine) -> str:

@@ -294,9 +294,9 @@ def _beyond(balanced: Balanced, first: bool) -> Iterator[str]:
     machine = balanced.machine if balanced.helps else balanced.original
     gain = balanced.gain if balanced.helps else None
     leading = first_answers(advice.beyond, advice.before, gain)
-    for name, said in sentences_beyond(advice.beyond, machine, balanced.helps).items():
+    for name, lines in sentences_beyond(advice.beyond, machine, balanced.helps).items():
         if (name in leading) == first:
-            yield from said
+            yield from lines
 
 
 def beside_the_aim(balanced: Balanced) -> Iterator[str]:
@@ -366,18 +366,18 @@ def _against(new: FigureAssessment, was: FigureAssessment) -> FigureAssessment:
 
 
 def _valued(assessment: FigureAssessment) -> str:
-    shown = display(assessment.dimension, [assessment.value], assessment.shown_unit)
-    value = shown.with_unit(shown.text(assessment.value, digits=3))
+    unit_display = display(assessment.dimension, [assessment.value], assessment.shown_unit)
+    value = unit_display.with_unit(unit_display.text(assessment.value, digits=3))
     return say("{what}: {value}", what=assessment.label.localized(), value=value)
 
 
 def _from_to(was: FigureAssessment, new: FigureAssessment) -> str:
-    shown = display(was.dimension, [was.value, new.value], was.shown_unit)
+    unit_display = display(was.dimension, [was.value, new.value], was.shown_unit)
     return say(
         "{what}, from {before} to {after}",
         what=was.label.localized(),
-        before=shown.text(was.value, max(was.value, new.value), 3),
-        after=shown.with_unit(shown.text(new.value, digits=3)),
+        before=unit_display.text(was.value, max(was.value, new.value), 3),
+        after=unit_display.with_unit(unit_display.text(new.value, digits=3)),
     )
 
 

@@ -135,8 +135,8 @@ def trade_off(
     values = low + (high - low) * (TOUCH + (1 - TOUCH) * share)
     for done, value in enumerate(values.tolist(), 1):
         limit = Limit(first, at_most=value)
-        asked = replace(plan, objectives=(second,), limits=(*plan.limits, limit))
-        result.append(balance(machine, asked) if done < points else ends[1])
+        limited_plan = replace(plan, objectives=(second,), limits=(*plan.limits, limit))
+        result.append(balance(machine, limited_plan) if done < points else ends[1])
         if progress is not None:
             progress(done, points)
     both = [[Problem.value_of(item.machine, which) for which in (first, second)] for item in result]

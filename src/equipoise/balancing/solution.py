@@ -122,23 +122,23 @@ def _with_its_friction(problem: Problem, progress: Progress | None, above: float
     try:
         solution = _settled(problem, progress, above)
     except LimitsClashError as error:
-        kept = _nearest_to_limits(problem, error.limits)
-        if kept is None:
+        numbers = _nearest_to_limits(problem, error.limits)
+        if numbers is None:
             raise
     else:
         if solution.settled:
             return solution
         passed = problem.limits_passed_with_friction(solution.machine)
-        kept = _nearest_to_limits(problem, passed)
-        if kept is None:
+        numbers = _nearest_to_limits(problem, passed)
+        if numbers is None:
             return solution
     try:
-        solution = _settled(problem.linearized_at(kept), progress, above)
+        solution = _settled(problem.linearized_at(numbers), progress, above)
         if solution.settled:
             return solution
     except LimitsClashError:  # with the friction of a result, if not with that of these numbers
         pass
-    return _within_limits(problem, kept, progress)
+    return _within_limits(problem, numbers, progress)
 
 
 def _settled(problem: Problem, progress: Progress | None, above: float) -> Solution:
@@ -174,11 +174,11 @@ def _cost_kept(problem: Problem, numbers: list[Array], bound: float) -> float | 
     return None if problem.limits_passed_with_friction(problem.close.machine) else cost
 
 
-def _within_limits(problem: Problem, kept: list[Array], progress: Progress | None) -> Solution:
+def _within_limits(problem: Problem, numbers: list[Array], progress: Progress | None) -> Solution:
     """Good numbers with the friction of their own forces, where limits leave so little room that
     they cannot be kept with that of other numbers; the gap bounds how much better others may be.
 
-    kept : numbers that come nearest to the limits with their own friction; where they pass them
+    numbers : those that come nearest to the limits with their own friction; where they pass them
         because that has not settled, the result has not settled either.
 
     Raises
@@ -186,20 +186,20 @@ def _within_limits(problem: Problem, kept: list[Array], progress: Progress | Non
     LimitsClashError : the limits cannot be kept with the friction of these numbers.
     """
     for _ in range(ROUNDS):
-        linearized = problem.linearized_at(kept)
+        linearized = problem.linearized_at(numbers)
         towards = _solve_once(linearized, None, most=FEW_NODES)
         cost = problem.cost_of(linearized.close.machine)
-        start = replace(towards, numbers=kept, machine=linearized.close.machine)
+        start = replace(towards, numbers=numbers, machine=linearized.close.machine)
         better = _on_the_way(linearized, start, towards, cost)
         if better is None:
             break
-        kept = better.numbers
-    linearized = problem.linearized_at(kept)
+        numbers = better.numbers
+    linearized = problem.linearized_at(numbers)
     proved, machine = _solve_once(linearized, progress), linearized.close.machine
     if problem.limits_passed_with_friction(machine):
         return proved
     best = replace(proved.best, value=problem.cost_of(machine))  # and not that of other numbers
-    return replace(proved, best=best, numbers=kept, machine=machine)
+    return replace(proved, best=best, numbers=numbers, machine=machine)
 
 
 def _limit_to_lower(problem: Problem, clash: Sequence[str]) -> Limit | None:
@@ -454,8 +454,10 @@ def _way_out(problem: Problem, clash: list[str]) -> Note:
     relaxed = replace(plan, objectives=(limit.objective,), limits=others)
     try:
         # with the same friction, and the same flanks of gears
-        asked = replace(problem, plan=relaxed, counts=problem.before, known=problem.effects)
-        least = asked.built.program.solve().value * asked.scale(limit.objective)
+        relaxed_problem = replace(
+            problem, plan=relaxed, counts=problem.before, known=problem.effects
+        )
+        least = relaxed_problem.built.program.solve().value * relaxed_problem.scale(limit.objective)
     except NoSolutionError:
         return Note("allow more of one of them")
     least /= relaxed.factors[0]

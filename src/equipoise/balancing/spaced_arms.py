@@ -125,7 +125,7 @@ def _distance(link: Link, pin: str) -> float:
 
 def centered_arms_sentence(arms: CenteredArms) -> str:
     """What the arms would leave of the force."""
-    shown = display("force", [arms.before, arms.after])
+    unit_display = display("force", [arms.before, arms.after])
     return say(
         "With the centre of mass of {links} on {pins} (now {distance} away), {what}, would "
         "decrease from {before} to {after}, by {gain} %: remove mass beyond the pin, or add mass "
@@ -135,8 +135,8 @@ def centered_arms_sentence(arms: CenteredArms) -> str:
         pins=say(", ").join(arms.pins),
         distance=format_quantity(arms.distance, "length", digits=3),
         what=arms.label,
-        before=shown.with_unit(shown.text(arms.before, digits=3)),
-        after=shown.with_unit(shown.text(arms.after, digits=3)),
+        before=unit_display.with_unit(unit_display.text(arms.before, digits=3)),
+        after=unit_display.with_unit(unit_display.text(arms.after, digits=3)),
         gain=percent(arms.gain, 0),
     )
 

@@ -62,7 +62,7 @@ class Label:
 def captions(stage: Stage, traced: tuple[str, ...]) -> tuple[Label, ...]:
     """Names of what stands still and of paths, each where it has room; then the strip below."""
     labels: list[Label] = []
-    drawn = np.concatenate([stage.links, *_of_mounts(stage)])
+    lines = np.concatenate([stage.links, *_of_mounts(stage)])
     places = (*_of_pivots(stage), *_of_gauges(stage), *_of_paths(stage, traced))
     for choices in (*_strip(stage), *places):
         for size in (stage.size_where_narrow, stage.size_of_type):
@@ -70,7 +70,7 @@ def captions(stage: Stage, traced: tuple[str, ...]) -> tuple[Label, ...]:
             if free:
                 break
         if free:
-            labels.append(min(free, key=lambda item: _covered(item, stage, drawn)))
+            labels.append(min(free, key=lambda item: _covered(item, stage, lines)))
     return tuple(labels)
 
 
@@ -86,10 +86,10 @@ def _of_mounts(stage: Stage) -> Iterator[Array]:
                 yield _stroke(stage, shape, stage.origin).points
 
 
-def _covered(label: Label, stage: Stage, drawn: Array) -> int:
+def _covered(label: Label, stage: Stage, lines: Array) -> int:
     """How often what is drawn, pixels (N,), lies on a text: links in all poses, and mounts."""
     left, top, right, bottom = label.box(stage.size_of_type)
-    x, y = drawn.real, drawn.imag
+    x, y = lines.real, lines.imag
     return int(np.sum((left < x) & (x < right) & (top < y) & (y < bottom)))
 
 

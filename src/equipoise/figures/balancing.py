@@ -78,13 +78,13 @@ LABELS = {
 class Aim:
     """What is asked of one signal at one speed.
 
-    asked : measures of it, and the most that each may be (SI units), where that is limited.
+    objectives : measures of it, and the most that each may be (SI units), where that is limited.
     before, after : the signal, of the machine that there was and of the balanced one.
     least : size (SI units) up to which it is rounding.
     """
 
     machine: Machine
-    asked: tuple[tuple[Objective, float | None], ...]
+    objectives: tuple[tuple[Objective, float | None], ...]
     before: Signal
     after: Signal
     least: float
@@ -92,7 +92,7 @@ class Aim:
     @cached_property
     def output(self) -> Declared:
         """What it is a signal of."""
-        return output_of(self.asked[0][0].output, self.machine)
+        return output_of(self.objectives[0][0].output, self.machine)
 
     @cached_property
     def pair(self) -> Pair:
@@ -119,7 +119,7 @@ class Aim:
 
     def panels(self, last: int, with_speed: bool) -> tuple[Panel, Panel]:
         """Panels over the crank angle and by order up to the last, with or without the speed."""
-        dimension, (first, _) = self.output.dimension, self.asked[0]
+        dimension, (first, _) = self.output.dimension, self.objectives[0]
         unit = GAUGES["displacement", True][1] if dimension == "angle" else None
         named = first if with_speed else replace(first, speeds=())
         title = objective_named(named, len(self.machine.rows), measured=False)
@@ -128,14 +128,14 @@ class Aim:
         angles = np.arange(len(self.pair["after"])) * (2 * np.pi / turn)
         ends = {"unit": unit, "low": 0.0 if self.output.is_vector else None}
         over = compare(self.machine.drive, angles, self.pair, label, dimension, **ends)
-        text = say(", ").join(self._row(item, most) for item, most in self.asked)
+        text = say(", ").join(self._row(item, most) for item, most in self.objectives)
         orders = order_panel(text, dimension, self.read, last, unit=unit)
         return replace(over, title=title, lines=tuple(self._limits)), orders
 
     @property
     def _limits(self) -> Iterator[Line]:
         """How large the signal may be at any crank angle."""
-        for item, most in self.asked:
+        for item, most in self.objectives:
             if most is not None and item.measure == "peak":
                 for sign in (1.0,) if self.output.is_vector else (1.0, -1.0):
                     yield Line(sign * most, "limit", say("limit"), axis="y")
@@ -161,7 +161,7 @@ def _whole(text: str) -> str:
 
 def aims_of(balanced: Balanced) -> Iterator[Aim]:
     """Each signal that a plan asks for, by itself at each speed."""
-    asked: dict[Objective, list[tuple[Objective, float | None]]] = {}
+    by_signal: dict[Objective, list[tuple[Objective, float | None]]] = {}
     wanted: list[tuple[Objective, float | None]] = [
         (objective, None) for objective in balanced.plan.objectives
     ]
@@ -171,11 +171,11 @@ def aims_of(balanced: Balanced) -> Iterator[Aim]:
     for item, most in wanted:
         for speed in item.speeds or (balanced.original.drive.speed,):
             own = replace(item, speeds=(speed,), weight=1.0)
-            asked.setdefault(replace(own, measure="rms"), []).append((own, most))
+            by_signal.setdefault(replace(own, measure="rms"), []).append((own, most))
     force, moment = rounding(analyze(balanced.original, AIM_SAMPLES))
     least = {"force": force, "torque": moment}
     effects = [Effects(machine, ()) for machine in (balanced.original, balanced.machine)]
-    for signal, of_it in asked.items():
+    for signal, of_it in by_signal.items():
         before, after = (
             signals_of(each, signal, LinearizationPoint(each.machine))[0].on_grid
             for each in effects
@@ -187,7 +187,7 @@ def aims_of(balanced: Balanced) -> Iterator[Aim]:
 def aims(balanced: Balanced) -> Iterator[Chart]:
     """Objectives and limited outputs that changed, before and after."""
     every = [aim for aim in aims_of(balanced) if changed(aim.pair)]
-    speeds = {speed for aim in every for speed in aim.asked[0][0].speeds}
+    speeds = {speed for aim in every for speed in aim.objectives[0][0].speeds}
     when = say("before and after")
     if speeds == {balanced.original.drive.speed}:
         when = say("before and after, at {speed}", speed=speed_text(balanced.original.drive.speed))

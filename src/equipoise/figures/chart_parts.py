@@ -250,9 +250,9 @@ def _clear_of_other_curves(mark: Mark, theta: Array, others: Sequence[tuple[Arra
 
     theta : crank angles (N,), rad, of its curve.  others : crank angles and values of the rest.
     """
-    near, sign = BESIDE_TEXT * float(np.ptp(theta)), np.sign(mark.wish)
+    text_width, sign = BESIDE_TEXT * float(np.ptp(theta)), np.sign(mark.wish)
     beyond = any(
-        np.any(sign * (values[np.abs(angles - mark.x) <= near] - mark.y) > 0)
+        np.any(sign * (values[np.abs(angles - mark.x) <= text_width] - mark.y) > 0)
         for angles, values in others
     )
     return replace(mark, wish=-mark.wish) if beyond else mark

@@ -126,10 +126,10 @@ def _dots(view: View, bars: Bars) -> None:
     """A dot at the size of each, on which no text stands."""
     pair = (bars.at, bars.size) if bars.across == "x" else (bars.size, bars.at)
     roles = np.array(bars.roles or [bars.role] * len(bars.at))
-    shown = np.isfinite(bars.size) & (bars.size > 0)
-    for role in dict.fromkeys(roles[shown].tolist()):
+    visible = np.isfinite(bars.size) & (bars.size > 0)
+    for role in dict.fromkeys(roles[visible].tolist()):
         look = look_of(role)
-        chosen = shown & (roles == role)
+        chosen = visible & (roles == role)
         places = view.places(pair[0][chosen], pair[1][chosen])
         signs = Markers(places, "o", DOT, look.ink, look.inside, 0.0, view.box)
         view.sheet.add(signs, look.order)

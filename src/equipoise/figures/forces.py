@@ -231,26 +231,26 @@ def _size_marks(
 ) -> tuple[list[Mark], list[Curve], tuple[Arrow, ...], str]:
     """Marks, curves and arrows of a hodograph's peak and mean size; a message where it is zero."""
     sizes = np.abs(values)
-    found = analysis.motion.figures(sizes)
+    figures = analysis.motion.figures(sizes)
     theta, values = over(analysis, values)
-    if not found.peak:
+    if not figures.peak:
         return [], [], (), say("zero at every crank angle")
-    direction = np.interp(found.peak_at, theta, np.unwrap(np.angle(values)))
-    peak = found.peak * complex(np.exp(1j * direction))
-    circle = found.mean * np.exp(1j * np.radians(np.arange(0, 361, 2)))
+    direction = np.interp(figures.peak_at, theta, np.unwrap(np.angle(values)))
+    peak = figures.peak * complex(np.exp(1j * direction))
+    circle = figures.mean * np.exp(1j * np.radians(np.arange(0, 361, 2)))
     marks: list[Mark] = []
     arrows: tuple[Arrow, ...] = ()
 
     def add_mark(place: complex, text: str, role: str) -> None:
         marks.append(Mark.of(place, text, role, float(np.degrees(np.angle(place))), sign=False))
 
-    if found.peak_to_peak > ALIKE * found.peak:
+    if figures.peak_to_peak > ALIKE * figures.peak:
         arrows = (Arrow(0j, peak, "stress"),)
-        at = degrees_text(found.peak_at)
+        at = degrees_text(figures.peak_at)
         text = say("peak {value} at {angle}", value=axis.quantity(abs(peak)), angle=at)
         add_mark(peak, text, "stress")
-    away = found.mean * complex(np.exp(1j * (np.angle(peak) + 2.4)))
-    add_mark(away, say("mean magnitude {value}", value=axis.quantity(found.mean)), "mean size")
+    away = figures.mean * complex(np.exp(1j * (np.angle(peak) + 2.4)))
+    add_mark(away, say("mean magnitude {value}", value=axis.quantity(figures.mean)), "mean size")
     return marks, [Curve.of(circle, "", "mean size")], arrows, ""
 
 

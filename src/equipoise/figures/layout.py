@@ -111,10 +111,10 @@ def _sample(sheet: Canvas, key: LegendKey, x: float, y: float) -> None:
         ends = np.array([(x, y), (x + SAMPLE, y)])
         sheet.add(CanvasStroke((ends,), look.color, look.width, _shortened(look.lengths)), 6)
     if look.sign or key.kind == "sign":
-        shown = replace(look, size=3.0 if look.sign == "." else look.size)
+        sample_look = replace(look, size=3.0 if look.sign == "." else look.size)
         if not look.sign:
-            shown = replace(look, sign="o", size=4.0)
-        sheet.add(signs_at(np.array([(x + SAMPLE / 2, y)]), shown), 6.1)
+            sample_look = replace(look, sign="o", size=4.0)
+        sheet.add(signs_at(np.array([(x + SAMPLE / 2, y)]), sample_look), 6.1)
 
 
 def _shortened(lengths: tuple[float, ...]) -> tuple[float, ...]:

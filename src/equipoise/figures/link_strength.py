@@ -147,8 +147,10 @@ def _stress_panel(x: Axis, at: Array, stress: Array, peak: StressPeak, place: Li
         for number, (fibre, values) in enumerate(zip(names, stress, strict=True), 1)
     )
     text = say("{value} at {place}", value=y.quantity(peak.stress), place=x.quantity(peak.place))
-    beside = ASIDE if peak.place < peak.loads.length / 2 else 180.0 - ASIDE  # of the place's line
-    wish = beside if peak.stress > 0 else -beside
+    clear_side = (
+        ASIDE if peak.place < peak.loads.length / 2 else 180.0 - ASIDE
+    )  # of the place's line
+    wish = clear_side if peak.stress > 0 else -clear_side
     mark = Mark(peak.place, peak.stress, text, curves[peak.side].role, wish)
     heading = say("Stress in the outermost fibres, tension positive")
     return Panel(x, y, curves, (mark,), (), (place,), title=heading, height=HEIGHT)

@@ -67,8 +67,8 @@ def compare(
     """
     period = float(angles[-1] + angles[1] - angles[0])
     axis = crank_axis(short(drive.crank, 16), drive.speed, round(period / (2 * np.pi)))
-    drawn = {
+    curves = {
         role: (*closed(angles, values, period), figures(angles, values, period))
         for role, values in roles_of(pair).items()
     }
-    return compared(axis, label, dimension, drawn, **rest)
+    return compared(axis, label, dimension, curves, **rest)

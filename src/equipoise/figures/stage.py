@@ -179,12 +179,12 @@ class Stage:
     def captions(self) -> list[tuple[str, str]]:
         """What is to be said of the support, its movement and the force, and its colour."""
         swing = self.scene.swing
-        said = (
+        lines = (
             *row_legend(self.scene),
             *beyond(self.scene),
             *(() if swing is None else swing.captions),
         )
-        pairs = [(words, "ink") for words in said]
+        pairs = [(words, "ink") for words in lines]
         if self.arrow is not None:
             peak = quantity(float(abs(self.arrow.force).max()), "force")
             words = say("shaking force, at most {peak}", peak=peak)

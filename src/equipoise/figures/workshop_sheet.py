@@ -143,8 +143,8 @@ def _sheet(part: Part, lines: Sequence[str]) -> Figure:
     scale = scale_of(part)
     low, high = (MM * corner for corner in part.box)
     half = complex(*SHEET) * scale / 2
-    drawn = _extent(part, scale)
-    center = (drawn[0] + drawn[1]) / 2 + 1j * scale * (SHEET[1] / 2 - MARGIN - DRAWN[1] / 2)
+    extent = _extent(part, scale)
+    center = (extent[0] + extent[1]) / 2 + 1j * scale * (SHEET[1] / 2 - MARGIN - DRAWN[1] / 2)
     axes.set_xlim(center.real - half.real, center.real + half.real)
     axes.set_ylim(center.imag - half.imag, center.imag + half.imag)
     for edges in part.edges:
