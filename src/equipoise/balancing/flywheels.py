@@ -10,13 +10,11 @@ from typing import ClassVar
 import numpy as np
 
 from equipoise.balancing.policy import (
-    COARSE,
     HEAVIEST_ASIDE,
     HEAVIEST_FLYWHEEL,
     MISSED_INERTIA,
     RIM_SPEED,
     SHAFT_RATIOS,
-    STEADY,
     THICKEST_DISC,
     THINNEST_DISC,
 )
@@ -30,6 +28,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import format_quantity, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
+from equipoise.results.speed_fluctuation import COARSE, STEADY
 from equipoise.results.yardsticks import FigureAssessment
 
 DIGITS = 2

@@ -123,9 +123,6 @@ resonance mass moves the frequency too, so that less is a matter of luck."""
 
 # -- flywheels -------------------------------------------------------------------------------------
 
-STEADY, COARSE = 0.05, 0.2
-"""Share of its mean by which a crank's speed may swing: of engines and pumps, and at most, as of
-presses and crushers (Norton, Design of Machinery, table 11-4)."""
 MISSED_INERTIA = 0.1
 """Share of a flywheel's inertia that nobody misses."""
 SHAFT_RATIOS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 24)

@@ -9,7 +9,8 @@ declared with them (`yardstick` in `mechanism.outputs.declared`):
     bearings      a moment across the plane: peak, over that force at the span across the plane
     effort        a torque: peak to peak, over its mean; where that is less than what lifts the
                   moving links at the crank's throw, over the largest force that acts, there, but
-                  where loads swing it far more than the links do;
+                  where loads swing it far more than the links do; and over what the turning masses
+                  even out to a usual fluctuation of the speed, where that is not more;
                   a force: peak, over the largest load or the weight of the links
     acting        a force between bodies: peak, over the largest force that acts: weight, load,
                   spring, inertia of a link, and what the drive exerts at the crank's throw
@@ -58,6 +59,7 @@ from equipoise.results.machine_blocks import pushing
 from equipoise.results.motor_torque import LEAST_MEAN, motor_torque
 from equipoise.results.outputs import FIGURES, AnalysisOutput, figures_by_name
 from equipoise.results.rotors import unbalances
+from equipoise.results.speed_fluctuation import STEADY, speed_fluctuation
 
 LARGE, NOTHING = 1.0, 1e-9
 """Ratio from which a figure is large, and up to which it is rounding."""
@@ -571,10 +573,23 @@ def _effort(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
     if lifted < TRIFLE * torque.peak_to_peak and scales.load_swings_drive:
         lifted = 0.0
     if mean >= max(lifted, LEAST_MEAN * torque.rms):
-        return _entry(output, "peak_to_peak", mean, Note(MEAN))
+        uneven = speed_fluctuation(output.analysis)
+        if uneven is None or not 0 < uneven <= STEADY:
+            return _entry(output, "peak_to_peak", mean, Note(MEAN))
+        carried = torque.peak_to_peak * STEADY / uneven
+        return _entry(output, "peak_to_peak", carried, _carried(uneven))
     force, what = scales.undriven
     against = Note("{force} at the throw of the crank", force=what)
     return _entry(output, "peak_to_peak", rows * force * scales.throw, against)
+
+
+def _carried(uneven: float) -> Note:
+    """What a torque that swings is held against where the speed fluctuates by a small share."""
+    return Note(
+        "what the turning masses even out to a speed fluctuation of {most} %; it is {share} %",
+        most=percent(STEADY),
+        share=percent(uneven, 1),
+    )
 
 
 def _acting(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:

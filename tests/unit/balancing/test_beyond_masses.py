@@ -19,15 +19,14 @@ from equipoise.balancing.flywheels import RequiredFlywheel, flywheel_sentences, 
 from equipoise.balancing.outcome import benefit_sentences
 from equipoise.balancing.policy import (
     BUCKLING_SAFETY,
-    COARSE,
     CYLINDER_PRESSURE,
-    STEADY,
     WORTH_SHAFTS,
 )
 from equipoise.balancing.poor_transmission import poor_transmission_for
 from equipoise.balancing.problem import Problem
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.results.blocks import Facts, Text
+from equipoise.results.speed_fluctuation import COARSE, STEADY
 from equipoise.results.yardsticks import assess
 from equipoise.running.flywheel import size_flywheel
 from equipoise.vibration.headline import response_headline

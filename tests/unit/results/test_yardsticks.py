@@ -14,7 +14,10 @@ import equipoise as eq
 import support.findings
 from equipoise.mechanism.outputs.declared import DECLARED, declaring, output
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
+from equipoise.results.speed_fluctuation import STEADY, speed_fluctuation
 from equipoise.results.yardsticks import OF_OUTPUT, FigureAssessment, assess, sentence, verdict
+from equipoise.running.equation import CrankEquation
+from equipoise.running.flywheel import SteadyCycle
 from equipoise.schema.files import json_text
 from support.chosen import DISTINCT, few
 
@@ -248,3 +251,20 @@ def test_a_torque_that_loads_swing_is_judged_by_their_work() -> None:
     assert str(found.against) == "its mean" and found.yardstick < 60 < found.ratio
     idle = assessed(replace(press, loads=()))["drive_torque.peak_to_peak"]
     assert str(idle.against) == "the weight of the moving links at the throw of the crank"
+
+
+def test_a_torque_that_the_flywheel_evens_out_is_not_large() -> None:
+    """By what turns, held against the steady state itself; without the flywheel it is large."""
+    machine = eq.load("air-compressor")
+    analysis = eq.analyze(machine)
+    exact = SteadyCycle(CrankEquation(machine)).fluctuation
+    # of 360 crank angles, and of a speed that is taken as even for the mean
+    assert speed_fluctuation(analysis) == pytest.approx(exact, rel=5e-3)
+    first = verdict(assess(analysis))
+    assert first is not None and first.output != "drive_torque"
+    (torque,) = (entry for entry in assess(analysis) if entry.output == "drive_torque")
+    assert torque.ratio == pytest.approx(exact / STEADY, rel=5e-3)
+    assert sentence(torque).endswith("it is 4.0 %")
+    light = eq.analyze(replace(machine, drive=replace(machine.drive, flywheel=0.0)))
+    first = verdict(assess(light))
+    assert first is not None and first.output == "drive_torque" and first.is_swing_about_mean
