@@ -286,3 +286,19 @@ def test_which_of_several_links(tmp_path: Path) -> None:
     assert str(caught.value) == "several links have a section; give the link as one of crank, rod"
     with refused(eq.EquipoiseError, formats="inp, link-loads"):
         eq.export(both, tmp_path / "x.xml", link="rod")
+
+
+def test_an_i_is_a_box_of_its_area_and_stiffness(tmp_path: Path) -> None:
+    """CalculiX has no I: half its web stands at each side."""
+    sizes = {"height": "22 mm", "width": "14 mm", "web": "4 mm", "flange": "3 mm"}
+    machine = engine(**sizes)
+    eq.export(machine, tmp_path / "rod.inp", link="rod")
+    kind, (wide, high, right, top, left, bottom) = read_beams(
+        (tmp_path / "rod.inp").read_text("ascii")
+    ).section
+    section = machine.links["rod"].section
+    assert kind == "BOX" and section is not None
+    inside = wide - right - left, high - top - bottom
+    assert wide * high - inside[0] * inside[1] == pytest.approx(section.area)
+    second = (wide * high**3 - inside[0] * inside[1] ** 3) / 12
+    assert second == pytest.approx(section.second_moment)

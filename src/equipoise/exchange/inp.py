@@ -84,7 +84,8 @@ def _beam(job: Job, link: str, section: LinkSection, nodes: Array) -> Iterator[s
     yield "** loads are in balance: supports bear nothing"
     yield "*NODE, NSET=LINK"
     yield from (f"{n}, {_number(x)}, 0., 0." for n, x in enumerate(corners, 1))
-    yield f"*ELEMENT, TYPE={'B32' if section.wall is None else 'B32R'}, ELSET=LINK"
+    is_solid = section.wall is None and section.web is None
+    yield f"*ELEMENT, TYPE={'B32' if is_solid else 'B32R'}, ELSET=LINK"
     for n in range(1, (last + 1) // 2):
         yield f"{n}, {2 * n - 1}, {2 * n}, {2 * n + 1}"
     kind, sizes, in_abaqus = _shape(section)
@@ -118,6 +119,10 @@ def _shape(section: LinkSection) -> tuple[str, tuple[float, ...], str]:
     sizes = (section.width or 0.0, section.height or 0.0)
     if wall is not None:
         return "BOX", (*sizes, wall, wall, wall, wall), "elements B32"
+    if section.web is not None and section.flange is not None:
+        # CalculiX has no I: half the web at each side is the same in tension and in the plane
+        half = section.web / 2
+        return "BOX", (*sizes, half, section.flange, half, section.flange), "section I"
     return "RECT", sizes, ""
 
 

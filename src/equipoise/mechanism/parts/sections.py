@@ -27,15 +27,16 @@ THINNEST = 1e-9
 
 @declared
 class LinkSection(Frozen):
-    """A solid or hollow rectangle or circle, the same all along; `height` lies in the plane in
-    which the link moves.
+    """A solid or hollow rectangle or circle, or an I, the same all along; `height` lies in the
+    plane in which the link moves, and so does the web of an I.
     """
 
     called = to_say("{what} of the section")
     conditions: ClassVar[Conditions] = {
         "oneOf": [
-            needs("height", "width") | lacks("diameter"),
-            needs("diameter") | lacks("height", "width"),
+            needs("height", "width") | lacks("diameter", "web", "flange"),
+            needs("height", "width", "web", "flange") | lacks("diameter", "wall"),
+            needs("diameter") | lacks("height", "width", "web", "flange"),
         ],
         "dependentRequired": {"tensile_strength": ["fatigue_limit"], "life": ["fatigue_limit"]},
     }
@@ -47,13 +48,21 @@ class LinkSection(Frozen):
         example=["B", "C"],
     )
     height: float | None = key(
-        "length", "of a rectangle, in the plane", default=None, example="20 mm", above=0
+        "length", "of a rectangle or an I, in the plane", default=None, example="20 mm", above=0
     )
     width: float | None = key(
         "length", "of it, across the plane", default=None, example="10 mm", above=0
     )
     diameter: float | None = key("length", "of a circle", default=None, example="16 mm", above=0)
     wall: float | None = key("length", "of a hollow one", default=None, above=0)
+    web: float | None = key(
+        "length", "of an I, its thickness across the plane; goes with `flange`", default=None,
+        above=0, word=to_say("web thickness"),
+    )  # fmt: skip
+    flange: float | None = key(
+        "length", "of an I, its thickness in the plane; `width` is that of the flange",
+        default=None, above=0, word=to_say("flange thickness"),
+    )  # fmt: skip
     elastic_modulus: float | None = key(
         "modulus", "without it no buckling load is computed", default=None, example="206 GPa",
         above=0,
@@ -84,8 +93,10 @@ class LinkSection(Frozen):
 
     @property
     def _outer(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Height and width, outside and of the hole, m."""
+        """Height and width, outside and of the hole, or of both gaps beside a web together, m."""
         high, wide = self.diameter or self.height or 0.0, self.diameter or self.width or 0.0
+        if self.web is not None and self.flange is not None:
+            return (high, wide), (high - 2 * self.flange, wide - self.web)
         if self.wall is None:
             return (high, wide), (0.0, 0.0)
         return (high, wide), (high - 2 * self.wall, wide - 2 * self.wall)
@@ -109,6 +120,8 @@ class LinkSection(Frozen):
         """Second moment of area for bending out of the plane, m4."""
         (high, wide), (inner_high, inner_wide) = self._outer
         share = 1 / 12 if self.diameter is None else pi / 64
+        if self.web is not None:  # the gaps are at its sides, and not about the axis
+            return share * (high * wide**3 - inner_high * (wide**3 - self.web**3))
         return share * (high * wide**3 - inner_high * inner_wide**3)
 
     @property
@@ -146,6 +159,9 @@ def wrong_section(
     if round_one == (None not in sides) or (round_one and sides != (None, None)):
         yield ModelError(where, Note("give either height and width, or diameter"))
         return
+    if problem := _wrong_web(where, section):
+        yield problem
+        return
     if section.wall is not None and 2 * section.wall >= min(section._outer[0]):
         yield ModelError(
             f"{where}.wall", Note("got a wall that leaves no hole; give less, or leave it out")
@@ -168,3 +184,25 @@ def wrong_section(
         yield from unknown_point(f"{where}.between", point, name, {name: points})
     if section.between is not None and len({*section.between}) < 2:
         yield ModelError(f"{where}.between", Note("got a point twice; give two"))
+
+
+def _wrong_web(where: str, section: LinkSection) -> ModelError | None:
+    """What is wrong with web and flanges of an I; None where nothing is."""
+    web, flange, wide, high = section.web, section.flange, section.width, section.height
+    if web is None and flange is None:
+        return None
+    if web is None or flange is None:
+        missing = "web" if web is None else "flange"
+        return ModelError(f"{where}.{missing}", Note("missing; web and flange go together"))
+    if wide is None or high is None or section.wall is not None:
+        return ModelError(where, Note("give web and flange with height and width, without a wall"))
+    if not THINNEST * wide < web < wide:
+        return ModelError(
+            f"{where}.web", Note("got a web that is not between 0 and the width; give another")
+        )
+    if not THINNEST * high < flange < high / 2:
+        return ModelError(
+            f"{where}.flange",
+            Note("got a flange that is not between 0 and half the height; give another"),
+        )
+    return None
