@@ -67,6 +67,21 @@ def test_each_drive_has_a_look_of_its_own_in_pictures() -> None:
     assert {curve.label: look_of(curve.role) for curve in torques.curves} == looks
 
 
+def test_a_crank_that_only_swings_does_not_keep_a_run_of_turns_going() -> None:
+    """Its motor holds it from above a quarter of a turn: it swings about where both balance."""
+    weak = Motor(1e6, 0.1, mean_speed="free")
+    machine = cranks(
+        eq.Drive("left", 30.0, motor=weak), FurtherDrive("right", motor=STRAIGHT), 9.81
+    )
+    found = eq.run(machine, turns=1)
+    assert found.end.kind == "swings" and found.end.of == "left"
+    back = [event for event in found.events if (event.kind, event.of) == ("reversal", "left")]
+    assert len(back) == 20 and found.energy_error < 1e-9
+    assert found.end.time == pytest.approx(back[-1].time, abs=0.1)
+    (headline, *_) = run_headline(found)
+    assert "20 times" in headline.text
+
+
 def test_a_steady_state_of_two_motors() -> None:
     strong = Motor(30.0, 60.0, mean_speed="free")
     machine = cranks(eq.Drive("left", 30.0, motor=strong), FurtherDrive("right", motor=strong))

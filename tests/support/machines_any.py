@@ -413,6 +413,32 @@ def _drive(chance: random.Random, drive: Document, wanted: str) -> Files:
     return {}
 
 
+def _second_motor(chance: random.Random, document: Document) -> None:
+    """An arm on the frame with a motor of its own, or free, that a spring ties to another link."""
+    pins = [*document["frame"]["points"]]
+    if "slider" in document["drive"] or "arm" in document["links"] or not pins:
+        return
+    name, link = chance.choice([*document["links"].items()])
+    size, mass = 10 ** chance.uniform(1, 2), 10 ** chance.uniform(-2, 1)
+    document["links"]["arm"] = {
+        "points": {chance.choice(pins): ["0 mm", "0 mm"], "E9": [mm(size), "0 mm"]},
+        "mass": f"{mass:.4g} kg", "center_of_mass": [mm(size * chance.uniform(-0.5, 1)), "0 mm"],
+        "inertia": f"{mass * size**2 * chance.uniform(0.1, 3):.4g} kg mm^2",
+    }  # fmt: skip
+    if chance.random() < 0.7:
+        document.setdefault("springs", []).append({
+            "link": "arm", "point": "E9", "on": name, "to": chance.choice([*link["points"]]),
+            "stiffness": f"{10 ** chance.uniform(0, 4):.4g} N/m",
+        })  # fmt: skip
+    motor = {"no_load_speed": f"{10 ** chance.uniform(2, 4):.4g} rpm",
+             "stall_torque": f"{10 ** chance.uniform(-2, 1):.4g} N m"}  # fmt: skip
+    if chance.random() < 0.5:
+        _other_motor(chance, motor)
+    moved = {"motor": motor} if chance.random() < 0.8 else {"free": True}
+    drive = {"link": "arm", "ratio": chance.choice((1, -1, 2, -3, 0.5))} | moved
+    document["drives"] = [*document.get("drives", ()), drive]
+
+
 def _other_motor(chance: random.Random, motor: Document) -> None:
     """One of another kind in the place of a straight line, some too weak to start."""
     del motor["no_load_speed"], motor["stall_torque"]
@@ -772,8 +798,8 @@ def with_tables(machine: Machine) -> tuple[Document, Files]:
 def files(seed: int, wanted: str = "") -> tuple[Document, Files]:
     """The model file of a machine and the tables that it names, the same at every call.
 
-    wanted : words for what it most likely has: ``motor``, ``planting``, ``rows``, ``support``, or
-        a crank that turns ``even``ly.
+    wanted : words for what it most likely has: ``motor``, ``motors`` (two of them), ``planting``,
+        ``rows``, ``support``, or a crank that turns ``even``ly.
     """
     chance = random.Random(seed)
     grown = chance.random() < 0.6
@@ -781,6 +807,9 @@ def files(seed: int, wanted: str = "") -> tuple[Document, Files]:
     tables |= dress(chance, document, wanted)
     named = parameters_of(random.Random(f"parameters of {seed}"), document)
     beside = named | beside_the_machine(random.Random(f"beside {seed}"), document)
+    second = random.Random(f"second {seed}")
+    if second.random() < 0.1 or "motors" in wanted:
+        _second_motor(second, document)
     return {"schema": 1, "title": f"Machine {seed}"} | beside | document, tables
 
 

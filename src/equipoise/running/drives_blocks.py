@@ -39,11 +39,13 @@ EVENTS = {
     "reversal": to_say("{of} turns back"),
     "dead": to_say("dead position of dyad {of}"),
     "lever": to_say("no lever to move {of}"),
+    "swings": to_say("{of} swings to and fro"),
 }
 MOVED_BY = {MOTOR: to_say("motor"), FREE: to_say("no motor"), GIVEN: to_say("given motion")}
 ENDS = {
     "standstill": to_say("The machine stands still after {time} s."),
     "stall": to_say("The motors stall after {time} s: all drives stand still."),
+    "swings": to_say("After {time} s {of} swings to and fro; the run ends there."),
     "steady": to_say("The machine runs steadily after {time} s and {turns} turns of the crank."),
     "dead": to_say(
         "After {time} s dyad {of} comes to its dead position, beyond which its motion is "
@@ -62,7 +64,7 @@ def run_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
 
     alone : whether nothing follows, as on a terminal.
     """
-    broken = run.end.kind in ("stall", "dead", "lever") or run.driven_back is not None
+    broken = run.end.kind in ("stall", "dead", "lever", "swings") or run.driven_back is not None
     yield Text(verdict(run), broken_if(broken))
     if run.machine.has_crank and run.machine.drive.motor is None:
         yield Text(say(NO_MOTOR))

@@ -36,6 +36,8 @@ FIRST_WIDTH = 0.05
 """rad at the usual speed, in the first span."""
 SHORTEST = 1e-12
 """rad at the usual speed: a span in which nothing moves, over what changes suddenly."""
+MOST_RETURNS = 20
+"""Times that a crank turns back, after which a run of so many turns ends."""
 MOST_SPANS = 5_000
 """Of a run: a minute or two; a turn takes some ten to fifty."""
 TRACK_PLACES = np.linspace(-1.0, 1.0, 33)[1:]
@@ -70,7 +72,7 @@ class DriveEvent:
     """What happens in a run of several drives.
 
     kind : ``off``, ``reversal``, ``steady``, ``standstill``, ``stall``, ``dead``, ``lever``,
-        ``turns`` or ``time``; the last one of a run ended it.
+        ``swings``, ``turns`` or ``time``; the last one of a run ended it.
     time : s.  crank_angle : rad.
     of : driven link that turns back, joint of a dyad in its dead position, or links on which
         strokes have no lever; else empty.
@@ -177,6 +179,9 @@ class DrivesIntegration:
             at = np.array([place])
             self._record(span, np.append(TRACK_PLACES[place > TRACK_PLACES], place))
             self._note_reversals(span, place)
+            if self._only_swings:
+                goes_on = False
+                self._note("swings", float(span.time(place)), span.states(at)[:, 0], self._crank)
             ended = place == 1.0 and until - span.time(1.0) <= ROUNDING * span.time(1.0)
             time = until if ended else float(span.time(place))
             state, gained = span.states(at)[:, 0], span.quadratures(at)[:, 0]
@@ -322,6 +327,21 @@ class DrivesIntegration:
                 if abs(now.rates[count + row, 0]) > AT_REST * self.usual**2:
                     link = self.equation.drives[drive].link
                     self._note("reversal", float(now.times[0]), now.states[:, 0], link)
+
+    @property
+    def _crank(self) -> str:
+        """Name of the link whose turns are counted."""
+        return self.equation.drives[0].link
+
+    @property
+    def _only_swings(self) -> bool:
+        """Whether the crank has turned back so often that the turns for which a run is to go on,
+        and nothing else ends it, are not to be expected.
+        """
+        if self.limits.turns == inf or self.limits.time < inf:
+            return False
+        kinds = [(event.kind, event.of) for event in self.events]
+        return kinds.count(("reversal", self._crank)) >= MOST_RETURNS
 
     def _record(self, span: TimeSpan, places: Array) -> None:
         others = self.rates.others(span.others(places))

@@ -353,7 +353,7 @@ def run(
     support : whether the support moves too, from rest in the drawn position; else the frame is
         fixed.
     progress : called with the turns of the crank that were followed, and the most there can be; not
-        where only a time ends the run.
+        where only a time, or less than a turn, ends the run.
 
     Raises
     ------
@@ -431,7 +431,7 @@ def _start(usual: float, speed: float | str | None, angle: float | str | None) -
 
 def _turns_counted(limits: Limits, progress: Progress | None) -> Callable[[float], None]:
     """What is called with the turns of the crank so far."""
-    if progress is None or limits.turns == inf:
+    if progress is None or not 1 <= limits.turns < inf:
         return lambda turns: None
     most = ceil(limits.turns)
     return lambda done: progress(int(done), most)
