@@ -7,7 +7,7 @@ A joint that turns or slides at the speed v, rad/s or m/s, resists with the torq
 where s is the sliding speed, D the drag and c the damping.  P presses the surfaces on each other:
 the force of a pin, at its radius; of a pin in a slot that of the slot; of a slider its normal force
 N or, with a guide of length l and a moment M about the slider's point, the sum max(|N|, 2 |M| / l)
-of the forces at both its ends.  Gears, racks and belts lose a share mu of what they pass on: P is
+of the forces at both its ends.  Couplings lose a share mu of what they pass on: P is
 their tangential force, at the pitch radius of the driven one, and v how fast that turns, or a rack
 slides, on its carrier.
 

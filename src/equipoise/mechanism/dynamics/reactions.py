@@ -269,7 +269,7 @@ class JointFriction(Brief):
     rate : of the first body against the other, rad/s or m/s.
     reach : from the rate to the sliding speed: the radius of a pin, m; 1 of what slides.
     table : list of the file that has it, of a coupling; empty of a joint.
-    wears : whether its surfaces slide by `rate` times `reach`: not of gears and belts, whose flanks
+    wears : whether its surfaces slide by `rate` times `reach`: not of couplings, whose flanks
         slide otherwise than their pitch circles turn.
     """
 
