@@ -374,7 +374,7 @@ def test_torque_and_joints_are_the_forces() -> None:
     found, planted = drawn("kim-chung-a"), read_off("kim-chung-a").forces
     assert planted is not None
     air, soil = signals(found["torque"].panels[0])
-    shown = planted.motion.sampling.shown  # the force sets in at the surface
+    shown = planted.motion.sampling.curve_places  # the force sets in at the surface
     np.testing.assert_array_equal(air, planted.in_air.drive_torque[shown])
     np.testing.assert_array_equal(soil, planted.in_soil.drive_torque[shown])
     for panel, joint in zip(found["joints"].panels, planted.in_soil.joints.values(), strict=False):
