@@ -123,7 +123,7 @@ def test_summary() -> None:
     assert list(found.summary) == [one.name for one in found.outputs.summed]
     for name in found.summary:
         signal, told = found.outputs[name].resolved, summary[name]
-        mean, signal = signal @ sampling.shares, signal[sampling.shown]
+        mean, signal = signal @ sampling.shares, signal[sampling.curve_places]
         most = found.summary[name].peak_to_peak / 20 + 1e-8
         assert signal.max() <= told["max"] <= signal.max() + most
         assert signal.min() - most <= told["min"] <= signal.min()
