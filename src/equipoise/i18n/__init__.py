@@ -79,7 +79,7 @@ class Note(str):
 
     def __new__(cls, template: str, /, **values: Any) -> Self:
         with speaking("en"), wording({}), key_words(str):
-            note = super().__new__(cls, _said(template, values))
+            note = super().__new__(cls, _in_language(template, values))
         note.template, note.values = template, values
         return note
 
@@ -88,7 +88,7 @@ class Note(str):
 
     def localized(self) -> str:
         """The sentence in the language that is spoken."""
-        return _said(self.template, self.values)
+        return _in_language(self.template, self.values)
 
     @property
     def is_translated(self) -> bool:
@@ -112,7 +112,7 @@ class Note(str):
         return same
 
 
-def _said(template: str, values: Mapping[str, Any]) -> str:
+def _in_language(template: str, values: Mapping[str, Any]) -> str:
     return say(template, **{name: localized(value) for name, value in values.items()})
 
 

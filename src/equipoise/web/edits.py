@@ -309,10 +309,10 @@ def _moves(machine: Machine, joint: str, points: Iterable[str]) -> bool:
 
 
 def _reaches(computed: Computed, goals: Goals) -> bool:
-    return not _missed(computed, goals)
+    return not _goals_not_reached(computed, goals)
 
 
-def _missed(computed: Computed, goals: Goals) -> list[str]:
+def _goals_not_reached(computed: Computed, goals: Goals) -> list[str]:
     """Points that are not where they were put."""
     points, tolerance = computed.motion.points, THERE * extent_of(computed.design.own)
     return [
@@ -329,7 +329,7 @@ def _with_limit_note(computed: Computed, goals: Goals) -> Computed:
     pushing: list[Pushing] = [machine.drive, *machine.drives]
     for drive in pushing:
         for name in {*(drive.between or ()), points.get(drive.slider)} & {
-            *_missed(computed, goals)
+            *_goals_not_reached(computed, goals)
         }:
             return replace(computed, limit_note=Note(STROKE_LIMITED, name=name))
     return computed

@@ -160,7 +160,9 @@ def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> Values
     own = own_keys(of)
     values = {name: value for name, value in entry.items() if name in own}
     given_values = ((item, values[name]) for name, item in own.items() if name in values)
-    words = [f"{word_of(item)} {_brief(_said(item, value))}" for item, value in given_values]
+    words = [
+        f"{word_of(item)} {_brief(_localized_value(item, value))}" for item, value in given_values
+    ]
     return {
         "place": str(place),
         "where": place.abbreviated,
@@ -178,7 +180,7 @@ def _is_assumed(value: Any) -> bool:
     return isinstance(value, list) and all(item.get("assumed") for item in value)
 
 
-def _said(key: Key, value: Any) -> Any:
+def _localized_value(key: Key, value: Any) -> Any:
     """A text of several languages in the one that is spoken, all else as it is."""
     several = isinstance(key.kind, Wording) and isinstance(value, Mapping)
     return Worded(value).localized() if several else value

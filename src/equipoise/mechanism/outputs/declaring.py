@@ -201,7 +201,7 @@ class Declared:
 
         of_one : whether it is of one row of several.
         """
-        return _said(self, item, of_one and self.is_of_row, spoken())
+        return _localized_label(self, item, of_one and self.is_of_row, spoken())
 
     def items_of(self, result: Any) -> Iterable[str]:
         """Members that an analysis has; ``""`` where it is no family."""
@@ -380,7 +380,7 @@ def declared(name: str) -> tuple[Declared, str] | None:
 
 
 @lru_cache(8192)
-def _said(declared: Declared, item: str, of_one: bool, language: str) -> str:
+def _localized_label(declared: Declared, item: str, of_one: bool, language: str) -> str:
     """What a member is called in a language; a page says a hundred names at each move of a drag."""
     with speaking(language):
         text = declared.note(item).localized()

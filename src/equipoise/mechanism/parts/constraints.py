@@ -122,8 +122,8 @@ class Constraint(Frozen):
             what = Note(
                 "no body has both {line} and {other}, whose directions change to each other as "
                 "bodies turn; give two lines of one body",
-                line=_said(self.line),
-                other=_said(self.to),
+                line=_line_text(self.line),
+                other=_line_text(self.to),
             )
             yield ModelError(f"{where}.to", what)
 
@@ -155,15 +155,15 @@ class Constraint(Frozen):
         return Note(
             "{line} ({length}) and {other} ({other_length}) are not {kind}, as a constraint asks; "
             "give other places, or take the constraint away",
-            line=_said(self.line),
+            line=_line_text(self.line),
             length=lengths[0],
-            other=_said(self.to),
+            other=_line_text(self.to),
             other_length=lengths[1],
             kind=self.kind,
         )
 
 
-def _said(line: tuple[str, str]) -> str:
+def _line_text(line: tuple[str, str]) -> str:
     return "-".join(line)
 
 
