@@ -18,6 +18,7 @@ from dataclasses import replace
 from decimal import Decimal, localcontext
 from functools import cache
 from math import floor, isfinite, log10
+from operator import eq
 from typing import Any, overload
 
 from equipoise.dataclass import dataclass
@@ -315,7 +316,18 @@ def unit_meant(unit: str, dimension: Dimension) -> str:
     bare = _bare(name)
     if name in units:
         return name
-    return next((known for known in units if bare and _bare(known) == bare), "")
+    alike = (known for known in units if bare and _bare(known) == bare)
+    meant = (known for known in alike if not _is_mega_for_milli(known, name))
+    return max(meant, key=lambda known: sum(map(eq, _letters(known), _letters(name))), default="")
+
+
+def _letters(unit: str) -> str:
+    return re.sub(r"[\W\d_]", "", unit)
+
+
+def _is_mega_for_milli(known: str, given: str) -> bool:
+    """Whether a unit has M where a text, in which case has a meaning, has m, such as ``mNm``."""
+    return known.startswith("M") and given.startswith("m") and given != given.lower()
 
 
 def _spelled(unit: str) -> str:

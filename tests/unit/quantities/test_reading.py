@@ -121,6 +121,12 @@ def test_degrees_are_the_nearest_floats() -> None:
         ("5 mm", "mass", "mm is the unit of a length; a mass is wanted: kg, g"),
         ("1 Hz", "angular speed", 'give "1 turn/s" or "60 rpm"'),
         ("5 Nm", "torque", 'did you mean "5 N m"?'),
+        ("2 MNm", "torque", 'did you mean "2 MN m"?'),
+        ("2 mNm", "torque", "there is no unit 'mNm' here"),  # and not MN m, a billion times as much
+        ("2 mN/m", "stiffness", "there is no unit 'mN/m' here"),
+        ("3 mn", "force", 'did you mean "3 mN"?'),
+        ("3 Mw", "power", 'did you mean "3 MW"?'),
+        ("3 KN", "force", 'did you mean "3 kN"?'),
         ("5 kg mm2", "inertia", 'did you mean "5 kg mm^2"?'),
         ("aluminum", "density", 'to name a material, write material = "aluminum" instead'),
         ("5 kg/m3", "density", 'did you mean "5 kg/m^3"?'),
