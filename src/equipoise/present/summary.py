@@ -383,12 +383,14 @@ def _tip_limits(planting: PlantingFigures) -> Iterator[tuple[str, bool]]:
         broken = is_over(speed, highest)
         sentence = say(
             over if broken else kept,
-            what=sentence_start(say(FIGURES[limited].words)),
+            what=say(FIGURES[limited].words),
             size=format_quantity(arm[limited], "acceleration", digits=3),
             limit=format_quantity(arm[f"limits.{name}.limit"], "acceleration", digits=3),
             highest=brief(highest / PER_RPM),
         )
-        yield sentence, broken
+        if len(planting.arms) > 1:
+            sentence = say("tip {tip}: {note}", tip=arm.tip, note=sentence)
+        yield sentence_start(sentence), broken
 
 
 def _hills(planting: PlantingFigures) -> Iterator[str]:

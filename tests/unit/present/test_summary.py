@@ -190,6 +190,14 @@ def test_limits_of_the_tip_are_said_to_be_kept_or_not(speed: float, broken: bool
     assert [*broken_limits(told)] == ([sentence] if broken else [])
 
 
+def test_limits_of_several_tips_name_them():
+    figures = eq.plant(two_arms(acceleration_limit=1.0))
+    sentences = [*broken_limits(SimpleNamespace(planting=figures))]
+    assert [text.partition(":")[0] for text in sentences] == [
+        f"Tip {arm.tip}" for arm in figures.arms
+    ]
+
+
 def test_a_support_turns_where_its_gauge_does():
     """What reads an angle is not said to move."""
     told = SimpleNamespace(
