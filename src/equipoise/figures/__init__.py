@@ -47,9 +47,11 @@ MOST_OF_HALF = 4
 def is_wide(picture: Chart) -> bool:
     """Whether a report has it across the page, and not in one of two columns.
 
-    So are drawings side by side whose axes have names, and three of anything.
+    So are drawings side by side whose axes have names, three of anything, and what asks for it.
     """
     panels = picture.panels
+    if picture.across:
+        return True
     if picture.columns < 2 or len(panels) < 2:
         return False
     drawings = all(panel.equal and panel.y.label for panel in panels)

@@ -439,7 +439,8 @@ def _cells(
 
     parted : whether each row stands alone, so that all axes have numbers.
     low : whether rows of drawings have `MOST_OF_ROWS` at most.
-    scrolled : whether each of several drawings may be as high as one alone in half of a page.
+    scrolled : whether each of several drawings may be as high as one alone in half of a page, and
+        so each panel of a chart that runs across the page for its many curves.
     """
     columns = _columns(chart, wide)
     rows = -(-len(chart.panels) // columns)
@@ -450,7 +451,7 @@ def _cells(
             most = LEAST_OF_HALF
         if scrolled:
             most = ONE_OF_HALF
-    usual = high[min(rows, max(high))]
+    usual = high[1 if scrolled and chart.across else min(rows, max(high))]
     highest = usual if wide == HALF else np.inf
     cells = [cell_of(panel, min(panel.height or usual, highest)) for panel in chart.panels]
     share(cells, columns)

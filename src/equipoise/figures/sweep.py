@@ -58,6 +58,8 @@ PEAKS, ALIKE, MOST_SPEEDS = 3, 0.02, 0.9
 two; share of the values that the unit suits."""
 MOST_ORDERS, USUAL_ORDERS = 20, (1.0, 2.0, 3.0)
 """Orders that are drawn in the map at most, and where none meets a mode."""
+MOST_IN_HALF = 3
+"""Curves in a panel that are told apart, with their numbers, in half the width of a page."""
 HERTZ = Display("Hz", 1 / (2 * pi))
 
 
@@ -187,7 +189,8 @@ def mounts(sweep: Sweep) -> Chart:
             speed_curves = [SpeedCurve(name, handed[name]) for name in names]
         panels.append(_panel(sweep, say("transmissibility"), "", False, speed_curves))
         what += "; " + say("transmissibility: its RMS over the shaking force's")
-    return _chart(sweep, "mounts", what, panels)
+    crowded = any(len({c.label for c in panel.curves}) > MOST_IN_HALF for panel in panels)
+    return replace(_chart(sweep, "mounts", what, panels), across=crowded)
 
 
 def _panel(

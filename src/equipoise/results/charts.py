@@ -319,6 +319,7 @@ class Chart:
     columns : panels side by side.  stacked : whether panels below each other share their x axes.
     keys : roles and names for the legend, before those of what is drawn.
     foot : one label for the x axes of all panels.  words : lines below the heading.
+    across : whether a report has it across the page though its panels stand in one column.
     """
 
     name: str
@@ -330,6 +331,7 @@ class Chart:
     keys: tuple[tuple[str, str], ...] = ()
     foot: str = ""
     words: tuple[str, ...] = ()
+    across: bool = False
 
     def named(self, name: str) -> Chart:
         """Copy of the chart by another name."""

@@ -11,7 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.cli import run
-from equipoise.figures import is_wide
+from equipoise.figures import is_wide, sweep
+from equipoise.figures.layout import HIGH_OF_HALF
 from equipoise.figures.planting import charts as planting_charts
 from equipoise.figures.sheet import Canvas, CanvasText, Labels, spread
 from equipoise.figures.vector import svg_of
@@ -21,6 +22,7 @@ from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import each
 from equipoise.results.charts import Axis, Chart, Panel
 from equipoise.results.result import in_own_words
+from equipoise.vibration.sweep import sweep_speed
 from support.chosen import DISTINCT, few
 from support.findings import findings_of
 from support.gallery import Kept, keep
@@ -169,3 +171,12 @@ def test_drawings_side_by_side_run_across_the_page() -> None:
         ((plain,) * 5, 2, True),
     ):
         assert is_wide(Chart("a", "A", "", panels, columns=columns)) is wide
+
+
+def test_crowded_panels_run_across_the_page() -> None:
+    """Forces of four mounts over speed, and on a telephone each as high as one."""
+    over_speed = sweep_speed(eq.load("sieve"), "200 rpm", "600 rpm", "linear", speeds=9)
+    chart = sweep.mounts(over_speed)
+    assert len(over_speed.mounts) == 4 and is_wide(chart)
+    heights = [round(view.y.length) for view, _ in Laid.on_telephone(chart).panels]
+    assert min(heights) >= HIGH_OF_HALF[1]
