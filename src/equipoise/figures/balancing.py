@@ -217,6 +217,8 @@ SAMPLES, SAMPLES_OF_ROWS = 360, 720
 """Crank angles in a turn by which rounding is recognized, for one row and for several together."""
 LABEL_DISTANCE = 0.015
 """Over the size of a hodograph: numbers after that are nearer to those before are left out."""
+DOT_SIZE = 0.04
+"""Over the size of a hodograph: a smaller curve is hardly seen, and is a dot with its magnitude."""
 IN_LINE = 6
 """Dials side by side."""
 
@@ -299,17 +301,28 @@ def polar(balanced: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart
     at = numbered_angles(angles)
     marks: list[Mark] = []
     curves = [Curve.of(np.append(item, item[0]), "", role) for role, item in columns.items()]
+    every = np.concatenate([*ends.values()])
+    x, y = (Axis.of(say("shaking force along {axis}", axis=a), "force", every) for a in ("x", "y"))
     for role, values in reversed(columns.items()):
-        if np.any(values):
+        if role in WHEN and extent(values) < DOT_SIZE * size:
+            marks.append(_dot(role, values, y))
+        elif np.any(values):
             marks += numbers(at, values, role, size)
         apart = np.abs(ends["before"] - ends["after"])
         at = {angle: k for angle, k in at.items() if apart[k] > LABEL_DISTANCE * size}
-    every = np.concatenate([*ends.values()])
-    x, y = (Axis.of(say("shaking force along {axis}", axis=a), "force", every) for a in ("x", "y"))
     message = "" if np.any(every) else say("zero at every crank angle")
     panel = Panel(x, y, tuple(curves), tuple(marks), message=message, equal=True)
     what = f"{say('Shaking force')}, {_caption(balanced)}; {say('numbers: crank angle, deg')}"
     return Chart("polar", balanced.original.title, what, (panel,), keys=keys(ends))
+
+
+def _dot(role: str, values: Array, axis: Axis) -> Mark:
+    """Dot of a hodograph (N,), complex, that is too small to be seen, with its magnitude."""
+    largest = float(np.max(np.abs(values)))
+    text = say("{when}: at most {value}", when=say(WHEN[role]), value=axis.quantity(largest))
+    if not largest:
+        text = say("{when}: {value}", when=say(WHEN[role]), value=axis.quantity(0.0))
+    return Mark.of(complex(np.mean(values)), text, role, 45.0)
 
 
 # -- rows ------------------------------------------------------------------------------------------

@@ -43,6 +43,18 @@ def test_curves_are_the_signals(kind: str) -> None:
     np.testing.assert_allclose(ends["after"][:-1].real, curve(charts["force"], "after"))
 
 
+def test_a_small_polar_is_a_dot_with_its_magnitude() -> None:
+    """Of a machine that is balanced but for 1 % of its force, and wholly."""
+    turn = np.exp(1j * np.linspace(0, 2 * np.pi, 90, endpoint=False))
+    for part, text in ((0.01, "after: at most 1 N"), (0.0, "after: 0 N")):
+        both = {"before": 100 * turn, "after": 100 * part * turn}
+        parts = {"x": np.real, "y": np.imag}
+        force = {axis: {k: of(v) for k, v in both.items()} for axis, of in parts.items()}
+        chart = view.polar(found("sector"), np.angle(turn) % (2 * np.pi), force)
+        (dot,) = (mark for mark in chart.panels[0].marks if mark.role == "after")
+        assert dot.text == text and abs(dot.x + 1j * dot.y) < 1e-9
+
+
 def test_what_did_not_change_is_told_once() -> None:
     values = np.sin(np.linspace(0, 6, 90))
     assert list(view.roles_of({"before": values, "after": values * (1 + 1e-9)})) == ["unchanged"]
