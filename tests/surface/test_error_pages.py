@@ -258,7 +258,7 @@ def test_topics_are_listed_and_unknown_ones_refused() -> None:
     assert [topic for topic in (*errors(), *tables(), *terms()) if topic not in words] == []
     assert len(terms()) > 25
     said = succeeded(equipoise_runs("explain", "shaking moment"))
-    assert said.startswith("shaking moment\n\nMoment of the inertia forces") and "\\n" not in said
+    assert said.startswith("shaking moment\nMoment of the inertia forces") and "\\n" not in said
     for term, meaning in (
         ("friction", "Resistance of a joint"),
         ("fluctuation", "Largest less smallest speed"),
@@ -267,10 +267,12 @@ def test_topics_are_listed_and_unknown_ones_refused() -> None:
         ("transmission angle", "Angle between the two links that meet in a joint"),
         ("throw", "Distance of the pin of a crank"),
     ):
-        assert f"\n\n{meaning}" in succeeded(equipoise_runs("explain", term))
+        assert f"\n{meaning}" in succeeded(equipoise_runs("explain", term))
     assert known_topic("links.crank.section.width") == "links.NAME.section"
     gravity = succeeded(equipoise_runs("explain", "gravity"))  # a key of a whole file
     assert "linkage" in gravity and "two accelerations" in gravity
     assert "drive.motor.servo" in succeeded(equipoise_runs("explain", "speed"))
+    weight = " ".join(succeeded(equipoise_runs("explain", "weight")).split())  # a term, and a key
+    assert "Force of gravity on all moving links. in kind" in weight
     said = refused(equipoise_runs("explain", "sprngs"))
     assert said == "no topic is called 'sprngs'; did you mean 'springs'?"

@@ -35,11 +35,11 @@ def explain(topic: Annotated[str | None, Parameter(name="TOPIC")] = None, /) -> 
     if topic is None:
         return CommandResult(_lists, title="")
     known = topics.known_topic(topic)
-    if not known and (term := topics.terms().get(topics.slug_of(topic))):
-        words = [term.title, "", *topics.paragraphs(term.text, WIDEST)]
-        return CommandResult(lines=lambda: "\n".join(words).splitlines())
-    if not known and (places := topics.keys_by_name().get(topic)):
-        return CommandResult(lambda: _key(topic, places), title=topic)
+    term = None if known else topics.terms().get(topics.slug_of(topic))
+    places = {} if known else topics.keys_by_name().get(topic, {})
+    if term or places:
+        title, text = term or (topic, "")
+        return CommandResult(lambda: _named(topic, text, places), title=title)
     if not known:
         every = [*topics.errors(), *topics.tables(), *topics.terms(), *topics.keys_by_name()]
         raise UsageError(unknown(topic, every, "topic"))
@@ -83,17 +83,19 @@ def _keys(table: FileTable, path: str) -> Iterator[Block]:
         yield Text(f"Tables in it: {', '.join(below)}.")
 
 
-def _key(name: str, places: Mapping[str, Key]) -> Iterator[Block]:
-    """A key in each table, or file, that has it."""
-    from equipoise.results.blocks import Table
-    from equipoise.schema import writing
+def _named(name: str, text: str, places: Mapping[str, Key]) -> Iterator[Block]:
+    """What a term means, and the key of that name in each table, or file, that has it."""
+    from equipoise.results.blocks import Table, Text
+    from equipoise.schema import topics, writing
 
+    yield from map(Text, topics.paragraphs(text))
     rows = [
         (place, *(cell.replace("`", "") for cell in cells[1:]))
         for place, key in places.items()
         for cells in writing.rows({name: key})
     ]
-    yield Table.of("", ("in", *writing.HEADINGS[1:]), rows)
+    if rows:
+        yield Table.of("", ("in", *writing.HEADINGS[1:]), rows)
 
 
 def _page(title: str, text: str) -> str:
