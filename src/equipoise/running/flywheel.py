@@ -84,7 +84,7 @@ class Shooting:
         """The state at the begin of a cycle that ends as it begins, and to which others come, and
         rows of its track, as of `Integration`; None where none is met.
 
-        near : state from which it is looked for; that at the usual speed if None.
+        guess : state from which it is looked for; that at the usual speed if None.
 
         By Newton's method with Broyden's slopes.  Where those say that cycles lead away from a
         state near by, to which the crank never comes, it is let run on instead, by more and more

@@ -101,7 +101,7 @@ def close(
 ) -> Cycle:
     """Find the cycle of a linkage, given the groups in which it is solved.
 
-    near : that of a machine of the same build that differs by little, if one is known.
+    guess : that of a machine of the same build that differs by little, if one is known.
     check : looks at the state over the whole cycle, and raises an error where something is wrong.
 
     Raises
