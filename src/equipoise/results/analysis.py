@@ -141,12 +141,6 @@ class Analysis(Result):
         kinds = figures_of_kinds(type(self.machine)).items()
         return {table: figures.of_parts(self.motion, self.solved) for table, figures in kinds}
 
-    def __getattr__(self, name: str) -> Any:
-        """Figures of parts under the name of their list, such as `cams`."""
-        if not name.startswith("_") and name in figures_of_kinds(type(self.machine)):
-            return self.part_figures[name]
-        raise AttributeError(name, name=name, obj=self)
-
     def dwell(self, name: str, tolerance: float | None = None) -> Dwell:
         """Longest crank angle over which a slider, link or point moves by no more than a tolerance
         (m, of a link rad), see `mechanism.kinematics.strokes.dwell`.

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import degrees
 from typing import TYPE_CHECKING
 
 from equipoise.i18n import say
 from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
+from equipoise.mechanism.parts.cams import Cam
 from equipoise.quantities import format_quantity
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.lost_contacts import lost_contacts
@@ -15,6 +16,7 @@ from equipoise.results.machine_blocks import largest, smallest
 
 if TYPE_CHECKING:
     from equipoise.mechanism.assembly.joints import Structure
+    from equipoise.mechanism.dynamics.cam_contacts import CamFigures
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.analysis import Analysis
 
@@ -23,8 +25,9 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
     """Shape, pressure angle and contact force of each cam; where followers lift off."""
     rows: list[tuple[Cell, ...]] = []
     motion, solved = analysis.resolved.motion, analysis.resolved.solved
-    limited = any(cam.lift_off_speed is not None for cam in analysis.cams.values())
-    for name, item in analysis.cams.items():
+    by_name: Mapping[str, CamFigures] = analysis.part_figures[Cam.list_name]
+    limited = any(cam.lift_off_speed is not None for cam in by_name.values())
+    for name, item in by_name.items():
         steep = motion.figures(abs(analysis.outputs[f"cams.{name}.pressure_angle"].values))
         row: tuple[Cell, ...] = (
             name.replace(" to ", " → "),

@@ -395,7 +395,8 @@ NAMED_FIGURES: dict[str, type] = {
     "plain_bearings": PlainBearingDuty,
     "sections": LinkStress,
 }
-"""Those of joints and links for `named_figures`."""
+"""Those of joints and links for `named_figures`, by attribute of an `Analysis`, which maps names to
+them."""
 
 
 def figures_of_kinds(of: type[Frozen] = Machine) -> dict[str, Any]:
@@ -405,8 +406,7 @@ def figures_of_kinds(of: type[Frozen] = Machine) -> dict[str, Any]:
 
 
 def named_figures(of: type[Frozen] = Machine) -> dict[str, type]:
-    """Classes with declared figures by attribute of an `Analysis`, which maps names to them, and
-    key of the JSON object.
+    """Classes with declared figures by key of the JSON object.
 
     of : class of the machine.
     """
@@ -424,6 +424,7 @@ def dimensions_by_path() -> dict[str, Dimension | None]:
 
 def figures_by_name(analysis: Any) -> Iterator[tuple[str, str, Any]]:
     """Key of the JSON object, name and figures of each part of an `Analysis` that has some."""
-    for table in named_figures(type(analysis.machine)):
-        for name, figures in getattr(analysis, table).items():
+    of_joints_and_links = {table: getattr(analysis, table) for table in NAMED_FIGURES}
+    for table, by_name in {**analysis.part_figures, **of_joints_and_links}.items():
+        for name, figures in by_name.items():
             yield table, name, figures

@@ -216,7 +216,7 @@ def test_at_the_lift_off_speed_the_contact_force_touches_zero(name: str) -> None
     """Analysed at that speed there and all around, and a thousandth beside it."""
     given = SPRUNG[name]()
     (cam,) = given.cams
-    (told,) = eq.analyze(given).cams.values()
+    (told,) = eq.analyze(given).part_figures["cams"].values()
     assert told.lost == () and told.lift_off_speed > abs(given.drive.speed)
 
     def normal(speed: float, angles: Any) -> Any:
@@ -229,7 +229,7 @@ def test_at_the_lift_off_speed_the_contact_force_touches_zero(name: str) -> None
     assert np.min(normal(limit, 20_000)) > -1e-6 * size
     assert np.min(normal(0.999 * limit, 20_000)) > 0
     assert np.min(normal(1.001 * limit, around)) < 0
-    beyond = eq.analyze(given, speed=1.01 * limit).cams[cam.name].lost
+    beyond = eq.analyze(given, speed=1.01 * limit).part_figures["cams"][cam.name].lost
     assert any(begin < told.lift_off_at < end for begin, end in beyond)
 
 
@@ -237,7 +237,9 @@ def test_at_the_lift_off_speed_the_contact_force_touches_zero(name: str) -> None
 def test_the_lift_off_speed_is_not_that_of_the_samples(name: str) -> None:
     """Few crank angles tell the same speed, and all of many samples lie above it."""
     given = SPRUNG[name]()
-    (few,), (more,), (odd,) = (eq.analyze(given, n).cams.values() for n in (24, 720, 77))
+    (few,), (more,), (odd,) = (
+        eq.analyze(given, count).part_figures["cams"].values() for count in (24, 720, 77)
+    )
     assert few.lift_off_speed == pytest.approx(more.lift_off_speed, rel=1e-7)
     assert odd.lift_off_speed == pytest.approx(more.lift_off_speed, rel=1e-7)
     still, fast = (
@@ -252,13 +254,13 @@ def test_the_lift_off_speed_is_not_that_of_the_samples(name: str) -> None:
 @pytest.mark.parametrize("base", [0.02, 0.021, 0.0371])
 def test_of_equal_extremes_the_first_is_told(base: float) -> None:
     """An eccentric circle bends alike all round; a cam of two lobes lets go at both tops alike."""
-    (found,) = eq.analyze(tappet(cam(base_radius=base))).cams.values()
+    (found,) = eq.analyze(tappet(cam(base_radius=base))).part_figures["cams"].values()
     assert (found.least_radius, found.least_radius_at) == (pytest.approx(base + HIGH / 2), 0)
     half = [LengthSegment(pi / 2, high, "harmonic") for high in (HIGH, 0.0)]
     twice = cam(
         base_radius=0.06 + base, lift=LengthLaw(segments=(*half, *half)), closed_by="spring"
     )
-    (lobes,) = eq.analyze(tappet(twice)).cams.values()
+    (lobes,) = eq.analyze(tappet(twice)).part_figures["cams"].values()
     assert lobes.lift_off_at == pytest.approx(pi / 2)
 
 
@@ -267,14 +269,16 @@ def test_figures_of_a_cam_stand_in_plain_data() -> None:
     given = eq.load("cam-pusher")
     found = eq.analyze(given, speed=65.0)
     told = json.loads(json_text(found.to_dict()))["cams"]["crank to pusher"]
-    ((begin, end),) = found.cams["crank to pusher"].lost
+    ((begin, end),) = found.part_figures["cams"]["crank to pusher"].lost
     assert told["lost"] == [{"from": begin, "to": end}]
     radius = found.summary["cams.crank to pusher.curvature"]
     assert told["least_radius"] == pytest.approx(1 / radius.max, rel=1e-3)
-    assert told["lift_off_speed"] == pytest.approx(found.cams["crank to pusher"].lift_off_speed)
+    assert told["lift_off_speed"] == pytest.approx(
+        found.part_figures["cams"]["crank to pusher"].lift_off_speed
+    )
     ribbed = replace(given, cams=(replace(given.cams[0], closed_by="ribs"),))
     for other in (ribbed, given.with_link("arm", mass=None, center_of_mass=None, inertia=None)):
-        (told,) = eq.analyze(other).cams.values()
+        (told,) = eq.analyze(other).part_figures["cams"].values()
         assert (told.lift_off_speed, told.lift_off_at, told.lost) == (None, None, ())
 
 

@@ -289,3 +289,9 @@ def test_rows_of_a_machine_that_is_pushed() -> None:
     np.testing.assert_allclose(both, one + np.roll(one, -9), rtol=1e-9)
     assert "rows.drive_torque" not in found.outputs
     assert {role for role, _ in torque(found).keys} == {"one", "all"}
+
+
+def test_an_attribute_that_there_is_not() -> None:
+    """It is refused with the sentence of Python, which offers the attribute meant."""
+    with pytest.raises(AttributeError, match="'Analysis' object has no attribute 'summry'"):
+        _ = bare().summry  # type: ignore[attr-defined]
