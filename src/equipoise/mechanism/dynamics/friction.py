@@ -54,7 +54,7 @@ CLOSE = 1e-13
 """Share of the largest friction at a crank angle by which the law may be missed."""
 MOST_ROUNDS = 20
 """Of Newton's method, which takes 3 to 6: the law is a piecewise linear or a smooth one."""
-FIRST_INSERTIONS, MOST_INSERTIONS = 4, 16
+FIRST_INSERTIONS, MOST_INSERTIONS = 2, 16
 """Of the law into itself, after which it is looked at whether it holds, and at most.  Machines of
 usual coefficients take 5 to 10 of these, each of which costs a tenth of a round of Newton's method;
 what takes more is left to that."""
@@ -439,16 +439,16 @@ def with_friction(
     result = like
     if result is None and motion.machine.switches:
         result = reactions(motion, demands)
-    efforts = np.zeros_like(law.rates)
+    start: Array | None = None
     for _ in range(FLANKS):
         press = press_of(motion, demands, law.joints, units, result)
-        efforts, whole = balanced(law, press, efforts)
+        efforts, whole = balanced(law, press, start)
         if np.any(whole < 1):
             raise _locked(motion, law, press, efforts, whole)
         solved = reactions(motion, added(demands, units, efforts), like)
         if result is None or like is not None or _same_flanks(result, solved):
             break
-        result = solved
+        result, start = solved, efforts
     size = law.pressing(press.parts(efforts))
     frictions = [
         JointFriction(
