@@ -36,8 +36,13 @@ ALIKE = 1e-3
 """Over the size of a path: paths that are nearer to each other look like one."""
 MOST_POINTS, MOST_VECTORS = 4, 3
 """Points that are followed in a picture or an animation: their paths; and their hodographs."""
+SMALL_PATH, SHORT_PATH = 0.15, 0.08
+"""Over the size of a picture: paths that are all smaller are enlarged, and shorter ones without
+any dot."""
+DOT_RADIUS, MOST_HIDDEN = 0.016, 0.62
+"""Over the size of a picture in half of a page: radius of its dots; share of a path below these."""
 FEW = (0, 90)
-"""Crank angles, deg, that are labelled on the hodographs of several points."""
+"""Crank angles, deg, that are labelled on curves of several points about one place."""
 
 
 def moving(motion: Motion) -> list[str]:
@@ -117,76 +122,180 @@ def _names_of(group: Sequence[str]) -> str:
 def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
     """Paths of points of couplers, with dots after equal times; those of other points pale.
 
+    Where all are small beside the machine they are drawn enlarged, too, each about its middle.
+
     points : names; where they are not given, some that are no joint of the frame's links.
     """
     motion = analysis.motion
     names = traced(motion)[:MOST_POINTS] if points is None else [*points]
     others = [name for name in moving(motion) if name not in names]
-    frame = {name: complex(*place) for name, place in analysis.machine.frame.items()}
-    every = [motion.points[name].place for name in (*names, *others)]
-    size = extent(*every, np.array([*frame.values()]))
-    place = attrgetter("place")
-    groups, other_groups = (_coincident(motion, each, place) for each in (names, others))
+    groups, other_groups = (_coincident(motion, each, _path) for each in (names, others))
+    paths = [motion.points[name].place for name in names]
+    frame = np.array([complex(*place) for place in analysis.machine.frame.values()])
+    size = extent(*paths, *(motion.points[name].place for name in others), frame)
+    small = 0 < max(map(extent, paths), default=0.0) < SMALL_PATH * size
+    panels = [_in_frame(analysis, groups, other_groups, size, marked=not small)]
+    if small:
+        panels.append(_about_middles(analysis, groups))
+    sparse = not small and any(_dots_hide(motion, path, size) for path in paths)
+    return Chart(
+        "curves",
+        analysis.machine.title,
+        _paths_title(motion, sparse),
+        tuple(panels),
+        columns=len(panels),
+        stacked=False,
+        keys=(("faint", say("other points")),) if others else (),
+    )
+
+
+def _in_frame(
+    analysis: Analysis,
+    groups: Sequence[Sequence[str]],
+    other_groups: Sequence[Sequence[str]],
+    size: float,
+    marked: bool,
+) -> Panel:
+    """Paths where they are, by groups of points whose paths are one; marked : by crank angles."""
+    motion = analysis.motion
     lines = [
         Curve.of(over(analysis, motion.points[group[0]].place)[1], "", "faint")
         for group in other_groups
     ]
     marks = [
-        Mark.of(z, short(name), "stand", 45.0, distance=5.0, bold=True) for name, z in frame.items()
+        Mark.of(complex(*place), short(name), "stand", 45.0, distance=5.0, bold=True)
+        for name, place in analysis.machine.frame.items()
     ]
     arrows: list[Arrow] = []
-    dots: list[Mark] = []
-    numbered: list[Mark] = []
+    along: list[Mark] = []
     for number, group in enumerate(groups, 1):
-        name = group[0]
-        role, path = f"several {number}", motion.points[name].place
+        role, path = f"several {number}", motion.points[group[0]].place
         label = say("path of {point}", point=_names_of(group))
         lines.append(Curve.of(over(analysis, path)[1], label, role))
-        arrows += _sense(analysis, name, role, size)
-        if motion.whole_cycle:
-            ways = np.arange(0, 360 * motion.turns, angle_step(motion.turns))
-            at = np.round(ways * len(path) / (360 * motion.turns)).astype(int)
-            dots += [Mark.of(z, "", role) for z in path[at]]
-            numbered += numbers(numbered_angles(motion.crank_angle), path, role, size)
+        if marked:
+            arrows += _sense(motion, group[0], path, role, size)
+            along += _along(motion, path, role, size)
     for number, group in enumerate((*groups, *other_groups), 1):
         role = f"several {number}" if number <= len(groups) else "lines"
-        path = motion.points[group[0]].place
-        farthest = path[np.argmax((path * np.exp(-0.7j)).real)]
-        text = _names_of(group)
-        marks.append(Mark.of(farthest, text, role, 40.0, sign=False, distance=4.0, bold=True))
-    x, y = (Axis.of(say("{axis} in the frame", axis=a), "length", every and size) for a in "xy")
-    panel = Panel(
+        marks.append(_name_at(motion.points[group[0]].place, group, role))
+    x, y = (Axis.of(say("{axis} in the frame", axis=a), "length", size) for a in "xy")
+    message = "" if groups else say("no point moves")
+    return Panel(
         x,
         y,
         tuple(lines),
-        (*marks, *dots, *numbered),
+        (*marks, *along),
         arrows=tuple(arrows),
-        message="" if names else say("no point moves"),
+        message=message,
         equal=True,
         zero=False,
     )
-    keys = (("faint", say("other points")),) if others else ()
-    return Chart("curves", analysis.machine.title, _paths_title(motion), (panel,), keys=keys)
 
 
-def _paths_title(motion: Motion) -> str:
-    """Title of a chart of paths, with the crank angle and the time between dots."""
+def _about_middles(analysis: Analysis, groups: Sequence[Sequence[str]]) -> Panel:
+    """Paths of points, each about its middle, in the looks that they have in the frame."""
+    motion = analysis.motion
+    roles = {group[0]: f"several {number}" for number, group in enumerate(groups, 1)}
+    every = {group[0]: group for group in groups}
+    size = max(extent(motion.points[name].place) for name in roles)
+    lines, arrows, marks = [], [], []
+    together = _coincident(motion, [*roles], _path_about_middle)
+    for alike in together:
+        name, role = alike[0], roles[alike[0]]
+        path = _path_about_middle(motion.points[name])
+        lines.append(Curve.of(over(analysis, path)[1], "", role))
+        arrows += _sense(motion, name, path, role, size)
+        marks.append(_name_at(path, [point for first in alike for point in every[first]], role))
+        marks += _along(motion, path, role, size, few=len(together) > 1)
+    x, y = (Axis.of(say("{axis} from the middle", axis=a), "length", size) for a in "xy")
+    heading = say("enlarged, each path about its middle")
+    return Panel(
+        x,
+        y,
+        tuple(lines),
+        tuple(marks),
+        arrows=tuple(arrows),
+        title=heading,
+        equal=True,
+        zero=False,
+    )
+
+
+def _path(point: PointMotion) -> Array:
+    return point.place
+
+
+def _path_about_middle(point: PointMotion) -> Array:
+    """Path (N,), complex, from the middle of the box that holds it."""
+    parts = (point.place.real, point.place.imag)
+    x, y = (float(np.min(part) + np.max(part)) / 2 for part in parts)
+    return np.asarray(point.place - complex(x, y))
+
+
+def _name_at(path: Array, group: Sequence[str], role: str) -> Mark:
+    """Names of points at the upper right of their path."""
+    farthest = path[np.argmax((path * np.exp(-0.7j)).real)]
+    return Mark.of(farthest, _names_of(group), role, 40.0, sign=False, distance=4.0, bold=True)
+
+
+def _dots(motion: Motion, path: Array) -> Array:
+    """Places of a path (N,) after equal times, complex."""
+    ways = np.arange(0, 360 * motion.turns, angle_step(motion.turns))
+    return np.asarray(path[np.round(ways * len(path) / (360 * motion.turns)).astype(int)])
+
+
+def _dots_hide(motion: Motion, path: Array, size: float) -> bool:
+    """Whether the dots of a path (N,) would hide most of it, in a picture of some size."""
+    if not motion.whole_cycle:
+        return False
+    away = np.min(np.abs(path[:, None] - _dots(motion, path)), axis=1)
+    lengths = np.abs(np.diff(path, append=path[0]))
+    hidden = float(np.sum(lengths[away < DOT_RADIUS * size]))
+    return hidden > MOST_HIDDEN * float(np.sum(lengths))
+
+
+def _along(
+    motion: Motion, path: Array, role: str, size: float, few: bool = False
+) -> Iterator[Mark]:
+    """Dots and numbers along a path (N,) of a cycle; of a short one those dots that have numbers,
+    and none on one that is as small as they are.
+
+    few : whether other paths lie on it, so that there is room for few numbers.
+    """
+    if not motion.whole_cycle:
+        return
+    if not _dots_hide(motion, path, size):
+        yield from (Mark.of(z, "", role) for z in _dots(motion, path))
+    elif extent(path) < SHORT_PATH * size:
+        return
+    angles = numbered_angles(motion.crank_angle)
+    angles = {angle: k for angle, k in angles.items() if not few or angle in FEW}
+    yield from numbers(angles, path, role, size)
+
+
+def _paths_title(motion: Motion, sparse: bool) -> str:
+    """Title of a chart of paths, with the crank angle and the time between dots.
+
+    sparse : whether some paths have fewer dots.
+    """
     if not motion.whole_cycle:
         return say("Paths of points, at {speed}", speed=speed_text(motion.speed))
     step = angle_step(motion.turns)
     values = {"step": step, "speed": speed_text(motion.speed)}
-    if not motion.speed:
-        return say("Paths of points; dots every {step}° of the crank", **values)
-    values["time"] = four_digits(1000 * np.radians(step) / abs(motion.speed))
-    return say("Paths of points; dots every {step}° = {time} ms, at {speed}", **values)
+    if motion.speed:
+        values["time"] = four_digits(1000 * np.radians(step) / abs(motion.speed))
+        text = say("Paths of points; dots every {step}° = {time} ms, at {speed}", **values)
+    else:
+        text = say("Paths of points; dots every {step}° of the crank", **values)
+    return f"{text}; {say('on short paths only where numbered')}" if sparse else text
 
 
-def _sense(analysis: Analysis, name: str, role: str, size: float) -> list[Arrow]:
-    """The head of an arrow where the point is fastest."""
-    point = analysis.motion.points[name]
-    fastest = int(np.argmax(np.abs(point.place_1)))
-    way = complex(point.place_1[fastest]) * float(np.sign(analysis.motion.speed))
-    head = complex(point.place[fastest])
+def _sense(motion: Motion, name: str, path: Array, role: str, size: float) -> list[Arrow]:
+    """The head of an arrow where a point is fastest; path : as it is drawn, (N,), complex."""
+    rates = motion.points[name].place_1
+    fastest = int(np.argmax(np.abs(rates)))
+    way = complex(rates[fastest]) * float(np.sign(motion.speed))
+    head = complex(path[fastest])
     return [Arrow(head - way / abs(way) * 0.02 * size, head, role)] if way else []
 
 

@@ -28,7 +28,7 @@ from equipoise.results.analysis import Analysis
 from equipoise.results.charts import Chart, Panel
 from equipoise.signals import Periodic
 from equipoise.symbols.scene import Scene, clear_angle
-from unit.figures.checks import check
+from unit.figures.checks import Laid, check
 from unit.figures.samples import BUNDLED, drawn, long_cycle, one_link, read_off, words
 
 MOTION = ["linkage", "curves", "hodograph", "centrodes"]
@@ -301,6 +301,27 @@ def test_paths_and_hodographs_are_the_motion(name: str) -> None:
     np.testing.assert_allclose(acceleration, motion.points[point].acceleration_vector, rtol=1e-12)
 
 
+@pytest.mark.parametrize("name", ["sieve", "knife-drive", "cutter-bar", "watt-six-bar"])
+def test_dots_leave_paths_in_sight(name: str) -> None:
+    """In half of a page, too; paths that are small beside the machine are enlarged."""
+    chart = points.curves(analysis_of(name))
+    for laid, _ in Laid.in_report(chart).panels:
+        for curve in laid.panel.curves:
+            marks = [m for m in laid.panel.marks if m.sign and m.role == curve.role]
+            if marks:
+                path = laid.places(curve.x, curve.y)
+                dots = np.array([laid.places(mark.x, mark.y)[0] for mark in marks])
+                away = np.min(np.linalg.norm(path[:, None] - dots, axis=2), axis=1)[1:]
+                lengths = np.linalg.norm(np.diff(path, axis=0), axis=1)
+                assert np.sum(lengths[away < 2.0]) < 0.7 * np.sum(lengths)  # 2 points of radius
+    assert (len(chart.panels) == 2) == (name in ("sieve", "knife-drive"))
+    if len(chart.panels) == 2:
+        path = analysis_of(name).motion.points[points.traced(analysis_of(name).motion)[0]].place
+        (shown,) = places(chart.panels[1])
+        np.testing.assert_allclose(np.diff(shown), np.diff(path), atol=1e-12)
+        assert abs(np.max(shown.real) + np.min(shown.real)) < 1e-12
+
+
 def test_points_can_be_chosen() -> None:
     analysis = analysis_of("yamashita-1")
     assert "path of B" in words(points.curves(analysis, ["B"]))
@@ -437,7 +458,7 @@ def test_every_cause_looks_different_and_further_signals_like_the_first() -> Non
 def test_paths_that_coincide_are_drawn_once_with_all_their_names() -> None:
     """The walkers of a straw walker stand a quarter turn apart on the same throws."""
     analysis = eq.analyze(eq.load("straw-walker"), 360)
-    (panel,) = points.curves(analysis).panels
+    panel = points.curves(analysis).panels[0]
     legend = [curve.label for curve in panel.curves if curve.label]
     assert legend == ["path of T1, T2, T3, T4"]
     assert len(panel.curves) == 3  # with those of the pins of both crankshafts
