@@ -114,15 +114,15 @@ def resolved(motion: Motion) -> Motion:
     if not motion.whole_cycle or motion.sampling is not None:
         return motion
     linkage, theta = motion.linkage, motion.crank_angle
-    last_key, sampling = linkage.memory.get("sampling", (None, None))
-    if (key := (len(theta), motion.turns)) != last_key:
-        jumps, sampling = jumps_of_rows(linkage), None
-        if len(jumps):
-            bends = bends_of_rows(linkage, motion.turns)
-            sampling = JumpSampling.of(theta, motion.turns, jumps, bends)
-        linkage.memory["sampling"] = key, sampling  # the last alone, as they take memory
-    if sampling is None:
+    jumps = jumps_of_rows(linkage)
+    if not len(jumps):
         return motion
+    bends = bends_of_rows(linkage, motion.turns)
+    key = len(theta), jumps.tobytes(), bends.tobytes()  # other rows and loads have the same memory
+    last_key, sampling = linkage.memory.get("sampling", (None, None))
+    if key != last_key:
+        sampling = JumpSampling.of(theta, motion.turns, jumps, bends)
+        linkage.memory["sampling"] = key, sampling  # the last alone, as they take memory
     moved = move_again(motion.machine, sampling.crank_angle, motion.speed, motion.acceleration)
     return replace(moved, whole_cycle=True, sampling=sampling)
 
