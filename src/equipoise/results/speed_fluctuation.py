@@ -38,8 +38,8 @@ def speed_fluctuation(analysis: Analysis) -> float | None:
     excess = float(np.sum(gaps * (torque + np.roll(torque, -1)) / 2)) / (2 * pi * motion.turns)
     lacking = excess - torque
     work = np.concatenate([[0.0], np.cumsum(gaps * (lacking + np.roll(lacking, -1)) / 2)[:-1]])
+    work -= np.sum(gaps * work / inertia) / np.sum(gaps / inertia)  # since it has the mean speed
     squares = motion.speed**2 + 2 * work / inertia
-    squares += motion.speed**2 - float(np.sum(gaps * squares)) / (2 * pi * motion.turns)
     if np.min(squares) <= 0:
         return inf
     return float(np.ptp(np.sqrt(squares)) / abs(motion.speed))

@@ -268,3 +268,15 @@ def test_a_torque_that_the_flywheel_evens_out_is_not_large() -> None:
     light = eq.analyze(replace(machine, drive=replace(machine.drive, flywheel=0.0)))
     first = verdict(assess(light))
     assert first is not None and first.output == "drive_torque" and first.is_swing_about_mean
+
+
+def test_the_fluctuation_where_the_reduced_inertia_varies() -> None:
+    """What the mean speed leaves open is an energy, and no square of a speed: beside a flywheel of
+    30 and 8 times the mean of an inertia that changes over the cycle.
+    """
+    machine = eq.load("geared-counterweight")
+    own = float(np.mean(CrankEquation(machine).table.values[0]))
+    for share, close in ((30, 2e-3), (8, 5e-3)):
+        heavy = replace(machine, drive=replace(machine.drive, flywheel=share * own))
+        exact = SteadyCycle(CrankEquation(heavy)).fluctuation
+        assert speed_fluctuation(eq.analyze(heavy)) == pytest.approx(exact, rel=close)
