@@ -132,6 +132,7 @@ def test_a_strand_of_a_belt_goes_slack() -> None:
         timed_loads=(TimedLoad("driven", times=(0.0, 1.0), factors=(0.0, 1.0), torque=rise),),
     )  # fmt: skip
     run = eq.run(machine, 0.5, speed=0.0)
+    assert {contact.begin for contact in run.contacts} == {0.0}, "at rest, where forces are open"
     slack = 2 * tension * radius * (0.3 + 0.1) / 0.3 / rise
     ends = {contact.part: contact.end for contact in run.contacts}
     assert sum(end is None for end in ends.values()) == 1

@@ -101,7 +101,7 @@ def contacts_of_couplings(passage: Passage) -> Iterator[RunContact]:
             name = f"{coupling.list_name}.{coupling.name}"
             named = f"{name}.{part}" if len(coupling.one_sided) > 1 else name
             words = coupling.one_sided[part]
-            for begin, end, largest in _by_force(force, time[known]):
+            for begin, end, largest in _by_force(force, time[known], time[0]):
                 yield RunContact(named, _row(machine, row), words, begin, end, None, largest)
 
 
@@ -110,7 +110,7 @@ def contacts_of_mounts(support: SupportMotion, time: Array) -> Iterator[RunConta
     for contact, force in zip(support.mounted.contacts, support.smooth_forces, strict=True):
         if contact.one_sided:
             words = Note("mount {name}", name=contact.name)
-            for begin, end, largest in _by_force(force, time):
+            for begin, end, largest in _by_force(force, time, time[0]):
                 yield RunContact(f"mounts.{contact.name}", None, words, begin, end, None, largest)
 
 
@@ -118,13 +118,18 @@ def _row(machine: Machine, row: int) -> int | None:
     return row if machine.rows else None
 
 
-def _by_force(force: Array, time: Array) -> Iterator[tuple[float, float | None, float]]:
-    """Begin, end and largest force of each contact, where a force (M,) is above 0."""
+def _by_force(
+    force: Array, time: Array, start: float
+) -> Iterator[tuple[float, float | None, float]]:
+    """Begin, end and largest force of each contact, where a force (M,) is above 0.
+
+    start : s, at which the run starts, before the first instant where that is at rest.
+    """
     touches = force > -ROUNDING * np.max(np.abs(force))
 
     def crossing(k: int) -> float:
         if k == 0:
-            return float(time[0])
+            return float(start)
         before, at = force[k - 1 : k + 1]
         return float(time[k - 1] + (time[k] - time[k - 1]) * before / (before - at))
 
