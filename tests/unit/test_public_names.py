@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
+from pkgutil import resolve_name
 from types import ModuleType
 from typing import Any
 
@@ -86,6 +87,13 @@ def test_the_page_lists_what_a_room_offers(name: str) -> None:
     head = f"| `eq.{name}` |" if name else "| `eq` |"
     (row,) = (line for line in table.splitlines() if line.startswith(head))
     assert sorted(re.findall(r"`(\w+)`", row.removeprefix(head))) == sorted(public(name))
+
+
+def test_names_of_modules_in_the_documentation_are_there() -> None:
+    """Those in running text, beside what is public."""
+    pages = (page.read_text(encoding="utf-8") for page in PAGE.parent.glob("*.md"))
+    names = {name for page in pages for name in re.findall(r"`(equipoise(?:\.\w+)+)", page)}
+    assert len(names) > 4 and [*map(resolve_name, names)]
 
 
 def test_all_and_dir_agree() -> None:
