@@ -248,7 +248,6 @@ _EXTRA_UNITS = {
     "uN m": 1e6,
     "nJ": 1e9,
     "uJ": 1e6,
-    "mN m": 1e3,
 }
 """Units that are shown but not read: how many are one SI unit."""
 

@@ -186,6 +186,7 @@ KINDS: dict[Dimension, QuantityKind] = {
             "N cm": "0.01",
             "kN m": "1000",
             "MN m": "1000000",
+            "mN m": "0.001",
             "kgf m": "9.80665",
             "kgf cm": "0.0980665",
             "gf cm": "0.0000980665",

@@ -122,7 +122,7 @@ def test_degrees_are_the_nearest_floats() -> None:
         ("1 Hz", "angular speed", 'give "1 turn/s" or "60 rpm"'),
         ("5 Nm", "torque", 'did you mean "5 N m"?'),
         ("2 MNm", "torque", 'did you mean "2 MN m"?'),
-        ("2 mNm", "torque", "there is no unit 'mNm' here"),  # and not MN m, a billion times as much
+        ("2 mNm", "torque", 'did you mean "2 mN m"?'),  # and not MN m, a billion times as much
         ("2 mN/m", "stiffness", "there is no unit 'mN/m' here"),
         ("3 mn", "force", 'did you mean "3 mN"?'),
         ("3 Mw", "power", 'did you mean "3 MW"?'),
