@@ -274,5 +274,7 @@ def test_topics_are_listed_and_unknown_ones_refused() -> None:
     assert "drive.motor.servo" in succeeded(equipoise_runs("explain", "speed"))
     weight = " ".join(succeeded(equipoise_runs("explain", "weight")).split())  # a term, and a key
     assert "Force of gravity on all moving links. in kind" in weight
+    width = " ".join(succeeded(equipoise_runs("explain", "width")).split())  # without its table
+    assert "of a rectangle or an I, across the plane" in width
     said = refused(equipoise_runs("explain", "sprngs"))
     assert said == "no topic is called 'sprngs'; did you mean 'springs'?"

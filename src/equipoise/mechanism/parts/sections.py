@@ -51,7 +51,7 @@ class LinkSection(Frozen):
         "length", "of a rectangle or an I, in the plane", default=None, example="20 mm", above=0
     )
     width: float | None = key(
-        "length", "of it, across the plane", default=None, example="10 mm", above=0
+        "length", "of a rectangle or an I, across the plane", default=None, example="10 mm", above=0
     )
     diameter: float | None = key("length", "of a circle", default=None, example="16 mm", above=0)
     wall: float | None = key("length", "of a hollow one", default=None, above=0)
