@@ -23,6 +23,7 @@ from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.results.blocks import Facts
+from equipoise.running import drives_integration
 from equipoise.running.drives_blocks import run_blocks, run_headline, verdict
 from support.machines import make
 from support.machines_redundant import planet_train
@@ -80,6 +81,16 @@ def test_a_crank_that_only_swings_does_not_keep_a_run_of_turns_going() -> None:
     assert found.end.time == pytest.approx(back[-1].time, abs=0.1)
     (headline, *_) = run_headline(found)
     assert "20 times" in headline.text
+
+
+def test_a_crank_that_swings_until_a_load_turns_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As often as ends a run else; the load, which begins then, makes the turn asked for."""
+    monkeypatch.setattr(drives_integration, "MOST_RETURNS", 3)
+    load = TimedLoad("left", times=(0.0, 2.5, 2.6, 9.0), factors=(0.0, 0.0, 1.0, 1.0), torque=90.0)
+    machine = cranks(eq.Drive("left", 3.0, free=True), FurtherDrive("right", free=True), 9.81)
+    found = eq.run(replace(machine, timed_loads=(load,)), turns=1, speed=0.0)
+    back = [event for event in found.events if (event.kind, event.of) == ("reversal", "left")]
+    assert found.end.kind == "turns" and len(back) >= 3
 
 
 def test_a_steady_state_of_two_motors() -> None:

@@ -148,6 +148,7 @@ class DrivesIntegration:
         ramps = (driver.ramp_end for driver in self.drivers if driver.on)
         timed = {time for load in equation.machine.timed_loads for time in load.times}
         self.corners = sorted({*ramps, *timed} - {0.0})
+        self.last_corner = max(self.corners, default=0.0)
         self._observe(0.0, state)
         references = equation.references_at_start()
         values = self._first_values(state, references)
@@ -335,12 +336,14 @@ class DrivesIntegration:
 
     @property
     def _only_swings(self) -> bool:
-        """Whether the crank has turned back so often that the turns for which a run is to go on,
-        and nothing else ends it, are not to be expected.
+        """Whether the crank has turned back so often, since the last corner of what is given over
+        time, that the turns for which a run is to go on, and nothing else ends
+        it, are not to be expected.
         """
         if self.limits.turns == inf or self.limits.time < inf:
             return False
-        kinds = [(event.kind, event.of) for event in self.events]
+        later = (event for event in self.events if event.time >= self.last_corner)
+        kinds = [(event.kind, event.of) for event in later]
         return kinds.count(("reversal", self._crank)) >= MOST_RETURNS
 
     def _record(self, span: TimeSpan, places: Array) -> None:
