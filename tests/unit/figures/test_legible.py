@@ -17,7 +17,7 @@ from equipoise.figures.layout import HALF, lay_out
 from equipoise.figures.linkage import linkage
 from equipoise.figures.modes import mode_chart
 from equipoise.figures.points import hodograph, main_kinematics
-from equipoise.figures.sheet import Box, Canvas, Markers, Words, box_of
+from equipoise.figures.sheet import Box, Canvas, CanvasStroke, Markers, Words, box_of
 from equipoise.figures.tool_shaft import mode_charts, weighted
 from equipoise.figures.vector import svg_of
 from equipoise.figures.vibration import spectra
@@ -231,9 +231,12 @@ def test_no_label_of_a_mode_covers_another(language: str) -> None:
 
 @pytest.mark.parametrize("name", few(LINKAGES, {*DISTINCT, "straw-walker"}))
 def test_names_of_joints_stand_at_them(name: str) -> None:
-    """No more than about a letter's height and a half away, in a picture over all of a page."""
+    """No more than about a letter's height and a half away, in a picture over all of a page; where
+    a crank has five joints side by side, up to two and a half with a line that leads there.
+    """
     for view, items in Laid.of(linkage(eq.analyze(eq.load(name), 72))).panels:
         boxes: dict[str, list[Box]] = {}
+        leads = [item.lines[0][0] for item in items if isinstance(item, CanvasStroke)]
         for item in items:
             if isinstance(item, Words) and item.bold:
                 boxes.setdefault(item.text, []).append(box_of(item))
@@ -243,7 +246,8 @@ def test_names_of_joints_stand_at_them(name: str) -> None:
             ((x, y),) = view.places(mark.x, mark.y)
             away = [np.hypot(max(left - x, 0, x - right), max(top - y, 0, y - bottom))
                     for left, top, right, bottom in boxes[mark.text]]  # fmt: skip
-            assert min(away) < 12, mark.text
+            has_lead = any(np.hypot(*(lead - (x, y))) < 2.5 for lead in leads)
+            assert min(away) < (20 if has_lead else 12), mark.text
 
 
 def test_links_that_cover_each_other_are_shown_in_turn() -> None:
