@@ -26,7 +26,7 @@ from equipoise.handheld.hand_blocks import figure_named
 from equipoise.handheld.hand_exposure import grips
 from equipoise.handheld.modes import number_of
 from equipoise.handheld.response import respond_tool
-from equipoise.i18n import decimals, say, to_say
+from equipoise.i18n import capital, decimals, say, to_say
 from equipoise.quantities import Dimension, Display, display
 from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Line, Mark, Panel, four_digits
 
@@ -238,7 +238,7 @@ def design(result: ToolDesign) -> Chart:
     figure = result.figures[MEASURES.index("rms" if plan is None else plan.measure)]
     name = figure_named(figure).replace("a_hv", "aₕᵥ")  # as its axis has it
     values = " → ".join(map(four_digits, (figure.before, figure.after)))
-    what = f"{name[:1].upper()}{name[1:]}: {values} m/s²"
+    what = f"{capital(name)}: {values} m/s²"
     keys = (("dashed ink", say("before")), ("ink", say("after")))
     return Chart("design", result.tool.title, what, (panel,), keys=keys)
 
