@@ -347,6 +347,8 @@ LEAST, MOST, ROOM, SMALL_ROOM = 110.0, 345.0, 26.0, 0.13
 or, in small ones, a share."""
 MOST_OF_HALF, ONE_OF_HALF, LEAST_OF_HALF = 300.0, 150.0, 90.0
 """Height of all such panels in half of a page, of one, and of one of more than have room so."""
+FLATTEST = 0.45
+"""Least height of axes of one scale beside others, over their width, around flat curves."""
 MOST_OF_ROWS = 220.0
 """Height of all rows of drawings in a picture, so that a page has room for two such pictures."""
 MOST_ALONE = 4
@@ -464,6 +466,8 @@ def _cells(
     _widths(cells, columns, inner, most)
     if cells[0].panel.equal:  # names beside the axes are as long as these are high then
         _widths(cells, columns, inner, most)
+    for start in range(0, len(cells), columns):
+        _level(cells[start : start + columns])
     if low and wide == WIDE and rows > 1 and cells[0].panel.always_shown is not None:
         heights = [cell.height for cell in cells]
         total = sum(max(heights[k : k + columns]) for k in range(0, len(cells), columns))
@@ -549,7 +553,10 @@ def _settle(cell: Cell, width: float, most: float, small: bool) -> None:
         side = min(width, most)
         room = SMALL_ROOM * side
         point = max(np.ptp(x), np.ptp(y), cell.least_span) / (side - 2 * room) or 1.0
-        cell.height = side if cell.panel.always_shown is None else np.ptp(y) / point + 2 * room
+        cell.height = np.ptp(y) / point + 2 * room
+        if cell.panel.always_shown is None:
+            square = cell.panel.rings or cell.panel.bare
+            cell.height = side if square else max(cell.height, FLATTEST * side)
     else:
         high, room = fixed or most, 0.0 if cell.panel.bare else ROOM
         point = max(np.ptp(x) / (width - 2 * room), np.ptp(y) / (high - 2 * room)) or 1.0
@@ -557,6 +564,17 @@ def _settle(cell: Cell, width: float, most: float, small: bool) -> None:
     half_x, half_y = point * width / 2, point * cell.height / 2
     cell.x_ends = (float(np.mean(x)) - half_x, float(np.mean(x)) + half_x)
     cell.y_ends = (float(np.mean(y)) - half_y, float(np.mean(y)) + half_y)
+
+
+def _level(row: list[Cell]) -> None:
+    """Give curves of one scale side by side the height of the highest, each on its own scale."""
+    if not all(cell.panel.equal and cell.panel.always_shown is None for cell in row):
+        return
+    highest = max(cell.height for cell in row)
+    for cell in row:
+        low, high = cell.y_ends
+        more = (high - low) * (highest / cell.height - 1) / 2
+        cell.y_ends, cell.height = (low - more, high + more), highest
 
 
 ROUNDS = 4

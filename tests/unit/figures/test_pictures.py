@@ -20,7 +20,7 @@ from equipoise.i18n import speaking
 from equipoise.planting.summary import plant
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import each
-from equipoise.results.charts import Axis, Chart, Panel
+from equipoise.results.charts import Axis, Chart, Curve, Panel
 from equipoise.results.result import in_own_words
 from equipoise.vibration.sweep import sweep_speed
 from support.chosen import DISTINCT, few
@@ -171,6 +171,22 @@ def test_drawings_side_by_side_run_across_the_page() -> None:
         ((plain,) * 5, 2, True),
     ):
         assert is_wide(Chart("a", "A", "", panels, columns=columns)) is wide
+
+
+def test_flat_curves_side_by_side_have_low_axes() -> None:
+    """All in one row are as high as the highest; of hodographs of straight motion half as wide."""
+    x, y = (Axis(f"along {axis}") for axis in "xy")
+    for sizes, highest in (((0.01, 0.1), 0.45), ((0.01, 1.0), 1.0), ((0.01, 0.7), 0.78)):
+        turn = np.exp(1j * np.linspace(0, 6, 40))
+        curves = [Curve.of(turn.real + 1j * size * turn.imag) for size in sizes]
+        panels = tuple(Panel(x, y, (curve,), equal=True) for curve in curves)
+        laid = Laid.in_report(Chart("a", "A", "", panels, columns=2, stacked=False))
+        heights = [view.y.length for view, _ in laid.panels]
+        assert np.ptp(heights) < 1e-9
+        assert heights[0] == pytest.approx(highest * laid.panels[0][0].x.length, rel=0.12)
+        for view, _ in laid.panels:  # of one scale still
+            rates = [(axis.high - axis.low) / axis.length for axis in (view.x, view.y)]
+            assert rates[0] == pytest.approx(rates[1])
 
 
 def test_crowded_panels_run_across_the_page() -> None:
