@@ -336,7 +336,19 @@ def test_no_other_is_better(name: str) -> None:
     assert cost >= found.bound - BEATEN * whole
     # where the signal jumps, the search sees peaks and areas at its own crank angles only
     peaks = any(one.measure.startswith("peak") for one in plan.objectives)
-    assert cost <= found.cost + (1e-3 if peaks and loads_jump(machine) else SEARCHED) * whole
+    misses = 2e-3 if peaks and (loads_jump(machine) or has_corners(machine)) else SEARCHED
+    assert cost <= found.cost + misses * whole
+
+
+def has_corners(machine: Machine) -> bool:
+    """Whether tables of springs have corners, near which neither samples nor their curve are the
+    peak.
+    """
+    return (
+        any(one.table or one.angles for one in machine.torsion_springs)
+        or any(one.table or one.lengths for one in machine.springs)
+        or any(load.table for load in machine.loads)
+    )
 
 
 @every_case
@@ -351,20 +363,20 @@ def test_values_before_and_after(name: str) -> None:
         near = 1e-4 if jumps and one.measure == "area" else 1e-12
         peaks = one.measure.startswith("peak")
         if peaks:  # where loads jump, those of the reference's samples, though of many
-            near = 1e-6 if jumps else 1e-9
+            near = 1e-6 if jumps else 5e-3 if has_corners(machine) else 1e-9
         assert before == pytest.approx(measured_exactly(machine, one), rel=near)
         # the reference's own peaks are those of samples, which the curve rises above
         coarse = one.measure.startswith("peak")
         assert before >= goal.before * (1 - (5e-3 if jumps else 1e-12))
         assert before == pytest.approx(
-            goal.before, rel=5e-3 if jumps else 1e-3 if coarse else 1e-12
+            goal.before, rel=2e-2 if jumps else 1e-3 if coarse else 1e-12
         )
         exact = measured_exactly(found.machine, one)
         assert after == pytest.approx(exact, abs=max(near, 1e-9) * before)
         values.append(np.array(after / before))
     assert found.cost == pytest.approx(float(problem.combined(values)), rel=1e-9)
     assert found.bound <= found.cost + GAP * sum(problem.weights)
-    assert found.gap < (BEATEN if str(found.method) == "branch and bound" else GAP)
+    assert found.gap < BEATEN  # mostly 1e-9; how near a cone program ends, rounding decides
     for given, most in zip(plan.limits, problem.limits, strict=True):
         assert measured(found.machine, given.objective) <= most * (1 + 1e-7)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -76,10 +76,12 @@ def analysed(machine: Machine, case: Case | None = None) -> Subject:
 
 @cache
 def subject_of(name: str) -> Subject:
-    """Analyse an example or a random machine; without friction, which has tests of its own."""
+    """Analyse an example or a random machine; without friction and resistances, which have tests of
+    their own.
+    """
     kind, _, seed = name.partition(":")
     if not seed:
-        return analysed(eq.load(name).without_friction())
+        return analysed(replace(eq.load(name).without_friction(), resistances=()))
     kind, soil, _ = kind.partition(" in soil")
     kind, apart, _ = kind.partition(" apart")
     kind, long, _ = kind.partition(" long")
