@@ -126,8 +126,11 @@ def balanced_headline(
         is_long = balanced.advice.beyond.mounts is not None
         yield from (Text(line, is_detail=is_long) for line in beside_the_aim(balanced))
     yield from (Text(line, "worse") for line in worst_deteriorations(balanced))
-    yield from map(Text, with_more_room(balanced))  # which brings far more than what is offered
-    yield from map(Text, (*preloads(balanced), *mounts_beside_change(balanced)))
+    room = [
+        *with_more_room(balanced)
+    ]  # which brings far more than what is offered, and than mounts
+    yield from map(Text, (*room, *preloads(balanced)))
+    yield from (Text(line, is_detail=bool(room)) for line in mounts_beside_change(balanced))
     details = [*beside_mounts(balanced)]  # of which the last are left out first
     if balanced.advice is not None:
         details += large_besides(balanced)
