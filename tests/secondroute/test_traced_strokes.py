@@ -47,7 +47,7 @@ def test_scripts(name: str, tmp_path: Path) -> None:
     analysis = eq.analyze(machine, ANGLES)
     got = run(script, script.numbers(linkage), analysis.crank_angle, tmp_path)
     known = arrays(analysis, names)
-    assert np.all(np.abs(got - known) <= 1e-9 * size(known))
+    assert np.all(np.abs(got - known) <= 1e-9 * size(known, names))
 
 
 def arrays(analysis: eq.Analysis, names: list[str]) -> Any:
@@ -67,7 +67,7 @@ def test_scripts_with_other_numbers(name: str, tmp_path: Path) -> None:
     analysis = eq.analyze(design(base, numbers, row), ANGLES)
     got = run(script, row, analysis.crank_angle, tmp_path)
     known = arrays(analysis, names)
-    assert np.all(np.abs(got - known) <= 1e-9 * size(known))
+    assert np.all(np.abs(got - known) <= 1e-9 * size(known, names))
     assert not np.allclose(known, arrays(eq.analyze(base, ANGLES), names))
 
 

@@ -86,13 +86,25 @@ def drawn(seed: int) -> tuple[dict[str, Any], dict[str, str]]:
 
 
 def document(seed: int) -> dict[str, Any]:
-    """A machine from nothing, with a brake, and a run that has every key now and then."""
+    """A machine from nothing, with a brake, and a run and sections that have every key now and
+    then.
+    """
     made = deepcopy(drawn(seed)[0])
+    for link in made["links"].values():
+        section = link.get("section", {})
+        if seed % 2 and {*section} >= {"width", "height"} and "wall" not in section:
+            section["web"], section["flange"] = share(section["width"]), share(section["height"])
     if "motor" in made["drive"]:
         made["drive"]["brake"] = "3 N m"
         if seed % 2:
             made["run"] = {"duration": "0.1 s", "off": "0.05 s", "speed": "20 rpm", "turns": 2}
     return made
+
+
+def share(size: str) -> str:
+    """Three tenths of a size."""
+    number, _, unit = size.partition(" ")
+    return f"{0.3 * float(number)} {unit}"
 
 
 def hostile(value: Any) -> Iterator[Any]:

@@ -286,7 +286,6 @@ REFUSED = {
         "--csv no/x.csv": "no/x.csv: there is no such folder; make i",
     },
     "balance yamashita-1": {
-        "--crank-counterweight": ("there is no objective; give [[balance.objectives]], or an opt"),
         f"{UP} --move-cm copler": "--move-cm: no link is called 'copler'; did you mean 'coupler'?",
         f"{UP} --counterweight x": "--counterweight: no link is",
         f"{UP} --move-cm coupler --move-cm coupler": (

@@ -198,7 +198,7 @@ def test_what_it_says_of_its_own_is_found() -> None:
     found = eq.analyze(MACHINE, 90)
     creep = found.outputs[f"rollers.{NAME}.creep"].values
     np.testing.assert_allclose(creep, RADII[0] * found.motion.links[GEAR.driver].angle)
-    assert found.rollers[NAME].slips_at == 0.5
+    assert found.part_figures["rollers"][NAME].slips_at == 0.5
     assert found.to_dict()["rollers"][NAME]["slip_speed"] == 2 * found.motion.speed
     entries = {item.figure: item for item in assess(found)}
     assert entries[f"rollers.{NAME}.slip_speed"].ratio == 0.5

@@ -370,7 +370,7 @@ def test_one_point_is_moved() -> None:
         ),
         (
             lambda: FOUR.with_point("crank", "B", 3.0),
-            {"place": "links.crank.points", "shown": "{'A': (0.0, 0.0), 'B': 3.0}"},
+            {"place": "links.crank.points", "given": "{'A': (0.0, 0.0), 'B': 3.0}"},
         ),  # type: ignore[arg-type]
     ],
 )
