@@ -61,7 +61,7 @@ from equipoise.signals import Periodic
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
-    from equipoise.mechanism.parts.machine import Machine
+    from equipoise.mechanism.parts.machine import Drive, Machine
 
 AIM_SAMPLES, MOST_AIMS = 360, 4
 """Crank angles in a turn by which rounding is recognized; objectives at most in a chart."""
@@ -129,7 +129,7 @@ class Aim:
         ends = {"unit": unit, "low": 0.0 if self.output.is_vector else None}
         over = compare(self.machine.drive, angles, self.pair, label, dimension, **ends)
         text = say(", ").join(self._row(item, most) for item, most in self.objectives)
-        orders = order_panel(text, dimension, self.read, last, unit=unit)
+        orders = order_panel(text, dimension, self.read, last, unit=over.y.unit.unit)
         return replace(over, title=title, lines=tuple(self._limits)), orders
 
     @property
@@ -263,10 +263,7 @@ def signals(balanced: Balanced) -> dict[str, Chart]:
     moved = {axis: pair for axis, pair in force.items() if changed(pair)}
     result: dict[str, Chart] = {}
     if moved:
-        panels = tuple(
-            compare(drive, angles, pair, say("along {axis}", axis=axis), "force")
-            for axis, pair in moved.items()
-        )
+        panels = _along(drive, angles, moved)
         what = f"{say('Shaking force')}, {when}"
         result["force"] = Chart("force", title, what, panels, keys=keys(*moved.values()))
         result["polar"] = polar(balanced, angles, force)
@@ -372,16 +369,25 @@ def combined(original: Machine | None, machine: Machine) -> Chart:
     if original is not None:
         what = say("Shaking force of {count} rows together, before and after, at {speed}", **text)
     least, _ = rounding(analyze(machine, SAMPLES))
-    pairs: list[Pair] = []
-    panels = []
+    pairs: dict[str, Pair] = {}
     for axis in ("x", "y"):
         angles, after = summed(machine, axis)
-        pair: Pair = {"after": settled(after, least)}
+        pairs[axis] = {"after": settled(after, least)}
         if original is not None:
-            pair = paired(summed(original, axis)[1], after, least)
-        panels.append(compare(machine.drive, angles, pair, say("along {axis}", axis=axis), "force"))
-        pairs.append(pair)
-    return Chart("rows", machine.title, what, tuple(panels), keys=keys(*pairs))
+            pairs[axis] = paired(summed(original, axis)[1], after, least)
+    panels = _along(machine.drive, angles, pairs)
+    return Chart("rows", machine.title, what, panels, keys=keys(*pairs.values()))
+
+
+def _along(drive: Drive, angles: Array, pairs: Mapping[str, Pair]) -> tuple[Panel, ...]:
+    """Components of a force by their axes, over crank angles (N,), in one unit."""
+    every = np.concatenate(
+        [values for pair in pairs.values() for values in roles_of(pair).values()]
+    )
+    return tuple(
+        compare(drive, angles, pair, say("along {axis}", axis=axis), "force", extent=every)
+        for axis, pair in pairs.items()
+    )
 
 
 def summed(machine: Machine, axis: str) -> tuple[Array, Array]:

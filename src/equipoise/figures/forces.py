@@ -285,9 +285,10 @@ def spectrum(analysis: Analysis) -> Chart:
     ]
     last = max(FEWEST, *(last_order(bars) for bars in read))
     most = MOST_NUMBERED[bool(analysis.rows_total)]
+    units = [_unit(analysis, "shaking_force")] * 2 + [None, None]  # both components in one unit
     panels, notes = without_empty(
-        order_panel(text, dimension, bars, last, most)
-        for (text, dimension, _), bars in zip(signals, read, strict=True)
+        order_panel(text, dimension, bars, last, most, unit)
+        for (text, dimension, _), bars, unit in zip(signals, read, units, strict=True)
     )
     what = title(analysis, say("Amplitude of each order"))
     keys = tuple((BAR_ROLES[role], name) for role, name in row_keys(analysis))

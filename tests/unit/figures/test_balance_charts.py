@@ -12,8 +12,9 @@ import equipoise as eq
 from equipoise.balancing.balanced import Balanced
 from equipoise.figures import balancing as view
 from equipoise.figures.balancing import aims_of
-from equipoise.figures.forces import order_panel
+from equipoise.figures.forces import order_panel, spectrum
 from equipoise.figures.layout import lay_out
+from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.results.charts import Chart
 from equipoise.vibration.forced import respond
 from unit.figures.balance_samples import found, front, in_rows, phasing, pictures
@@ -41,6 +42,21 @@ def test_curves_are_the_signals(kind: str) -> None:
             np.testing.assert_allclose(mine[:: len(mine) // 360], values, atol=1e-6)
     ends = {c.role: c.x + 1j * c.y for c in charts["polar"].panels[0].curves}
     np.testing.assert_allclose(ends["after"][:-1].real, curve(charts["force"], "after"))
+
+
+def test_both_components_of_a_force_have_one_unit() -> None:
+    """Of which one is above 10 kN, and the other below."""
+    base = eq.load("yamashita-1")
+    machine = base.with_number("drive.speed", base.drive.speed * (12e3 / 18.0) ** 0.5)
+    force = eq.analyze(machine).forces.shaking_force
+    assert np.max(np.abs(force.x)) < 1e4 < np.max(np.abs(force.y))
+    panels = spectrum(eq.analyze(machine)).panels
+    assert [panel.y.unit_name for panel in panels][:2] == ["kN", "kN"]
+    moved = Objective("shaking_force", "rms")
+    free = AddedMass("crank", "A", Weight("any", radius=0.05))
+    plan = Balance(objectives=(moved,), masses=(free,))
+    drawn = view.charts(eq.balance(machine, plan))["force"]
+    assert {panel.y.unit_name for panel in drawn.panels} == {"kN"}
 
 
 def test_a_small_polar_is_a_dot_with_its_magnitude() -> None:
