@@ -132,9 +132,8 @@ def _missing(machine: Machine, share: float) -> float:
         missing = size_flywheel(machine, share).inertia
     except EquipoiseError:  # the crank does not go round by itself, or the motor stalls
         return 0.0
-    motor = machine.drive.motor
-    there = machine.drive.flywheel + (motor.inertia * motor.ratio**2 if motor else 0.0)
-    return missing if missing >= MISSED_INERTIA * (missing + there) else 0.0
+    whole = missing + machine.drive.shaft_inertia
+    return missing if missing >= MISSED_INERTIA * whole else 0.0
 
 
 def _ratios(machine: Machine) -> tuple[float, ...]:

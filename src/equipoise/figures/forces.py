@@ -91,7 +91,7 @@ def over_crank(
 
 def _unit(analysis: Analysis, output: str) -> str | None:
     """The unit of an output of frame or drive, as tables and sentences have it."""
-    if not output or analysis.solved is None:
+    if not output or not analysis.has_forces:
         return None
     return display_of_totals(analysis, output).unit
 

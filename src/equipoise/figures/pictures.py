@@ -68,7 +68,7 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     if links := rolling(analysis):
         pictures["centrodes"] = centrodes(analysis, links)
     pictures |= {chart.name: chart for chart in couplings.ratios(analysis)}
-    if analysis.solved is None:
+    if not analysis.has_forces:
         return pictures
     pictures |= {chart.name: chart for chart, _ in couplings.curves(analysis)}
     for chart in (forces.polar, forces.force, forces.moment):

@@ -82,7 +82,7 @@ def sources(findings: Findings | ToolFindings) -> Iterator[str]:
         if findings.exposure is not None:
             yield say(USED["hands"], source=f"{ISO_5349}; {DIRECTIVE}; {ISO_22867}")
         return
-    if findings.analysis.solved is not None:
+    if findings.analysis.has_forces:
         yield say(USED["force"], source=YAMASHITA)
         yield say(USED["moment"], source=LEE_KIM)
     if findings.planting is not None:
@@ -154,7 +154,7 @@ def _of_linkage(
     if findings.planting is not None:
         blocks["planting"] = [*pictures.get("planting", []), *planting_blocks(findings.planting)]
     later = findings.after
-    if analysis.solved is not None:
+    if analysis.has_forces:
         again = None if later is None else later.analysis
         blocks["forces"] = [
             *pictures.get("forces", []),
@@ -356,7 +356,7 @@ def _animation(findings: Findings) -> str:
         scene,
         title=findings.machine.title,
         traced=followed(analysis.motion),
-        arrow=ForceArrow.of(analysis) if analysis.solved is not None and alone else None,
+        arrow=ForceArrow.of(analysis) if analysis.has_forces and alone else None,
         width=440,  # as wide as it stands on the page, so that its texts have their size
     )
 

@@ -247,7 +247,7 @@ def _planting(findings: Findings) -> Iterator[PictureEntry]:
 
 def _forces(findings: Findings) -> Iterator[PictureEntry]:
     analysis = findings.analysis
-    if analysis.solved is None:
+    if not analysis.has_forces:
         return
     from equipoise.figures import forces
 
@@ -297,7 +297,7 @@ def _forces(findings: Findings) -> Iterator[PictureEntry]:
 
 
 def _joints(findings: Findings) -> Iterator[PictureEntry]:
-    if findings.analysis.solved is None or not findings.analysis.forces.joints:
+    if not findings.analysis.has_forces or not findings.analysis.forces.joints:
         return
     from equipoise.figures.analysis import joint_polars, joints
     from equipoise.figures.couplings import curves

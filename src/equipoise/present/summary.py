@@ -48,7 +48,7 @@ def answers(findings: Findings, stated: str = "") -> Iterator[SummaryAnswer]:
 
     stated : output of the figure that is stated above it, as the verdict.
     """
-    if findings.analysis.solved is None:
+    if not findings.analysis.has_forces:
         missing = say("Forces are not computed, because masses of links are missing.")
         yield SummaryAnswer(say("What shakes"), (missing,))
     else:
@@ -71,7 +71,7 @@ def tiles(findings: Findings) -> Iterator[Tile]:
     """The figures that are seen at once, before and after the change that helps most."""
     analysis, later = findings.analysis, findings.after
     yield _pace(findings)
-    if analysis.solved is None:
+    if not analysis.has_forces:
         return
     size = Shaking.of(findings).size
     after = None if later is None else Shaking.of(later).size.peak

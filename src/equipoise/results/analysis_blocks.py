@@ -52,7 +52,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     yield from motion_blocks(analysis)
     yield from kind_tables(analysis, "motion")
     yield from elements_tables(analysis)
-    if analysis.solved is None:
+    if not analysis.has_forces:
         yield from question_blocks(analysis)
         return
     yield from force_blocks(analysis)
@@ -65,7 +65,7 @@ def question_blocks(analysis: Analysis) -> Iterator[Block]:
     """What may not be meant as the file gives it; without masses also what else stands beside
     tables of forces, which there are none of.
     """
-    place: Place | None = "end" if analysis.solved is not None else None
+    place: Place | None = "end" if analysis.has_forces else None
     if questions := (*remarks_of(analysis, place),):
         yield Notes(questions)
 

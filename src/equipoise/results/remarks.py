@@ -30,7 +30,7 @@ class AnalyzedMachine(Protocol):
     @property
     def motion(self) -> Motion: ...
     @property
-    def solved(self) -> Forces | None: ...
+    def has_forces(self) -> bool: ...
     @property
     def forces(self) -> Forces: ...
     @property
@@ -84,7 +84,7 @@ KINDS = (
 def remarks_of(analysis: AnalyzedMachine, place: Place | None = None) -> Iterator[Note | str]:
     """What may not be meant, and where the machine fails; of one place alone if that is given."""
     for kind in KINDS:
-        if place in (None, kind.place) and not (kind.of_forces and analysis.solved is None):
+        if place in (None, kind.place) and (analysis.has_forces or not kind.of_forces):
             yield from kind.of_linkage(analysis.motion.linkage)
             yield from kind.of(analysis)
 

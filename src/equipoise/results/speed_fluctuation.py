@@ -31,8 +31,7 @@ def speed_fluctuation(analysis: Analysis) -> float | None:
     theta, torque = motion.crank_angle, analysis.outputs[name].values
     rows = [move(machine, theta + row.phase) for row in machine.rows or (Row(),)]
     inertia = sum((reduced_inertia(row)[0] for row in rows), np.zeros(len(theta)))
-    motor = machine.drive.motor
-    inertia = inertia + machine.drive.flywheel + (motor.ratio**2 * motor.inertia if motor else 0.0)
+    inertia = inertia + machine.drive.shaft_inertia
     # what the drive gives beyond its mean at a constant speed, the turning masses give instead
     gaps = np.diff(theta, append=theta[0] + 2 * pi * motion.turns)
     excess = float(np.sum(gaps * (torque + np.roll(torque, -1)) / 2)) / (2 * pi * motion.turns)

@@ -731,10 +731,8 @@ def _of_gauge(machine: Machine, name: str, reading: GaugeReading) -> Iterator[Fi
             output, name, is_limit=True,
         )  # fmt: skip
     assert machine.support is not None
-    measures_hands = any(gauge.exposure is not None for gauge in machine.support.gauges.values())
-    if (
-        known or measures_hands or unbalances(machine)
-    ):  # a rotor's vibration may be what the machine is for
+    on_hands = any(gauge.exposure is not None for gauge in machine.support.gauges.values())
+    if known or on_hands or unbalances(machine):  # a rotor may be meant to shake the machine
         return
     rate: Dimension = "angular speed" if reading.rotation else "speed"
     most = VIBRATION / (_reach_of_support(machine) if reading.rotation else 1.0)

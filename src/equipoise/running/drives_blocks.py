@@ -64,7 +64,7 @@ def run_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
 
     alone : whether nothing follows, as on a terminal.
     """
-    broken = run.end.kind in ("stall", "dead", "lever", "swings") or run.driven_back is not None
+    broken = run.end.kind in ("stall", "dead", "lever") or run.driven_back is not None
     yield Text(verdict(run), broken_if(broken))
     if run.machine.has_crank and run.machine.drive.motor is None:
         yield Text(say(NO_MOTOR))

@@ -168,7 +168,7 @@ class DrivesEquation:
     def rotors(self) -> tuple[float, ...]:
         """Moment of inertia of each drive's motor, as its link feels it, kg m2."""
         motors = (drive.motor for drive in self.drives)
-        return tuple(0.0 if motor is None else motor.ratio**2 * motor.inertia for motor in motors)
+        return tuple(0.0 if motor is None else motor.reflected_inertia for motor in motors)
 
     def support_motion(self, coordinates: Array, rates: Array) -> SupportMotion | None:
         """How the support moves, by coordinates (C, K) and their rates; None on a fixed frame."""

@@ -98,13 +98,6 @@ class CrankEquation:
         """Friction in joints, where they have some."""
         return Friction(self.machine) if self.machine.rubs else None
 
-    @property
-    def shaft_inertia(self) -> float:
-        """Moment of inertia of flywheel and rotor as the crank feels it, kg m2."""
-        drive = self.machine.drive
-        motor = drive.motor
-        return drive.flywheel + (0.0 if motor is None else motor.ratio**2 * motor.inertia)
-
     def motions(self, theta: Array) -> list[Motion]:
         """Motion of each row at crank angles (N,), at a crank speed of 1 rad/s."""
         rows = self.machine.rows or (Row(),)
@@ -113,7 +106,7 @@ class CrankEquation:
     def inertia(self, theta: Array) -> tuple[Array, Array]:
         """J and J' (N,), kg m2, at crank angles (N,), from the linkage itself."""
         inertia, slope = np.sum([reduced_inertia(motion) for motion in self.motions(theta)], axis=0)
-        return inertia + self.shaft_inertia, slope
+        return inertia + self.machine.drive.shaft_inertia, slope
 
     def energy(self, theta: Array, speed: Array) -> Array:
         """Kinetic energy (N,), J, from the linkage itself."""
@@ -152,7 +145,8 @@ class CrankEquation:
 
         def functions(theta: Array) -> Array:
             motions = self.motions(theta)
-            inertia = sum(reduced_inertia(motion)[0] for motion in motions) + self.shaft_inertia
+            links = sum(reduced_inertia(motion)[0] for motion in motions)
+            inertia = links + self.machine.drive.shaft_inertia
             columns = [inertia, *(c for source in self.sources for c in source.columns(motions))]
             return np.array([np.broadcast_to(column, theta.shape) for column in columns])
 

@@ -367,7 +367,7 @@ def size_flywheel(
     wanted = share_of_mean(wanted)
     machine = replace(machine, timed_loads=())  # which are over in a steady state
     equation = CrankEquation(machine)
-    work, own = work_at_constant_speed(equation), equation.shaft_inertia
+    work, own = work_at_constant_speed(equation), equation.machine.drive.shaft_inertia
     needed = work / (wanted * machine.drive.speed**2)
 
     if machine.drive.motor is not None:

@@ -402,7 +402,7 @@ def analyzed(
     from equipoise.results.outputs import named_figures
 
     analysis = analyze(machine, angles)
-    split = analysis.solved is not None and (wanted is None or not SPLIT.isdisjoint(wanted))
+    split = analysis.has_forces and (wanted is None or not SPLIT.isdisjoint(wanted))
     outputs = analysis.outputs
     names = [
         output.name
@@ -414,7 +414,7 @@ def analyzed(
         further = [name for name in names if outputs[name].declared.unbounded]
     figures = wanted is None or not {"strokes", *named_figures(type(machine))}.isdisjoint(wanted)
     values = analysis.to_dict(split, further, figures, None if ways is None else names)
-    ordered = analysis.solved is not None and angles >= LEAST_ANGLES
+    ordered = analysis.has_forces and angles >= LEAST_ANGLES
     if ordered and (wanted is None or "by_order" in wanted):
         values["by_order"] = order_values(analysis, MOST_ORDERS, 0.0)
     if angles > LARGE or angles * values.get("turns", 1) > MANY:

@@ -186,7 +186,7 @@ def spectra_of(analysis: Analysis, last: Mapping[str, Array] | None = None) -> M
 
     last : of a machine that differs by little; returned unless names or orders are others.
     """
-    if analysis.solved is None:
+    if not analysis.has_forces:
         return {}
     turns = analysis.motion.turns
     ordered = [item for item in analysis.outputs.ordered if item.declared.compared]
@@ -226,7 +226,7 @@ def _sizes(signal: Periodic) -> Array:
 
 
 def _orders(analysis: Analysis) -> list[float]:
-    if analysis.solved is None:
+    if not analysis.has_forces:
         return []
     turns = analysis.motion.turns
     return [number / turns for number in range(_places(turns) + 1)]

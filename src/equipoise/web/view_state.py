@@ -56,7 +56,7 @@ def _arrows_at(analysis: Analysis, point: str) -> Iterator[tuple[Values, Array]]
         for kind, (dimension, values) in moved.items():
             label = analysis.outputs[f"points.{point}.{kind}"].label()
             yield _quantity(kind, f"arrow.{kind}", label, dimension), values
-    joints = {} if analysis.solved is None else analysis.solved.joints
+    joints = analysis.forces.joints if analysis.has_forces else {}
     for name in _joints_at(analysis, point, joints):
         joint = joints[name]
         label = analysis.outputs[f"joints.{name}"].label()

@@ -178,6 +178,11 @@ class Drive(Pushing, Frozen):
         return "drive_force" if self.pushes else "drive_torque"
 
     @property
+    def shaft_inertia(self) -> float:
+        """Moment of inertia of flywheel and rotor as the crank feels it, kg m^2."""
+        return self.flywheel + (0.0 if self.motor is None else self.motor.reflected_inertia)
+
+    @property
     def range(self) -> tuple[float, float] | None:
         """The slowest and the fastest speed, rad/s, with the sign of `speed`; None if not given."""
         if not self.speeds:

@@ -426,6 +426,11 @@ class Motor(Frozen):
     )
 
     @property
+    def reflected_inertia(self) -> float:
+        """Moment of inertia of its rotor as the driven link feels it, kg m^2."""
+        return self.ratio**2 * self.inertia
+
+    @property
     def rows(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Speeds, rad/s, and torques, N m, between which and beyond its curve is straight; of one
         that has no `smooth_curve`.
