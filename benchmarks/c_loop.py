@@ -16,9 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from equipoise.codegen.emission import C, Lines, boundary
 from equipoise.codegen.figures import KINDS
-from equipoise.codegen.source import TermSource
+from equipoise.codegen.source import C, Lines, TermSource, boundary
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN
 
 ALWAYS = ["-O3", "-march=native", "-ffast-math", "-shared", "-fPIC"]

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import equipoise as eq
-from equipoise.codegen.javascript import javascript
+from equipoise.codegen.other_languages import javascript
 from equipoise.mechanism.assembly.linkage import assemble
 
 MACHINES = ("yamashita-1", "watt-six-bar", "slider-crank-engine", "quick-return",

@@ -16,7 +16,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.codegen.emit import can_emit, pose_signals
-from equipoise.codegen.javascript import MOST_LINES, Script, javascript
+from equipoise.codegen.other_languages import MOST_LINES, Script, javascript
 from equipoise.codegen.trace import FAR
 from equipoise.mechanism.assembly.linkage import assemble
 from support.batches import signals_of

@@ -12,7 +12,7 @@ import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.emit import can_emit
 from equipoise.codegen.figures import Figure
-from equipoise.codegen.javascript import javascript
+from equipoise.codegen.other_languages import javascript
 from equipoise.mechanism import Machine
 from equipoise.mechanism.assembly.linkage import assemble
 from secondroute.test_javascript import ANGLES, node, run, size

@@ -16,7 +16,7 @@ import pytest
 import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
-from equipoise.codegen.javascript import javascript
+from equipoise.codegen.other_languages import javascript
 from equipoise.errors import ModelError, UsageError
 from equipoise.exchange.formats import FORMATS
 from equipoise.keys import KeyTable, Tables, declared, key

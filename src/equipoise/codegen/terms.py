@@ -1,6 +1,6 @@
 """The expression graph: real numbers that record what is done to them.
 
-Formulas run on terms as they run on numbers, and leave a graph behind, which `codegen.emission`
+Formulas run on terms as they run on numbers, and leave a graph behind, which `codegen.source`
 writes out in several languages.  A term exists once (common subexpressions), operations on plain
 numbers are carried out at once, and sums with 0 and products with 0 and 1 fall away.  Each term
 knows whether it depends on the crank angle, on the design, on both or on neither: this decides

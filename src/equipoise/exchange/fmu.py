@@ -1,8 +1,8 @@
 """An FMU for co-simulation by FMI 2.0: the crank turns at a speed, forces and motion come out.
 
-Its C is the linkage written out by `codegen.in_c`, and `fmu_model.c`, which FMI calls.  It is
-compiled where a C compiler is found; else the file has its sources alone, which FMPy and others
-compile.
+Its C is the linkage written out by `codegen.other_languages`, and `fmu_model.c`, which FMI calls.
+It is compiled where a C compiler is found; else the file has its sources alone, which FMPy and
+others compile.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from xml.etree import ElementTree as ET
 
 from equipoise.codegen.emit import emit, signals_in_loops
 from equipoise.codegen.figures import Gathered
-from equipoise.codegen.in_c import in_c
+from equipoise.codegen.other_languages import in_c
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import constant_loads
 from equipoise.i18n import Note

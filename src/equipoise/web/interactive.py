@@ -1,7 +1,7 @@
 """An interactive page in one file: the machine, its script, and all that a browser needs of them.
 
-The script is that of `codegen.javascript`: signals from the numbers of the model.  What the page
-calls things, and in which units it shows them, is what the product does.
+The script is that of `codegen.other_languages`: signals from the numbers of the model.  What the
+page calls things, and in which units it shows them, is what the product does.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.emit import moves_shared, pose_signals, signals_in_loops
-from equipoise.codegen.javascript import Script, javascript
 from equipoise.codegen.kernel_script import extremes_script
+from equipoise.codegen.other_languages import Script, javascript
 from equipoise.codegen.steps import SURFACE
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError

@@ -20,11 +20,10 @@ import equipoise as eq
 from equipoise.codegen import backends
 from equipoise.codegen.backends import NOTICE, engine, run_loop
 from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
-from equipoise.codegen.emission import without_calls
 from equipoise.codegen.emit import emit
 from equipoise.codegen.extremes import GridTops
 from equipoise.codegen.figures import Gathered
-from equipoise.codegen.source import TermSource, on_arrays, pick_from
+from equipoise.codegen.source import TermSource, on_arrays, pick_from, without_calls
 from equipoise.codegen.terms import BOTH, Graph, VectorTerm, angle_of, reached, rotation
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine

@@ -13,8 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from equipoise.codegen import terms
-from equipoise.codegen.emission import PYTHON, Lines, boundary
-from equipoise.codegen.source import on_arrays
+from equipoise.codegen.source import PYTHON, Lines, boundary, on_arrays
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Graph, Term, VectorTerm
 
 NAMES = ("a", "b", "c")

@@ -14,7 +14,7 @@ import pytest
 import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
-from equipoise.codegen.javascript import javascript
+from equipoise.codegen.other_languages import javascript
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism import Belt, Link, Machine
 from equipoise.mechanism.assembly.linkage import assemble

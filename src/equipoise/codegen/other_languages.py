@@ -1,20 +1,22 @@
-"""The steps of a linkage in JavaScript: signals of one design over crank angles.
+"""The steps of a linkage in other languages, for programs without Python: JavaScript and C.
 
-Engines stop optimising functions beyond some size, so that the lines stand in several, each of
-which goes over all crank angles; what one hands to another lies in arrays.
+A script gives signals of one design over crank angles, with numbers that it is handed; ``state`` in
+C fills in signals of one linkage at a crank angle.
+
+JavaScript's engines stop optimising functions beyond some size, so that the lines stand in several,
+each of which goes over all crank angles; what one hands to another lies in arrays.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.emission import JAVASCRIPT, Lines, boundary
 from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import Gathered
-from equipoise.codegen.source import TermSource
+from equipoise.codegen.source import JAVASCRIPT, C, Lines, TermSource, boundary
 from equipoise.codegen.terms import (
     ANGLE,
     BOTH,
@@ -25,7 +27,7 @@ from equipoise.codegen.terms import (
     reached,
     substituted,
 )
-from equipoise.codegen.trace import Array
+from equipoise.codegen.trace import AngleFunction, Array
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
@@ -237,3 +239,67 @@ class _Writer:
             "    }",
             "}",
         ]
+
+
+# -- C ---------------------------------------------------------------------------------------------
+
+HEAD = """\
+#include <math.h>
+#include <stddef.h>
+
+static double pick(const double *table, size_t count, double place)
+{
+    const double last = (double)(count - 1);
+    return table[(size_t)fmin(fmax(place, 0.0), last)];
+}
+"""
+GIVEN = ("speed", "acceleration")
+"""Numbers of the drive that are handed to the function."""
+
+
+def in_c(source: TermSource, linkage: Linkage, names: Sequence[str]) -> str:
+    """C of ``state(theta, speed, acceleration, out)``, which fills in the signals of these names.
+
+    Raises
+    ------
+    UsageError : a load changes over the crank angle.
+    """
+    values = [source.values[name] for name in names]
+    outputs = substituted(values, dict(_known(source, linkage, values)))
+    lines = Lines(outputs, C)
+    body = [*lines.write((ANGLE, DESIGN, BOTH), outputs)]
+    body += [f"out[{k}] = {lines.text(output)};" for k, output in enumerate(outputs)]
+    arguments = ["double theta", *(f"double {item}" for item in GIVEN), "double *out"]
+    head = f"static void state({', '.join(arguments)})"
+    return "\n".join([HEAD, *lines.tables, head, "{", *(f"    {item}" for item in body), "}", ""])
+
+
+def _known(source: TermSource, linkage: Linkage, values: list[Any]) -> Iterator[tuple[Term, Any]]:
+    """Arguments, with the numbers and functions of the crank angle that take their place."""
+    arguments = {item.args[0]: item for item in reached(values) if item.op == "argument"}
+    for slot in source.slots:
+        value = slot.read(linkage)
+        for column, part in enumerate((value.real, value.imag)[: 1 + slot.vector], slot.column):
+            term = arguments.get(f"d{column}")
+            if term is not None and slot.name in GIVEN:
+                yield term, term.graph.argument(slot.name, DESIGN)
+            elif term is not None:
+                yield term, float(part)
+    for row in source.rows:
+        if row.name in arguments:
+            yield arguments[row.name], _of_angle(row)
+
+
+def _of_angle(row: AngleFunction) -> Any:
+    """What depends on the crank angle, or does not but might."""
+    if row.formula is not None:
+        return row.formula
+    first, *others = row.values(np.linspace(0.0, 6.0, 7)).tolist()
+    if others != [first] * len(others):
+        raise UsageError(
+            Note(
+                "{what} changes over the crank angle in a way that has no formula in C",
+                what=row.what,
+            )
+        )
+    return first
