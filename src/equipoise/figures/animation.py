@@ -31,10 +31,9 @@ from equipoise.i18n import Note, decimals, localized, say
 from equipoise.mechanism.parts.machine import unknown
 from equipoise.symbols.carrier import mount
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, in_turn, pixels
-from equipoise.symbols.pieces import pieces
+from equipoise.symbols.pieces import PieceTrack, pieces
 from equipoise.symbols.scene import Scene, clear_angle
 from equipoise.symbols.shapes import FOOT, Array, Shape, arrow
-from equipoise.symbols.tracks import PieceTrack
 
 
 @dataclass(frozen=True)

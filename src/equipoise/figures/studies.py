@@ -166,7 +166,7 @@ def _bars_of(
     return Panel(x, y, bars=bars, height=BAR * len(causes), **rest)
 
 
-# -- an objective over two numbers of a model -----------------------------------------------------
+# -- an objective over two numbers of a model ------------------------------------------------------
 
 HANDY = {"mass": "g", "inertia": "kg mm^2", "angular speed": "rpm", "stiffness": "N/mm"}
 """Units of numbers of a model beside the usual ones."""

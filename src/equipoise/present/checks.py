@@ -501,7 +501,7 @@ def _reading(item: Mount | Gauge) -> str:
     return say("along {way} at {place}", way=way, place=point_text(item.point))
 
 
-# -- tools ----------------------------------------------------------------------------------------
+# -- tools -----------------------------------------------------------------------------------------
 
 RATES: dict[str, Dimension] = {
     "inertia": "inertia",

@@ -10,7 +10,7 @@ from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Gauge, Mount, Support, unit_vector
-from equipoise.symbols.shapes import PIN, Array, Shape, circle, hatching, hull, sign
+from equipoise.symbols.shapes import PIN, PISTON, Array, Shape, circle, hatching, hull, sign
 
 MOUNT = 40.0, 7.0
 """Length of a spring or damper between support and ground, and half its width."""
@@ -23,12 +23,7 @@ RING = 22.0, 10.0
 HALF = 1j * MOUNT[1] / MOUNT[0]
 ALONG = np.concatenate([[0, 0.2], 0.2 + 0.6 * (np.arange(6) + 0.5) / 6, [0.8, 1]])
 SPRING = (ALONG + HALF * np.array([0, 0, *([1, -1] * 3), 0, 0]),)
-DAMPER = (
-    np.array([0, 0.35 + 0j]),
-    np.array([0.75 + HALF, 0.35 + HALF, 0.35 - HALF, 0.75 - HALF]),
-    np.array([0.6 + 0.8 * HALF, 0.6 - 0.8 * HALF]),
-    np.array([0.6, 1 + 0j]),
-)
+DAMPER = tuple(part.real + HALF * part.imag for part in PISTON)
 """Lines from 0 to 1, sides over the length: a zigzag; a piston in a cylinder open to the ground."""
 ASIDE = 1.3 * HALF
 """How far a spring and a damper of one mount are from its line."""

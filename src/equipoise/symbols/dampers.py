@@ -9,32 +9,24 @@ import numpy as np
 from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.symbols.part_signs import Surroundings
-from equipoise.symbols.shapes import Array, BodyMark, Shape, sign
+from equipoise.symbols.shapes import PISTON, BodyMark, Shape, sign
 
 HALF = 6.0
 """Half the width of the cylinder, units."""
-PARTS: tuple[Array, ...] = (
-    np.array([0, 0.35 + 0j]),
-    np.array([0.75 + 1j, 0.35 + 1j, 0.35 - 1j, 0.75 - 1j]),
-    np.array([0.6 + 0.8j, 0.6 - 0.8j]),
-    np.array([0.6, 1 + 0j]),
-)
-"""Lines: along over the length, aside over half the width; a piston in an open cylinder."""
 RADIUS, OPEN, VANE = 14.0, 0.35, (4.0, 11.0)
 """Radius of the housing of a torsion damper, its opening, rad, and both ends of its vane, units."""
 
 
 def damper_sign(damper: Damper, _: Surroundings) -> Iterator[BodyMark]:
     """A piston in a cylinder, from the link's point to the other."""
-    for part in PARTS:
+    for part in PISTON:
         shape = Shape("damper", part.real + 0j, 1j * HALF * part.imag)
         yield BodyMark(damper.link, damper.point, shape, to=damper.to)
 
 
 def torsion_damper_sign(damper: TorsionDamper, around: Surroundings) -> Iterator[BodyMark]:
     """A vane that turns with the link in an open housing."""
-    shared = around.joints.pins_between(damper.link, damper.on)
-    point = shared[0] if shared else next(iter(around.bodies[damper.link]))
+    point = around.pin_between(damper.link, damper.on)
     housing = RADIUS * np.exp(1j * np.linspace(OPEN, 2 * np.pi - OPEN, 48))
     yield BodyMark(damper.link, point, sign("vane", 0j, housing))
     yield BodyMark(damper.link, point, sign("vane", 0j, -np.array(VANE)))

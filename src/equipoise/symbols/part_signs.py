@@ -1,4 +1,6 @@
-"""Signs of parts that are drawn as marks, each by the function that its kind names."""
+"""Signs of parts that are drawn as marks, each by the function that its kind names; and those of
+loads in the line between two points.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +8,31 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from equipoise.dataclass import dataclass
+from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import PartKind, named_function
-from equipoise.symbols.shapes import BodyMark
+from equipoise.mechanism.parts.lines import AlongLine
+from equipoise.symbols.shapes import BodyMark, Shape
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine, Slider
 
+
 UPPERMOST = ("rider", "face")
 """Roles of shapes that no other sign covers."""
+LOAD_LEGEND = "pull", to_say("force between two points")
+LOAD_HEAD = np.array([14 + 5j, 22 + 0j, 14 - 5j])
+"""Corners of the arrow at each end of a load in a line, units; x along the line."""
+LOAD_SHAPES = (
+    Shape("pull", np.array([0j, 1 + 0j]), np.zeros(2, complex)),
+    Shape("pull-head", np.zeros(3, complex), LOAD_HEAD),
+    Shape("pull-head", np.ones(3, complex), -LOAD_HEAD),
+)
+"""A dashed line with an arrow at both ends; along over the length of the line."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +49,11 @@ class Surroundings:
     bodies: Bodies
     radii: Mapping[str, float]
     travel: Callable[[Slider], Any]
+
+    def pin_between(self, link: str, on: str) -> str:
+        """The pin that two bodies share; where a sketch has none, the first point of the link."""
+        shared = self.joints.pins_between(link, on)
+        return shared[0] if shared else next(iter(self.bodies[link]))
 
 
 @dataclass(frozen=True)
@@ -69,3 +90,12 @@ def signs_of(table: str, part: PartKind, around: Surroundings) -> list[BodyMark]
 def in_order(marks: Iterable[BodyMark]) -> tuple[BodyMark, ...]:
     """Marks, of which those come last that no other covers."""
     return tuple(sorted(marks, key=lambda mark: mark.shape.role in UPPERMOST))
+
+
+def load_line_marks(loads: Iterable[AlongLine]) -> Iterator[BodyMark]:
+    """The signs of those loads that act in a line between two points."""
+    for load in loads:
+        if load.toward is None or load.point is None:
+            continue
+        for shape in LOAD_SHAPES:
+            yield BodyMark(load.link, load.point, shape, legend=LOAD_LEGEND, to=load.toward)

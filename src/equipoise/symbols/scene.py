@@ -24,8 +24,7 @@ from equipoise.mechanism.parts.couplings import Coupling, Law
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Link
 from equipoise.symbols.carrier import MOUNT, Carrier, SupportSwing
 from equipoise.symbols.constraints import constraint_marks
-from equipoise.symbols.load_lines import load_line_marks
-from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
+from equipoise.symbols.part_signs import Surroundings, in_order, load_line_marks, signs_of
 from equipoise.symbols.shapes import Array, BodyMark, hull, off_outline
 
 if TYPE_CHECKING:

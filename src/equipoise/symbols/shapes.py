@@ -29,6 +29,13 @@ FOOT = 22.0
 """How far a pivot's sign reaches below it."""
 APART = 6.0
 """Between two strokes of hatching."""
+PISTON: tuple[Array, ...] = (
+    np.array([0, 0.35 + 0j]),
+    np.array([0.75 + 1j, 0.35 + 1j, 0.35 - 1j, 0.75 - 1j]),
+    np.array([0.6 + 0.8j, 0.6 - 0.8j]),
+    np.array([0.6, 1 + 0j]),
+)
+"""Lines of a piston in an open cylinder: along over its length, aside over half its width."""
 KEPT = 128
 """Signs of a kind that are kept: while one point is dragged, most others stay where they are."""
 

@@ -18,8 +18,7 @@ END = 6.0
 
 def torsion_sign(spring: TorsionSpring, around: Surroundings) -> Iterator[BodyMark]:
     """A spiral that turns with the link."""
-    shared = around.joints.pins_between(spring.link, spring.on)
-    point = shared[0] if shared else next(iter(around.bodies[spring.link]))
+    point = around.pin_between(spring.link, spring.on)
     yield BodyMark(spring.link, point, sign("spiral", 0j, spiral()))
 
 

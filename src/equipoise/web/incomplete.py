@@ -18,8 +18,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
 from equipoise.symbols.constraints import constraint_marks
-from equipoise.symbols.load_lines import load_line_marks
-from equipoise.symbols.part_signs import Surroundings, in_order, signs_of
+from equipoise.symbols.part_signs import Surroundings, in_order, load_line_marks, signs_of
 from equipoise.symbols.scene import DriveSign, GuideSign, Scene, Wheel, bodies_of, wheels_of
 from equipoise.symbols.shapes import BodyMark
 from equipoise.web.block import FloatBlock, Values

@@ -281,7 +281,7 @@ def test_what_balance_makes_small_is_what_analyze_says(name: str) -> None:
         assert told["prices"][limit.name]["used"] == pytest.approx(used, rel=1e-9)
 
 
-# -- one sampling, one sign, one unit, all rows ---------------------------------------------------
+# -- one sampling, one sign, one unit, all rows ----------------------------------------------------
 
 
 def test_every_surface_takes_the_same_crank_angles() -> None:
