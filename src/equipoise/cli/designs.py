@@ -47,7 +47,7 @@ def best(
     most
         Largest number of designs to list.
     """
-    from equipoise.figures.designs import best_charts
+    from equipoise.figures.studies import best_charts
     from equipoise.schema.study_units import machine_of, owner_of, study_of, units_in
     from equipoise.studies import selection as of_stores
     from equipoise.studies.blocks import columns_of
@@ -102,7 +102,7 @@ def search(
         Seed of the random numbers.  Default: that of the study.  The same seed gives the same
         designs.
     """
-    from equipoise.figures.designs import searched_charts
+    from equipoise.figures.studies import searched_charts
     from equipoise.schema.study_units import units_of
     from equipoise.studies.blocks import columns_of
     from equipoise.studies.searching import search, search_size

@@ -202,7 +202,7 @@ class Asked:
 
     def pictures(self, names: Sequence[str]) -> Mapping[str, Picture]:
         """Pictures of answers; free vibration stands in those of others, too."""
-        from equipoise.figures import tool_designs, tool_shaft, tool_side
+        from equipoise.figures import tool_charts, tool_side
         from equipoise.handheld.modes import determinant_chart
 
         pictures_by_name: dict[str, Picture] = {}
@@ -210,15 +210,15 @@ class Asked:
             highest = float(self.modes.planes[0].parameter[-1])
             pictures_by_name |= tool_side.mode_pictures(self.modes)
             chart = determinant_chart(self.tool, 1.1 * highest)
-            pictures_by_name |= tool_designs.determinant_charts(chart, self.modes)
+            pictures_by_name |= tool_charts.determinant_charts(chart, self.modes)
         if "respond" in names and self.respond.transmissions is not None:
-            pictures_by_name |= tool_shaft.transmission_charts(
+            pictures_by_name |= tool_charts.transmission_charts(
                 self.respond.transmissions, self.modes
             )
         if "respond" in names and self.respond.response is not None:
-            pictures_by_name |= tool_shaft.response_charts(self.respond.response)
+            pictures_by_name |= tool_charts.response_charts(self.respond.response)
         if "exposure" in names:
-            pictures_by_name |= tool_shaft.exposure_charts(self.exposure)
+            pictures_by_name |= tool_charts.exposure_charts(self.exposure)
         return pictures_by_name
 
 

@@ -122,7 +122,7 @@ def _outputs(result: Any, names: Sequence[str]) -> list[LazyPicture]:
     """Outputs over crank angle, in one picture."""
     from functools import partial
 
-    from equipoise.figures.points import outputs_chart
+    from equipoise.figures.motion import outputs_chart
     from equipoise.present.pictures import LazyPicture
 
     names = list(dict.fromkeys(names))

@@ -91,7 +91,7 @@ def animate(
     dark
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
-    from equipoise.figures.points import followed
+    from equipoise.figures.motion import followed
     from equipoise.figures.stage import ForceArrow, check_seconds, check_width
     from equipoise.results.analysis import analyze
     from equipoise.schema.files import write

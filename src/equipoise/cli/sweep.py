@@ -102,7 +102,7 @@ def _computed(work: Callable[..., Store], path: str, units: dict[str, Unit]) -> 
 
 def _charts(store: Store, units: dict[str, Unit]) -> Mapping[str, Picture]:
     """All designs, the best of them where the study has a word for that, and the model itself."""
-    from equipoise.figures.designs import best_charts
+    from equipoise.figures.studies import best_charts
     from equipoise.schema.study_units import owner_of
     from equipoise.studies.selection import best
 

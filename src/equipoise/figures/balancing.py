@@ -1,4 +1,4 @@
-"""The charts of balancing: aims before and after, rows and their phases, trade-offs."""
+"""The charts of balancing: signals and aims before and after, rows and their phases, trade-offs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 from math import lcm
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,34 +15,31 @@ from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.objectives import LinearizationPoint, measured, signals_of, unit_of
 from equipoise.balancing.problem import Problem
 from equipoise.dataclass import dataclass
-from equipoise.figures.analysis import about, rounding, settled
 from equipoise.figures.changes import grams
 from equipoise.figures.chart_parts import (
     GAUGES,
+    about,
     by_name,
+    closed,
+    compared,
     continued,
+    crank_axis,
     extent,
     groups,
     numbered_angles,
     numbers,
+    rounding,
+    settled,
     speed_text,
 )
 from equipoise.figures.forces import Read, last_order, order_panel
-from equipoise.figures.pairs import (
-    NOTHING,
-    WHEN,
-    Pair,
-    changed,
-    compare,
-    keys,
-    paired,
-    roles_of,
-)
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.declared import Declared
 from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.machine import Drive
 from equipoise.mechanism.parts.objectives import output_of
+from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import (
     Array,
@@ -56,12 +53,71 @@ from equipoise.results.charts import (
     four_digits,
 )
 from equipoise.results.outputs import MEASURES, objective_named, shown_in
-from equipoise.signals import Periodic
+from equipoise.signals import Periodic, figures
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
     from equipoise.mechanism.parts.machine import Drive, Machine
+
+
+Pair = Mapping[str, Array]
+"""``before`` and ``after``, or the latter alone."""
+
+WHEN = {"before": to_say("before"), "after": to_say("after"), "unchanged": to_say("unchanged")}
+NOTHING, VISIBLE = 1e-9, 4e-3
+"""Over the largest value before: what is left after is rounding; what differs can be seen."""
+
+
+def paired(before: Array, after: Array, least: float) -> Pair:
+    """Values (N,) before and after; zeros where they are no more than `least`, which is rounding.
+
+    After they are also zeros where they are rounding beside those before.
+    """
+    before = settled(before, least)
+    largest = float(np.max(np.abs(before), initial=0.0))
+    return {"before": before, "after": settled(after, max(least, NOTHING * largest))}
+
+
+def changed(pair: Pair) -> bool:
+    """Whether both differ by what can be seen."""
+    if "before" not in pair:
+        return True
+    largest = float(np.max(np.abs(pair["before"]), initial=0.0))
+    return bool(np.any(np.abs(pair["after"] - pair["before"]) > VISIBLE * largest))
+
+
+def roles_of(pair: Pair) -> dict[str, Array]:
+    """What is drawn of a pair by its role: of what is alike one muted line."""
+    return dict(pair) if changed(pair) else {"unchanged": pair["after"]}
+
+
+def keys(*pairs: Pair) -> tuple[tuple[str, str], ...]:
+    """What the lines of some pairs are, for a legend."""
+    roles = {role for pair in pairs for role in roles_of(pair)}
+    return tuple((role, say(name)) for role, name in WHEN.items() if role in roles)
+
+
+def compare(
+    drive: Drive,
+    angles: Array,
+    pair: Pair,
+    label: str,
+    dimension: Dimension | None,
+    **rest: Any,
+) -> Panel:
+    """A signal before and after over crank angles (N,), a whole cycle; extremes of both.
+
+    rest : as of `compared`.
+    """
+    period = float(angles[-1] + angles[1] - angles[0])
+    axis = crank_axis(short(drive.crank, 16), drive.speed, round(period / (2 * np.pi)))
+    curves = {
+        role: (*closed(angles, values, period), figures(angles, values, period))
+        for role, values in roles_of(pair).items()
+    }
+    return compared(axis, label, dimension, curves, **rest)
+
 
 AIM_SAMPLES, MOST_AIMS = 360, 4
 """Crank angles in a turn by which rounding is recognized; objectives at most in a chart."""

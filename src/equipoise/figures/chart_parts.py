@@ -1,11 +1,13 @@
-"""What charts over crank angle and over speed share: axes, extremes, hodographs, curves, words."""
+"""What charts over crank angle, over speed and of an analysis share: axes, extremes, hodographs,
+curves, words, rows.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import pi
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -23,8 +25,13 @@ from equipoise.results.charts import (
     Mark,
     Panel,
     four_digits,
+    quantity,
 )
 from equipoise.signals import Figures
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
+
 
 Item = TypeVar("Item")
 
@@ -356,3 +363,121 @@ def log_ends(
     high = float(np.max(finite, initial=0.0)) or 1.0
     low = max(float(np.min(finite, initial=high)), high * 1e-6)
     return low / below, high * above
+
+
+# -- of an analysis --------------------------------------------------------------------------------
+
+SINGLE, ALL = "one", "all"
+"""Roles of one row, and of all of them together."""
+NOTHING = 1e-11
+"""Over what each link needs: less is rounding."""
+
+
+def title(
+    analysis: Analysis,
+    what: str,
+    remark: str = "",
+    of_one: bool = False,
+    speed: float | None = None,
+) -> str:
+    """What is shown, at which speed, and a remark.
+
+    of_one : whether it is of one row where there are several.
+    speed : rad/s, where it is not that of the analysis, as in a state of the duty.
+    """
+    values = {"what": what, "speed": speed_text(analysis.motion.speed if speed is None else speed)}
+    if of_one and len(analysis.machine.rows) > 1:
+        text = say("{what} of one row, at {speed}", **values)
+    else:
+        text = say("{what}, at {speed}", **values)
+    return f"{text}; {remark}" if remark else text
+
+
+def about(analysis: Analysis) -> str:
+    """The point about which moments are taken, in words."""
+    pole = analysis.forces.about
+    for name, place in analysis.machine.frame.items():
+        if complex(*place) == pole:
+            return short(name)
+    return f"({quantity(pole.real, 'length')}, {quantity(pole.imag, 'length')})"
+
+
+def over(analysis: Analysis, values: Array) -> tuple[Array, Array]:
+    """Crank angles (rad) and values (N,), of a whole cycle with the first of them again.
+
+    Where signals jump, both sides of each jump stand one above the other.
+    """
+    motion = analysis.motion
+    theta, values = motion.shown(values)
+    if not motion.whole_cycle:
+        return theta, values
+    return closed(theta, values, 2 * np.pi * motion.turns)
+
+
+def with_figures(analysis: Analysis, values: Array) -> tuple[Array, Array, Figures]:
+    """Crank angles and values as of `over`, and the figures of a signal (N,)."""
+    return *over(analysis, values), analysis.motion.figures(values)
+
+
+def angle_axis(analysis: Analysis) -> Axis:
+    """The x axis: the whole cycle, or the crank angles there are."""
+    motion = analysis.motion
+    axis = crank_axis(short(motion.machine.drive.crank, 16), motion.speed, motion.turns)
+    if motion.whole_cycle:
+        return axis
+    low, high = (float(f(motion.crank_angle)) for f in (np.min, np.max))
+    return Axis(axis.label, DEGREES, "crank", low, high if high > low else low + 0.02)
+
+
+def settled(values: Array, least: float) -> Array:
+    """Values (N,), or zeros where none exceeds rounding, `least`; for complex values, component by
+    component.
+    """
+    if np.iscomplexobj(values):
+        return settled(values.real, least) + 1j * settled(values.imag, least)
+    return values if float(np.max(np.abs(values), initial=0.0)) > least else 0 * values
+
+
+def rounding(analysis: Analysis) -> tuple[float, float]:
+    """Force (N) and moment (N m) that are rounding beside what each link needs."""
+    forces = analysis.forces
+    demands = [
+        demand
+        for cause in (forces.inertia, forces.weights, forces.loads, forces.springs)
+        for demand in cause.values()
+    ]
+    force = max(float(np.max(np.abs(demand))) for demand, _ in demands)
+    moment = force * size_of(analysis)
+    moment += max(float(np.max(np.abs(demand))) for _, demand in demands)
+    return NOTHING * force, NOTHING * moment
+
+
+def size_of(analysis: Analysis) -> float:
+    """Diagonal of the box that holds every point all the time, m."""
+    every = np.concatenate([point.place for point in analysis.motion.points.values()])
+    return abs(complex(np.ptp(every.real), np.ptp(every.imag)))
+
+
+def each(analysis: Analysis, output: str) -> Mapping[str, Array]:
+    """Shaking force (complex), shaking moment or drive torque by role, (N,).
+
+    Of one row and, where there are several, of all together, each with its crank ahead by its
+    phase.  Zeros where nothing but rounding is left beside what each link needs.
+    """
+    force, moment = rounding(analysis)
+    own = getattr(analysis.forces, output)
+    if output == "shaking_force":
+        own, least = own.value, force
+    else:
+        least = force if output == "drive_force" else moment
+    if not analysis.rows_total:
+        return {ALL: settled(own, least)}
+    return {SINGLE: settled(own, least), ALL: settled(analysis.rows_total[output], least)}
+
+
+def row_keys(analysis: Analysis) -> tuple[tuple[str, str], ...]:
+    """What the two lines are, for a legend; nothing where there is one."""
+    if not analysis.rows_total:
+        return ()
+    count = len(analysis.machine.rows)
+    return (SINGLE, say("one row")), (ALL, say("{rows} rows together", rows=count))

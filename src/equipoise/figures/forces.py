@@ -1,43 +1,53 @@
-"""Charts of what a machine does to its frame and its drive: over crank angle, polar, by order."""
+"""Charts of forces: of a machine on its frame and of its drive, over crank angle, polar and by
+order; and in the joints.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.figures.analysis import (
+from equipoise.dataclass import dataclass
+from equipoise.figures.chart_parts import (
     ALL,
+    ROOM,
     SINGLE,
     about,
     angle_axis,
+    compared,
+    continued,
+    degrees_text,
     each,
+    extent,
+    extremes,
+    extremes_of,
+    groups,
+    numbered_angles,
+    numbers,
     over,
     rounding,
     row_keys,
     settled,
+    size_of,
     title,
     with_figures,
-)
-from equipoise.figures.chart_parts import (
-    ROOM,
-    compared,
-    degrees_text,
-    extent,
-    numbered_angles,
-    numbers,
     without_empty,
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
+from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
+from equipoise.mechanism.outputs.declared import body_named, joint_named
 from equipoise.quantities import Dimension
 from equipoise.results.analysis_blocks import display_of_totals
 from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
+from equipoise.results.joint_blocks import contact_named, display_of_joints
 from equipoise.results.outputs import CAUSES, output_named
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.dynamics.forces import Forces
     from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.results.analysis import Analysis
 
@@ -369,3 +379,116 @@ def _finest(read: Read, least: float) -> float:
         if np.any(sizes[np.mod(orders, 1) > 0] > least):
             return float(orders[1])
     return 1.0
+
+
+# -- joints ----------------------------------------------------------------------------------------
+
+LEAST_FORCE = 1e-10
+"""Over the largest force in a joint, and that at the length of the machine: less is rounding."""
+IN_LINE, MOST_SQUARES = 3, 9
+"""Squares side by side, and in one picture."""
+
+
+@dataclass(frozen=True, eq=False)
+class JointCurve:
+    """A force (complex) or a couple (real) in a joint, (N,), SI units, and its name in words."""
+
+    label: str
+    values: Array
+
+    @property
+    def couple(self) -> bool:
+        """Whether it is one."""
+        return not np.iscomplexobj(self.values)
+
+
+def joints_of(analysis: Analysis) -> dict[str, JointCurve]:
+    """Every joint, coupling and bearing; of a slider its couple too; rounding as zeros."""
+    joint_curves, forces = {}, analysis.forces
+    every = forces.solved.contacts
+    largest = max((float(np.max(joint.size)) for joint in every.values()), default=0.0)
+    force, moment = LEAST_FORCE * largest, LEAST_FORCE * largest * size_of(analysis)
+    for name, joint in every.items():
+        joint_curves[name] = JointCurve(named(forces, name, joint), settled(joint.value, force))
+        if isinstance(joint, SliderForce):
+            on = short(body_named(joint.on))
+            text = say("{name}: couple on {on}", name=short(joint_named(name)), on=on)
+            joint_curves[f"{name}.moment"] = JointCurve(text, settled(joint.moment, moment))
+    for name in analysis.machine.bearings:
+        value = forces.across.bearings[name].value
+        joint_curves[f"bearings.{name}"] = JointCurve(
+            say("bearing {name}", name=short(name)), value
+        )
+    return joint_curves
+
+
+def named(forces: Forces, name: str, joint: JointForce) -> str:
+    """Name of a joint, and which body acts on which; names made of these are not said twice."""
+    bodies = {"on": short(body_named(joint.on)), "by": short(body_named(joint.by))}
+    if name not in forces.joints:
+        what = contact_named(forces, name)
+        return say("{name}: {by} on {on}", name=what, **bodies)
+    if name in (f"{joint.by} on {joint.on}", f"{joint.on} on {joint.by}"):
+        return say("slider: {by} on {on}", **bodies)
+    return say("{name}: {by} on {on}", name=short(joint_named(name)), **bodies)
+
+
+def joints(analysis: Analysis) -> Iterator[Chart]:
+    """Size of the force in every joint over crank angle, ten in a picture."""
+    analysis = analysis.resolved
+    result = joints_of(analysis)
+    every = list(result)
+    for suffix, names in groups(every, columns=2):
+        what = title(analysis, say("Force in each joint") + continued(names, every), "", True)
+        panels, words = without_empty(
+            _over_angle(analysis, result[name], result.values()) for name in names
+        )
+        own = f"joints{suffix}"
+        yield Chart(own, analysis.machine.title, what, panels, columns=2, words=words)
+
+
+def _over_angle(analysis: Analysis, joint: JointCurve, every: Iterable[JointCurve]) -> Panel:
+    """One of several joints, whose forces have one unit."""
+    same_kind = np.concatenate([item.values for item in every if item.couple == joint.couple])
+    if joint.couple:
+        values, most = joint.values, 2
+        y = Axis.of(say("couple"), "torque", same_kind, room=ROOM)
+    else:
+        values, most = np.abs(joint.values), 1
+        unit = display_of_joints(analysis).unit
+        y = Axis.of(say("force"), "force", same_kind, unit, low=0.0, room=ROOM)
+    places = extremes_of(analysis.motion.figures(values))[:most]
+    return Panel(
+        angle_axis(analysis),
+        y,
+        (Curve(*over(analysis, values)),),
+        extremes(y, values, places, "main"),
+        title=joint.label,
+        message="" if np.any(values) else say("zero at every crank angle"),
+        height=74.0,
+    )
+
+
+def joint_polars(analysis: Analysis) -> Iterator[Chart]:
+    """The end of the arrow of every joint force, in the frame's axes, nine in a picture."""
+    by_name = {name: joint for name, joint in joints_of(analysis).items() if not joint.couple}
+    every, unit = list(by_name), display_of_joints(analysis).unit
+    in_line = 2 if len(every) == 4 else min(len(every), IN_LINE)
+    for suffix, names in groups(every, MOST_SQUARES, in_line):
+        axis = Axis.of("", "force", np.concatenate([by_name[name].values for name in names]), unit)
+        what = say("Force in each joint along x and y") + continued(names, every)
+        remark = say("in {unit}; numbers: crank angle, deg", unit=axis.unit_name)
+        text = title(analysis, what, remark, of_one=True)
+        panels = tuple(_square(analysis, by_name[name], axis) for name in names)
+        own = f"joint-polars{suffix}"
+        yield Chart(own, analysis.machine.title, text, panels, in_line, stacked=False)
+
+
+def _square(analysis: Analysis, joint: JointCurve, axis: Axis) -> Panel:
+    values = joint.values
+    marks: tuple[Mark, ...] = ()
+    if analysis.motion.whole_cycle:
+        size = extent(values, np.zeros(1))
+        marks = numbers(numbered_angles(analysis.crank_angle), values, "all", size)
+    curve = Curve.of(over(analysis, values)[1], "", "thin")
+    return Panel(axis, axis, (curve,), marks, title=joint.label, equal=True, rings=True)

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.figures.analysis import settled, title
-from equipoise.figures.chart_parts import ROOM, degrees_text
-from equipoise.figures.points import FORBIDDEN
+from equipoise.figures.chart_parts import ROOM, degrees_text, settled, title
+from equipoise.figures.motion import FORBIDDEN
 from equipoise.figures.style import KINDS, short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.link_stress import (

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.figures.points import moving
+from equipoise.figures.motion import moving
 from equipoise.figures.stage import beyond, beyond_text, row_legend, rows_named
 from equipoise.figures.style import short
 from equipoise.i18n import Note, say

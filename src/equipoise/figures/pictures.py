@@ -52,8 +52,9 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
 
     at : crank angles (rad) at which the linkage is drawn; where they are not given, a clear one.
     """
-    from equipoise.figures import couplings, forces, points
-    from equipoise.figures.analysis import joint_polars, joints
+    from equipoise.figures import forces
+    from equipoise.figures import motion as of_motion
+    from equipoise.figures.forces import joint_polars, joints
     from equipoise.figures.link_strength import link_charts
     from equipoise.figures.linkage import centrodes, linkage, rolling
     from equipoise.figures.side import side
@@ -63,14 +64,17 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
         pictures["side"] = side(analysis, at)
     if len(analysis.crank_angle) < 2:
         return pictures
-    if points.moving(analysis.motion):
-        pictures |= {"curves": points.curves(analysis), "hodograph": points.hodograph(analysis)}
+    if of_motion.moving(analysis.motion):
+        pictures |= {
+            "curves": of_motion.curves(analysis),
+            "hodograph": of_motion.hodograph(analysis),
+        }
     if links := rolling(analysis):
         pictures["centrodes"] = centrodes(analysis, links)
-    pictures |= {chart.name: chart for chart in couplings.ratios(analysis)}
+    pictures |= {chart.name: chart for chart in of_motion.coupling_ratios(analysis)}
     if not analysis.has_forces:
         return pictures
-    pictures |= {chart.name: chart for chart, _ in couplings.curves(analysis)}
+    pictures |= {chart.name: chart for chart, _ in of_motion.coupling_curves(analysis)}
     for chart in (forces.polar, forces.force, forces.moment):
         pictures[chart.__name__] = chart(analysis)
     pictures |= {chart.name: chart for chart in forces.torques(analysis)}
@@ -83,8 +87,7 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
 
 def planting_pictures(figures: PlantingFigures) -> Pictures:
     """``path``, and the charts of a planting machine."""
-    from equipoise.figures.path import path
-    from equipoise.figures.planting import charts
+    from equipoise.figures.planting import charts, path
 
     return {"path": path(figures), **charts(figures)}
 

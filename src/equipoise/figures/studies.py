@@ -1,37 +1,54 @@
-"""The charts of studies: scatter and what causes it, maps.
+"""The charts of studies: scatter and what causes it, maps, and designs: all of them, those chosen,
+and lines from axis to axis.
 
 Numbers and figures are drawn in the units that are given by name, as `schema.study_units` has them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from itertools import combinations
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from equipoise.dataclass import dataclass
 from equipoise.figures.chart_parts import by_name, continued, groups, speed_text
-from equipoise.figures.style import short
+from equipoise.figures.sheet import lines_of
+from equipoise.figures.style import SMALL, short
 from equipoise.i18n import Note, all_of, localized, say
 from equipoise.quantities import Dimension, Display, display, typeset
 from equipoise.results.charts import (
     Array,
     Axis,
     Bars,
+    Cells,
     Chart,
+    Curve,
     Line,
     Mark,
     Panel,
+    PlaceLabel,
+    Rule,
     Surface,
     four_digits,
 )
 from equipoise.results.outputs import objective_named
 from equipoise.studies.blocks import named_together, unit_in
+from equipoise.studies.selection import SOME, Blocks, Cloud, cloud_of
 
 if TYPE_CHECKING:
+    from equipoise.keys.requirement_kinds import Make
     from equipoise.studies.blocks import Unit
     from equipoise.studies.objective_map import Landscape
+    from equipoise.studies.searching import Searched
+    from equipoise.studies.selection import Best
+    from equipoise.studies.store import Store
+    from equipoise.studies.study import Output
     from equipoise.studies.tolerances import Cause, IntervalEstimate, Scatter, Tolerances
+
 
 Units = Mapping[str, "Unit"]
 NARROW = 0.05
@@ -257,3 +274,361 @@ def landscape(result: Landscape) -> Chart:
     ]
     what = "; ".join([say("{objective}, {unit}, at {speed}", **values), *others])
     return Chart("landscape", result.machine.title, what, (panel,))
+
+
+# -- designs ---------------------------------------------------------------------------------------
+
+Own = tuple[Array, Array]
+"""Values (d,) and figures (m,) of the model itself."""
+Pair = tuple[str, str]
+
+MARGIN = 0.05
+"""Free at each side, over what all designs reach."""
+
+
+@dataclass(frozen=True, eq=False)
+class CloudDesigns:
+    """Designs (K) that were chosen, among all.
+
+    by : what they were chosen by, and which way.  numbers : names of what varies.
+    outputs : with their limits.  units : display units of all of these.
+    table : (K, d + m) numbers and figures of the chosen ones, SI units; labels : what they are
+        called.
+    blocks, size : give all designs, of which there are so many at most.
+    own : the model itself, where it is known.
+    line : (F, M) what the whole front has of `by`.
+    aimed : whether one way of `by` is good.
+    """
+
+    title: str
+    by: Mapping[str, Make]
+    numbers: Sequence[str]
+    outputs: Sequence[Output]
+    units: Units
+    table: Array
+    labels: Sequence[str]
+    blocks: Blocks
+    size: int
+    own: Own | None = None
+    line: Array | None = None
+    aimed: bool = True
+
+    @property
+    def aim(self) -> str:
+        """What they were chosen by first."""
+        return next(iter(self.by))
+
+    @property
+    def names(self) -> list[str]:
+        """Of all columns."""
+        return [*self.numbers, *(output.name for output in self.outputs)]
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        """Of the chosen designs, (K,) by name."""
+        return dict(zip(self.names, self.table.T, strict=True))
+
+    @property
+    def model(self) -> dict[str, float]:
+        """Numbers and figures of the model itself by name; none where they are not known."""
+        return {} if self.own is None else dict(zip(self.names, np.hstack(self.own), strict=True))
+
+    @property
+    def pairs(self) -> list[Pair]:
+        """What is drawn against what: the first aim over each number, and aims over each other."""
+        over = [(name, self.aim) for name in self.numbers if name != self.aim]
+        return [*over, *combinations(self.by, 2)]
+
+    @cached_property
+    def cloud(self) -> Cloud:
+        """All designs."""
+        return cloud_of(self.blocks, self.numbers, self.outputs, self.pairs, self.size)
+
+    def limits(self, name: str) -> list[float]:
+        """Of an output, SI units, as far as designs reach them."""
+        ends = ((output.at_least, output.at_most) for output in self.outputs if output.name == name)
+        spread = self.cloud.spreads[name]
+        given = (end for pair in ends for end in pair if end is not None)
+        return [end for end in given if spread.low <= end <= spread.high]
+
+    def axis(self, name: str, way: bool = True) -> Axis:
+        """Axis of a number or figure; way : whether its label has an arrow to better values."""
+        unit = unit_in(self.units, name)
+        label = unit.called
+        if way and self.aimed and name in self.by:
+            good = say("large is good") if self.by[name] == "largest" else say("small is good")
+            label = f"{label} ({good})"
+        scale = "log" if self.cloud.spreads[name].log else "linear"
+        return Axis(label, unit_of(unit), scale, room=MARGIN)  # type: ignore[arg-type]
+
+
+def counted(designs: CloudDesigns) -> str:
+    """How many designs there are, and of which kinds."""
+    cloud = designs.cloud
+    counts = {"count": cloud.kept + cloud.beyond + cloud.failed}
+    texts = [say("{count} designs", **counts)]
+    if any(output.limited for output in designs.outputs):
+        texts.append(say("{count} keep every limit", count=cloud.kept))
+    if cloud.failed:
+        texts.append(say("{count} cannot be computed", count=cloud.failed))
+    if not cloud.each:
+        texts.append(say("the darker, the more"))
+    return say(", ").join(texts)
+
+
+def in_words(designs: CloudDesigns, names: Iterable[str]) -> list[str]:
+    """What numbers and figures are called."""
+    return [unit_in(designs.units, name).called for name in names]
+
+
+def keys_for(designs: CloudDesigns, pairs: Iterable[Pair] = ()) -> tuple[tuple[str, str], ...]:
+    """Entries of the legend: of points over these pairs, or without pairs of lines across axes."""
+    cloud, pairs = designs.cloud, [*pairs]
+    sign = "" if pairs else " line"
+    chosen = say("chosen designs") if cloud.kept else say("designs nearest to the limits")
+    keys = [(f"design{sign}", chosen)] if len(designs.table) else []
+    if not cloud.kept:
+        keys.append((f"beyond{sign}", say("all designs, none of which keeps every limit")))
+    elif cloud.beyond:
+        feasible, others = say("designs that keep every limit"), say("others")
+        keys += [(f"kept{sign}", feasible), (f"beyond{sign}", others)]
+    else:
+        keys.append((f"kept{sign}", say("all designs")))
+    if any(len(cloud.lost.get(first, ())) for first, _ in pairs):
+        keys.append(("failed", say("cannot be computed")))
+    if designs.model:
+        keys.append((f"own{sign}", say("the model itself")))
+    if any(designs.limits(name) for pair in pairs for name in pair):
+        keys.append(("bound", say("limit")))
+    return tuple(keys)
+
+
+RULES, TALL, WIDE = 8, 190.0, 470.0
+"""Axes side by side in one panel, and its height and width, points."""
+BEST = 10
+"""Chosen designs that are drawn as lines."""
+
+
+def parallel(designs: CloudDesigns) -> Iterator[Chart]:
+    """Numbers and figures as axes side by side, a line for each design."""
+    others = [name for name in designs.names if name != designs.aim]
+    some, chosen = len(designs.cloud.good), len(designs.table)
+    counteds = [counted(designs)]
+    if some > SOME or not designs.cloud.each:
+        counteds.append(say("lines of {count} designs", count=min(some, SOME)))
+    if chosen > BEST:
+        counteds.append(say("{count} of {all} chosen designs", count=BEST, all=chosen))
+    for suffix, names in groups(others, RULES - 1):
+        what = say("Designs from axis to axis") + continued(names, others)
+        keys = keys_for(designs)
+        panel = _rules(designs, [*names, designs.aim])
+        words = (say("; ").join(counteds),)
+        yield Chart(f"parallel{suffix}", designs.title, what, (panel,), keys=keys, words=words)
+
+
+def _rules(designs: CloudDesigns, names: Sequence[str]) -> Panel:
+    columns, cloud, model = designs.columns, designs.cloud, designs.model
+    axes = {}
+    for name in names:
+        axis, spread = designs.axis(name), cloud.spreads[name]
+        own = [model[name]] if name in model and not (spread.log and model[name] <= 0) else []
+        low, high = min([spread.low, *own]), max([spread.high, *own])
+        axes[name] = replace(axis, low=low, high=high if high > low else low + (abs(low) or 1.0))
+    flags = tuple(_flag(k, axis, len(names)) for k, axis in enumerate(axes.values()))
+    rules = tuple(Rule(float(k), replace(axis, label="")) for k, axis in enumerate(axes.values()))
+
+    def lines(table: Mapping[str, Array], role: str) -> Curve:
+        shares = np.array([_share(axes[name], table[name]) for name in names])
+        gap = np.full((1, shares.shape[1]), np.nan)
+        heights = np.vstack([shares, gap]).T.ravel()
+        return Curve(np.tile([*range(len(names)), np.nan], shares.shape[1]), heights, "", role)
+
+    some = picked(len(cloud.good), SOME)
+    kinds = (("beyond line", ~cloud.good[some]), ("kept line", cloud.good[some]))
+    curves = [
+        lines({name: cloud.some[name][some][mask] for name in names}, role)
+        for role, mask in kinds
+        if np.any(mask)
+    ]
+    best = picked(len(designs.table), BEST)
+    if len(best):
+        curves.append(lines({name: columns[name][best] for name in names}, "design line"))
+    if model:
+        curves.append(lines({name: np.array([model[name]]) for name in names}, "own line"))
+    x, y = Axis(low=-0.5, high=len(names) - 0.5), Axis(low=0.0, high=1.0)
+    return Panel(
+        x, y, tuple(curves), flags=flags, rules=rules, bare=True,
+        grid=False, height=TALL, zero=False,
+    )  # fmt: skip
+
+
+def picked(count: int, most: int) -> Array:
+    """Which of some designs are drawn as lines: at most so many, evenly spread over them."""
+    return np.linspace(0, count - 1, min(count, most)).round().astype(int)
+
+
+def _share(axis: Axis, values: Array | float) -> Array:
+    """How far along an axis values lie."""
+    assert axis.low is not None and axis.high is not None
+    of: Callable[[Array], Array] = np.log if axis.scale == "log" else np.asarray
+    low, high, at = (of(np.asarray(item, float)) for item in (axis.low, axis.high, values))
+    return np.asarray((at - low) / (high - low))
+
+
+def _flag(at: int, axis: Axis, count: int) -> PlaceLabel:
+    """Words above an axis, in lines as wide as there is room."""
+    lines = lines_of(axis.label, WIDE / count - 8, SMALL)
+    texts = [*lines, axis.unit_name] if axis.unit_name else lines
+    return PlaceLabel(float(at), tuple(texts))
+
+
+NAMED = 3
+"""Designs nearest to limits that are named."""
+BELOW = -0.06
+"""How far below all designs those stand that fail, over what they reach."""
+
+
+def best_charts(
+    best: Best,
+    title: str,
+    units: Units,
+    store: Store,
+    own: Own | None = None,
+    aimed: bool = True,
+) -> dict[str, Chart]:
+    """``front`` where there are several aims; ``designs``: the first aim over every number;
+    ``parallel``: designs as lines from axis to axis.
+
+    More than ten numbers go on in ``designs-2`` and so on, more than eight axes in ``parallel-2``.
+
+    store : with all designs.  own : the model itself.  aimed : whether the study or the reader
+    says which way is good; else no design is better than another, and none is chosen.
+    """
+    labels = [str(number) for number in best.designs.tolist()]
+    table = np.hstack([best.values, best.figures])[: None if aimed else 0]
+    given = (title, best.by, best.numbers, store.wishes, units, table, labels)
+    designs = CloudDesigns(*given, store.in_blocks, store.size, own, best.trade_off, aimed)
+    return charts_of(designs)
+
+
+def searched_charts(searched: Searched, units: Units, own: Own | None = None) -> dict[str, Chart]:
+    """Charts of a search, and ``search``: how it got better from generation to generation."""
+    study = searched.study
+    labels = [str(number) for number in range(len(searched.values))]
+    table = np.hstack([searched.values, searched.figures])
+    given = (study.title, searched.objectives, study.paths, study.outputs, units, table, labels)
+    front = searched.figures[:, [study.names.index(name) for name in searched.objectives]]
+    designs = CloudDesigns(
+        *given, lambda: [(0, searched.tried)], len(searched.tried.values), own, front
+    )
+    return {**charts_of(designs), "search": grown(searched, units)}
+
+
+def charts_of(designs: CloudDesigns) -> dict[str, Chart]:
+    """Every chart of them by its name."""
+    fronts = [front(designs)] if len(designs.by) > 1 else []
+    return by_name([*fronts, *over_numbers(designs), *parallel(designs)])
+
+
+def front(designs: CloudDesigns) -> Chart:
+    """Every two aims against each other."""
+    pairs = list(combinations(designs.by, 2))
+    alone = len(pairs) == 1
+    panels = tuple(_against(designs, pair, alone) for pair in pairs)
+    what = say("Trade-off of {aims}", aims=say(", ").join(in_words(designs, designs.by)))
+    parts = (counted(designs),)
+    return Chart(
+        "front",
+        designs.title,
+        what,
+        panels,
+        1 if alone else 2,
+        False,
+        keys_for(designs, pairs),
+        words=parts,
+    )
+
+
+def over_numbers(designs: CloudDesigns) -> Iterator[Chart]:
+    """The first aim over each number that varies."""
+    aim = designs.aim
+    every = [name for name in designs.numbers if name != aim]
+    for suffix, names in groups(every):
+        panels = tuple(_against(designs, (name, aim)) for name in names)
+        what = say("{aim} over each number that varies", aim=designs.axis(aim).text)
+        what += continued(names, every)
+        own, columns = f"designs{suffix}", min(2, len(panels))
+        keys = keys_for(designs, [(name, aim) for name in names])
+        parts = (counted(designs),)
+        yield Chart(own, designs.title, what, panels, columns, False, keys, words=parts)
+
+
+def _against(designs: CloudDesigns, pair: Pair, alone: bool = False) -> Panel:
+    """All designs, the chosen ones and the model itself over two columns."""
+    first, second = pair
+    x, y = (designs.axis(name, way=alone or name not in designs.numbers) for name in pair)
+    if first in designs.numbers:
+        y = replace(y, label=unit_in(designs.units, second).called)
+    columns, cloud = designs.columns, designs.cloud
+    curves = [Curve(columns[first], columns[second], "", "design")]
+    marks = []
+    if len(designs.by) == 2 and designs.line is not None and {*pair} == {*designs.by}:
+        line = designs.line[np.argsort(designs.line[:, 0], kind="stable")]
+        curves.append(Curve(line[:, 0], line[:, 1], "", "front"))
+    if designs.model:
+        at = (designs.model[first], designs.model[second])
+        marks.append(Mark(*at, say("model"), "own", optional=not alone))
+    for k in _labelled(designs, columns[first], alone):
+        text = say("design {name}", name=designs.labels[k])
+        at = (float(columns[first][k]), float(columns[second][k]))
+        marks.append(Mark(*at, text, "stress", 60.0, sign=False, optional=not alone))
+    cells, points = _all(cloud, pair)
+    lines = [Line(limit, "bound", "", "y") for limit in designs.limits(second)]
+    lines += [Line(limit, "bound") for limit in designs.limits(first)]
+    if first in cloud.lost and len(cloud.lost[first]):
+        below = np.full(len(cloud.lost[first]), cloud.spreads[second].at(BELOW))
+        points.append(Curve(cloud.lost[first], below, "", "failed"))
+    content = (*points, *curves)
+    height = 250.0 if alone else 118.0
+    return Panel(
+        x, y, content, tuple(marks), (), tuple(lines), cells=cells, height=height, zero=False
+    )
+
+
+def _labelled(designs: CloudDesigns, column: Array, alone: bool) -> Sequence[int]:
+    """Which of the chosen designs are named: the ends of a front, the nearest to broken limits."""
+    if not len(column):
+        return ()
+    if not designs.cloud.kept:
+        return range(min(NAMED, len(column)))
+    return sorted({int(np.argmin(column)), int(np.argmax(column))}) if alone else ()
+
+
+def _all(cloud: Cloud, pair: Pair) -> tuple[tuple[Cells, ...], list[Curve]]:
+    """All designs over two columns: shades and dots of many, points of few."""
+    first, second = pair
+    if cloud.each:
+        x, y = cloud.some[first], cloud.some[second]
+        kinds = (("beyond", ~cloud.good), ("kept", cloud.good))
+        return (), [Curve(x[mask], y[mask], "", role) for role, mask in kinds if np.any(mask)]
+    inside, outside = cloud.counts[pair]
+    edges = (cloud.spreads[first].edges, cloud.spreads[second].edges)
+    beyond = Cells(*edges, np.where(inside, 0, outside), "beyond", dots=True)
+    return (beyond, Cells(*edges, inside, "kept")), []
+
+
+# -- a search --------------------------------------------------------------------------------------
+
+
+def grown(searched: Searched, units: Units) -> Chart:
+    """How good the best designs were after each generation."""
+    counts = {"count": searched.computed, "generations": searched.generations}
+    what = say("{count} designs in {generations} generations", **counts)
+    last = len(searched.volumes)
+    x = Axis(say("generation"), low=1.0, high=float(max(2, last)))
+    y = Axis(say("share that the front dominates"), PERCENT)
+    if len(searched.objectives) == 1:
+        best = unit_in(units, *searched.objectives)
+        y = Axis(say("best {name}", name=short(best.called, 24)), unit_of(best))
+    curve = Curve(np.arange(1.0, last + 1), np.asarray(searched.volumes, float), steps=True)
+    return Chart("search", searched.study.title, what, (Panel(x, y, (curve,)),))

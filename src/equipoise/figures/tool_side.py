@@ -11,11 +11,12 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.figures.chart_parts import by_name
 from equipoise.figures.style import short
-from equipoise.figures.tool_designs import change_texts, design
-from equipoise.figures.tool_shaft import (
+from equipoise.figures.tool_charts import (
     LONGEST,
     POINTS,
     at_largest,
+    change_texts,
+    design,
     mode_charts,
     rpm_text,
     station_flags,

@@ -112,7 +112,7 @@ class ToolExposure(Result):
     """
 
     blocks_in = "handheld.hand_blocks.exposure_of_tool"
-    pictures_in = "figures.tool_shaft.exposure_charts"
+    pictures_in = "figures.tool_charts.exposure_charts"
     headline_in = "handheld.headline.exposure_headline"
 
     response: ToolResponse

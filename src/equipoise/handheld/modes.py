@@ -427,7 +427,7 @@ class Variation(Result):
     parameter: Array
 
     blocks_in = "handheld.hand_blocks.variation_blocks"
-    pictures_in = "figures.tool_designs.variation_charts"
+    pictures_in = "figures.tool_charts.variation_charts"
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values; natural frequencies in Hz."""

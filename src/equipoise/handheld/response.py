@@ -257,7 +257,7 @@ class ToolResponse(Result):
     field: HarmonicField
 
     blocks_in = "handheld.blocks.response_blocks"
-    pictures_in = "figures.tool_shaft.response_charts"
+    pictures_in = "figures.tool_charts.response_charts"
 
     @property
     def frequency(self) -> Array:

@@ -135,7 +135,7 @@ class Transmissions(Result):
     stations: Mapping[str, Transmission]
 
     blocks_in = "handheld.blocks.transmissions_blocks"
-    pictures_in = "figures.tool_shaft.transmission_charts"
+    pictures_in = "figures.tool_charts.transmission_charts"
     declared: ClassVar[Declarations] = {
         "source": ResultOutput("station of the unit force"),
         "speed": SPEED,

@@ -340,7 +340,7 @@ def parted(
 
 def _animation(findings: Findings) -> str:
     from equipoise.figures.animation import animated_svg
-    from equipoise.figures.points import followed
+    from equipoise.figures.motion import followed
     from equipoise.figures.stage import ForceArrow
     from equipoise.symbols.looks import in_turn
     from equipoise.symbols.scene import Scene, clear_angle

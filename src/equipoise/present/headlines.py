@@ -322,7 +322,7 @@ def ran(run: Run | DrivesRun | None) -> str:
 
 def kinematic(analysis: Analysis, name: str) -> str:
     """Of a chart of motion: the range of the transmission angles, or the largest velocity."""
-    from equipoise.figures.points import kinematics_named
+    from equipoise.figures.motion import kinematics_named
 
     every = [output for output in analysis.outputs if output.group == "transmission"]
     if every and name == kinematics_named("transmission"):

@@ -60,7 +60,7 @@ def unchanged(chart: Chart) -> Chart:
 
 def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
     """The tool itself, modes, transmission, what the hands get, and the design."""
-    from equipoise.figures import tool_designs, tool_shaft, tool_side
+    from equipoise.figures import tool_charts, tool_side
 
     modes, transmission = findings.modes, findings.transmission
     planes = ("", "-lateral")[: 1 if findings.tool.alike else 2]
@@ -72,25 +72,25 @@ def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
         yield PictureEntry("side-modes", caption, draw, detail=True)
         caption = to_say("Shapes of the natural vibrations of the shaft.")
         for plane, name in enumerate(planes):
-            shapes_chart = partial(tool_shaft.shapes, modes, plane)
+            shapes_chart = partial(tool_charts.shapes, modes, plane)
             value = partial(tool_summary.lowest, modes, plane)
             yield from pages(f"modes{name}", caption, shapes_chart, value, detail=True)
     if transmission is not None:
         caption = to_say("Share of a shaking force that comes to what holds the tool.")
         for plane, name in enumerate(planes):
-            draw = partial(tool_shaft.transmission, transmission, plane, modes)
+            draw = partial(tool_charts.transmission, transmission, plane, modes)
             value = partial(tool_summary.passed, transmission, plane)
             yield PictureEntry(f"transmission{name}", caption, draw, value, plane > 0)
     if findings.sweep is not None and findings.sweep.response is not None:
         caption = to_say("Bending moment and displacement along the shaft.")
-        draw = partial(tool_shaft.moment, findings.sweep.response, None)
+        draw = partial(tool_charts.moment, findings.sweep.response, None)
         yield PictureEntry("moment", caption, draw, detail=True)
     if findings.exposure is not None:
         caption = to_say("Acceleration of the hands against speed of the engine.")
         yield PictureEntry(
             "acceleration",
             caption,
-            partial(tool_shaft.acceleration, findings.exposure),
+            partial(tool_charts.acceleration, findings.exposure),
             partial(tool_summary.worst, findings),
             detail=True,
         )
@@ -98,7 +98,7 @@ def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
         yield PictureEntry(
             "exposure",
             caption,
-            partial(tool_shaft.weighted, findings.exposure),
+            partial(tool_charts.weighted, findings.exposure),
             partial(tool_summary.judged, findings),
         )
     if findings.design is not None:
@@ -108,7 +108,7 @@ def of_tool(findings: ToolFindings) -> Iterator[PictureEntry]:
         yield PictureEntry(
             "design",
             caption,
-            partial(tool_designs.design, findings.design),
+            partial(tool_charts.design, findings.design),
             partial(tool_summary.improved, findings),
         )
 
@@ -184,9 +184,8 @@ def _model(findings: Findings, at: Sequence[float] | None) -> Iterator[PictureEn
 
 
 def _motion(findings: Findings) -> Iterator[PictureEntry]:
-    from equipoise.figures.couplings import ratios
     from equipoise.figures.linkage import centrodes, rolling
-    from equipoise.figures.points import curves, hodograph, main_kinematics
+    from equipoise.figures.motion import coupling_ratios, curves, hodograph, main_kinematics
 
     analysis = findings.analysis
     caption = to_say("Paths of the points of the moving links, with marks at equal times.")
@@ -210,7 +209,7 @@ def _motion(findings: Findings) -> Iterator[PictureEntry]:
         value = partial(headlines.kinematic, analysis, chart.name)
         yield PictureEntry(chart.name, caption, partial(unchanged, chart), value, number > 0)
     caption = to_say("Speed ratio over crank angle.")
-    for chart in ratios(analysis) if len(analysis.crank_angle) > 1 else ():
+    for chart in coupling_ratios(analysis) if len(analysis.crank_angle) > 1 else ():
         yield PictureEntry(chart.name, caption, partial(unchanged, chart), detail=True)
 
 
@@ -218,8 +217,7 @@ def _planting(findings: Findings) -> Iterator[PictureEntry]:
     figures = findings.planting
     if figures is None:
         return
-    from equipoise.figures.path import path
-    from equipoise.figures.planting import joints, ratio, tips, torque
+    from equipoise.figures.planting import joints, path, ratio, tips, torque
 
     caption = to_say("Path of the planting finger relative to the machine and over the ground.")
     yield PictureEntry("path", caption, partial(path, figures), partial(headlines.planted, figures))
@@ -299,11 +297,11 @@ def _forces(findings: Findings) -> Iterator[PictureEntry]:
 def _joints(findings: Findings) -> Iterator[PictureEntry]:
     if not findings.analysis.has_forces or not findings.analysis.forces.joints:
         return
-    from equipoise.figures.analysis import joint_polars, joints
-    from equipoise.figures.couplings import curves
+    from equipoise.figures.forces import joint_polars, joints
     from equipoise.figures.link_strength import link_charts
+    from equipoise.figures.motion import coupling_curves
 
-    for chart, caption in curves(findings.analysis):
+    for chart, caption in coupling_curves(findings.analysis):
         yield PictureEntry(chart.name, caption, partial(unchanged, chart), detail=True)
     caption = to_say("Forces in the joints over crank angle.")
     yield from pages(

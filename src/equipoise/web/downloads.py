@@ -93,7 +93,7 @@ def _named(pictures: Mapping[str, Chart], name: str) -> Chart:
 
 def _over_crank(computed: Computed, output: str) -> Chart:
     """An output over the crank angle; of all rows together where it is only there."""
-    from equipoise.figures.analysis import ALL
+    from equipoise.figures.chart_parts import ALL
     from equipoise.figures.forces import over_crank
     from equipoise.mechanism.parts.objectives import ROWS
     from equipoise.results.scales import TOTALS
@@ -130,7 +130,7 @@ def linkage_at(computed: Computed, sample: int) -> Chart:
 def film_of(computed: Computed) -> bytes:
     """The whole cycle as a GIF, the support too where it moves."""
     from equipoise.figures.film import gif
-    from equipoise.figures.points import followed
+    from equipoise.figures.motion import followed
     from equipoise.figures.stage import in_a_turn, smooth
     from equipoise.figures.swing import moving
     from equipoise.results.analysis import analyze

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from equipoise.figures.points import traced
+from equipoise.figures.motion import traced
 from equipoise.i18n import localized, say, speaking, spoken
 from equipoise.mechanism.dynamics.forces import assumed_masses
 from equipoise.mechanism.outputs.declared import GROUPS, declared, guided, pinned

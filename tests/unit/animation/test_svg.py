@@ -14,7 +14,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.figures.animation import _sizes_where_narrow, animated_svg, laid_out
-from equipoise.figures.points import followed
+from equipoise.figures.motion import followed
 from equipoise.figures.stage import ForceArrow, width_of
 from equipoise.figures.swing import swinging
 from equipoise.i18n import speaking

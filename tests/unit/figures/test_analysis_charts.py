@@ -12,9 +12,9 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.errors import UsageError
-from equipoise.figures import analysis as of_joints
-from equipoise.figures import analysis as view
-from equipoise.figures import forces, planting, points
+from equipoise.figures import chart_parts as view
+from equipoise.figures import forces, planting
+from equipoise.figures import motion as of_motion
 from equipoise.figures.chart_parts import angle_step, continued, groups
 from equipoise.figures.linkage import cut_at
 from equipoise.figures.pictures import analysis_pictures, planting_pictures
@@ -205,7 +205,7 @@ def test_what_is_rounding_is_told_to_be_zero() -> None:
     force = view.each(only_along, "shaking_force")["all"]
     assert np.any(force.real) and not np.any(force.imag)
     check(forces.force(only_along))
-    couples = [one for one in of_joints.joints_of(eq.analyze(rotor(), 360)).values() if one.couple]
+    couples = [one for one in forces.joints_of(eq.analyze(rotor(), 360)).values() if one.couple]
     assert all(not np.any(one.values) for one in couples)
 
 
@@ -294,7 +294,7 @@ def test_a_picture_of_centrodes_has_them_and_the_whole_machine(name: str) -> Non
 @pytest.mark.parametrize("name", ["yamashita-1", "quick-return", "planetary-planting-arm"])
 def test_paths_and_hodographs_are_the_motion(name: str) -> None:
     motion = analysis_of(name).motion
-    (point,) = points.traced(motion)
+    (point,) = of_motion.traced(motion)
     assert has(places(charts_of(name)["curves"].panels[0]), motion.points[point].place)
     velocity, acceleration = (places(one)[0] for one in charts_of(name)["hodograph"].panels)
     np.testing.assert_allclose(velocity, motion.points[point].velocity, rtol=1e-12)
@@ -304,7 +304,7 @@ def test_paths_and_hodographs_are_the_motion(name: str) -> None:
 @pytest.mark.parametrize("name", ["sieve", "knife-drive", "cutter-bar", "watt-six-bar"])
 def test_dots_leave_paths_in_sight(name: str) -> None:
     """In half of a page, too; paths that are small beside the machine are enlarged."""
-    chart = points.curves(analysis_of(name))
+    chart = of_motion.curves(analysis_of(name))
     for laid, _ in Laid.in_report(chart).panels:
         for curve in laid.panel.curves:
             marks = [m for m in laid.panel.marks if m.sign and m.role == curve.role]
@@ -316,7 +316,7 @@ def test_dots_leave_paths_in_sight(name: str) -> None:
                 assert np.sum(lengths[away < 2.0]) < 0.7 * np.sum(lengths)  # 2 points of radius
     assert (len(chart.panels) == 2) == (name in ("sieve", "knife-drive"))
     if len(chart.panels) == 2:
-        path = analysis_of(name).motion.points[points.traced(analysis_of(name).motion)[0]].place
+        path = analysis_of(name).motion.points[of_motion.traced(analysis_of(name).motion)[0]].place
         (shown,) = places(chart.panels[1])
         np.testing.assert_allclose(np.diff(shown), np.diff(path), atol=1e-12)
         assert abs(np.max(shown.real) + np.min(shown.real)) < 1e-12
@@ -324,11 +324,11 @@ def test_dots_leave_paths_in_sight(name: str) -> None:
 
 def test_points_can_be_chosen() -> None:
     analysis = analysis_of("yamashita-1")
-    assert "path of B" in words(points.curves(analysis, ["B"]))
-    names = {curve.label for curve in points.hodograph(analysis, ["B", "C"]).panels[0].curves}
+    assert "path of B" in words(of_motion.curves(analysis, ["B"]))
+    names = {curve.label for curve in of_motion.hodograph(analysis, ["B", "C"]).panels[0].curves}
     assert names == {"B", "C"}
     with pytest.raises(KeyError):
-        points.curves(analysis, ["X"])
+        of_motion.curves(analysis, ["X"])
 
 
 def test_crank_angles_that_are_no_cycle() -> None:
@@ -458,19 +458,19 @@ def test_every_cause_looks_different_and_further_signals_like_the_first() -> Non
 def test_paths_that_coincide_are_drawn_once_with_all_their_names() -> None:
     """The walkers of a straw walker stand a quarter turn apart on the same throws."""
     analysis = eq.analyze(eq.load("straw-walker"), 360)
-    panel = points.curves(analysis).panels[0]
+    panel = of_motion.curves(analysis).panels[0]
     legend = [curve.label for curve in panel.curves if curve.label]
     assert legend == ["path of T1, T2, T3, T4"]
     assert len(panel.curves) == 3  # with those of the pins of both crankshafts
     assert {"F1, F2, F3, F4", "R1, R2, R3, R4"} <= {mark.text for mark in panel.marks}
-    apart = points.curves(eq.analyze(eq.load("yamashita-1"), 360)).panels[0]
+    apart = of_motion.curves(eq.analyze(eq.load("yamashita-1"), 360)).panels[0]
     assert all("," not in curve.label for curve in apart.curves)
 
 
 def test_hodographs_that_coincide_are_drawn_once_with_all_their_names() -> None:
     """No walker of the four is left out, and none covers another; both pistons are of one curve."""
     for name, legend in (("straw-walker", "T1, T2, T3, T4"), ("twin-engine", "C1, C2")):
-        for panel in points.hodograph(eq.analyze(eq.load(name), 360)).panels:
+        for panel in of_motion.hodograph(eq.analyze(eq.load(name), 360)).panels:
             assert [curve.label for curve in panel.curves] == [legend]
 
 
@@ -480,7 +480,7 @@ def test_what_swings_by_rounding_alone_is_a_level_line() -> None:
     """
     (chart,) = (
         one
-        for one in points.main_kinematics(analysis_of("quick-return"))
+        for one in of_motion.main_kinematics(analysis_of("quick-return"))
         if one.name == "kinematics-transmission"
     )
     block, link = chart.panels
@@ -513,7 +513,7 @@ def test_an_angle_that_runs_on_has_no_extremes_and_rounding_reads_0() -> None:
     """The second crank of a straw walker turns with the first one, and both are parallel twice."""
     names = ("straw-walker", "yamashita-1")
     analyses = [eq.analyze(eq.load(name)) for name in names]
-    charts, others = ({c.name: c for c in points.main_kinematics(one)} for one in analyses)
+    charts, others = ({c.name: c for c in of_motion.main_kinematics(one)} for one in analyses)
     turning, *_ = charts["kinematics-rear"].panels
     assert np.ptp(turning.curves[0].y) > 6 and turning.marks == ()
     (transmission,) = charts["kinematics-transmission"].panels

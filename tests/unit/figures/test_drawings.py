@@ -14,8 +14,8 @@ from equipoise.errors import UsageError
 from equipoise.figures.animation import laid_out
 from equipoise.figures.linkage import linkage
 from equipoise.figures.modes import SHOWN_SIZE, ModeShape, described
-from equipoise.figures.path import Paths, path
 from equipoise.figures.pictures import pictures_of
+from equipoise.figures.planting import Paths, path
 from equipoise.figures.stage import ForceArrow
 from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
@@ -168,7 +168,7 @@ def test_matplotlib_waits_until_it_is_needed() -> None:
         "import equipoise.figures.animation, equipoise.figures.planting\n"
         "from equipoise.figures import render\n"
         "analysis = eq.analyze(eq.load('kim-chung-a'))\n"
-        "from equipoise.figures.points import curves\n"
+        "from equipoise.figures.motion import curves\n"
         "from equipoise.figures.linkage import linkage\n"
         "assert all(render(draw(analysis)).startswith(b'<svg') for draw in (curves, linkage))\n"
         "assert not any(name.startswith('matplotlib') for name in sys.modules)\n"

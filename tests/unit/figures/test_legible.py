@@ -11,14 +11,13 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.figures.analysis import joint_polars, joints
-from equipoise.figures.forces import force, polar, spectrum, torque
+from equipoise.figures.forces import force, joint_polars, joints, polar, spectrum, torque
 from equipoise.figures.layout import HALF, lay_out
 from equipoise.figures.linkage import linkage
 from equipoise.figures.modes import mode_chart
-from equipoise.figures.points import hodograph, main_kinematics
+from equipoise.figures.motion import hodograph, main_kinematics
 from equipoise.figures.sheet import Box, Canvas, CanvasStroke, Markers, Words, box_of
-from equipoise.figures.tool_shaft import mode_charts, weighted
+from equipoise.figures.tool_charts import mode_charts, weighted
 from equipoise.figures.vector import svg_of
 from equipoise.figures.vibration import spectra
 from equipoise.figures.view import View

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import RectBivariateSpline
 
-from equipoise.figures import designs, render, studies
+from equipoise.figures import render, studies
 from equipoise.figures.layout import lay_out
 from equipoise.figures.panel import finer, levels_of
 from equipoise.figures.sheet import CanvasStroke
@@ -55,7 +55,7 @@ def searched() -> Searched:
 
 @cache
 def of_search() -> dict[str, Chart]:
-    return designs.searched_charts(searched(), units_of(searched().study), OWN)
+    return studies.searched_charts(searched(), units_of(searched().study), OWN)
 
 
 @cache
@@ -72,10 +72,10 @@ def of_three() -> dict[str, Chart]:
         in_blocks=lambda: [(0, found.tried)],
         size=len(found.tried.values),
     )
-    return designs.best_charts(best, "A store", units_of(found.study), store)  # type: ignore[arg-type]
+    return studies.best_charts(best, "A store", units_of(found.study), store)  # type: ignore[arg-type]
 
 
-def given(size: int) -> tuple[designs.CloudDesigns, Block]:
+def given(size: int) -> tuple[studies.CloudDesigns, Block]:
     """Designs of which some break a limit and some fail, the first three of them chosen."""
     random = np.random.default_rng(5)
     study = load_study("study-of-balance")
@@ -91,14 +91,14 @@ def given(size: int) -> tuple[designs.CloudDesigns, Block]:
     by = {"forward": "smallest", "upward": "smallest"}
     told = (study.title, by, study.paths, study.outputs, units_of(study), table, ["7", "8", "9"])
     front = table[:, [5, 6]]
-    return designs.CloudDesigns(*told, lambda: [(0, block)], size, OWN, front), block  # type: ignore[arg-type]
+    return studies.CloudDesigns(*told, lambda: [(0, block)], size, OWN, front), block  # type: ignore[arg-type]
 
 
 @pytest.mark.exhaustive(but=["600"])
 @pytest.mark.parametrize("size", [600, 6000])
 def test_all_designs_stand_behind_the_chosen_ones(size: int) -> None:
     some, block = given(size)
-    charts = designs.charts_of(some)
+    charts = studies.charts_of(some)
     (panel,) = charts["front"].panels
     good = block.outcome.figures[:, 2] >= 0.2
     failed = np.isnan(block.outcome.figures[:, 0])
@@ -132,7 +132,7 @@ def test_all_designs_stand_behind_the_chosen_ones(size: int) -> None:
 
 def test_lines_run_from_axis_to_axis() -> None:
     some, _ = given(6000)
-    chart = designs.charts_of(some)["parallel"]
+    chart = studies.charts_of(some)["parallel"]
     (panel,) = chart.panels
     told = words(chart)
     for name, unit in (("mass of the", "g"), ("stroke", "mm"), ("forward", "N")):

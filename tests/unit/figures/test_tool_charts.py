@@ -10,7 +10,7 @@ import pytest
 
 from equipoise.exposure.daily import partial_exposure
 from equipoise.exposure.weighting import factor
-from equipoise.figures import tool_designs, tool_shaft, tool_side
+from equipoise.figures import tool_charts, tool_side
 from equipoise.handheld.design import Before, ToolDesign
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.frequencies import scale_of
@@ -54,8 +54,8 @@ def test_names_in_order() -> None:
 
 def test_a_speed_that_stands_alone() -> None:
     tool, speed = machine("paper"), np.array([700.0])
-    drawn = tool_shaft.transmission_charts(transmit(tool, speed))
-    drawn |= tool_shaft.exposure_charts(expose_tool(tool, speed))
+    drawn = tool_charts.transmission_charts(transmit(tool, speed))
+    drawn |= tool_charts.exposure_charts(expose_tool(tool, speed))
     for chart in drawn.values():
         check(chart)
         x = chart.panels[0].x
@@ -101,10 +101,10 @@ def test_many_modes_and_many_names() -> None:
     assert [len(pictures("cutter")[name].panels) for name in ("modes", "modes-2")] == [4, 4]
     assert "(5 to 8 of 8)" in words(pictures("cutter")["modes-2"])
     flags = [flag.texts[0] for flag in pictures("crowded")["modes"].panels[0].flags]
-    assert len(flags) == tool_shaft.MOST_NAMES
+    assert len(flags) == tool_charts.MOST_NAMES
     assert {"engine", "cutter", "handle", "station number 7"} <= {*flags}
     bare = replace(machine("loose"), stations=(), excitations=())
-    chart = tool_shaft.mode_charts(vibrate_tool(bare, 3))["modes"]
+    chart = tool_charts.mode_charts(vibrate_tool(bare, 3))["modes"]
     check(chart)
     assert "station" not in words(chart) and "mode 3" in words(chart)
 
@@ -137,14 +137,16 @@ def test_at_which_speed() -> None:
     tool = machine("paper")
     assert tool.operation is not None
     response = respond_tool(tool, SPEEDS)
-    assert tool_shaft.speed_shown(response) == tool.operation.speed
+    assert tool_charts.speed_shown(response) == tool.operation.speed
     away = respond_tool(tool, np.linspace(100, 300, 30))
     loudest = away.speed[np.argmax(grips(away)["handle"].a_hv)]
-    assert tool_shaft.speed_shown(away) == pytest.approx(loudest)
-    assert tool_shaft.speed_shown(respond_tool(tool, 200.0)) == 200.0
-    assert SPEEDS[0] <= tool_shaft.speed_shown(respond_tool(machine("loose"), SPEEDS)) <= SPEEDS[-1]
-    assert "2865 rpm" in words(tool_shaft.response_charts(response, 300.0)["moment"])
-    assert tool_shaft.rpm_text(1200.0) == "11459" and tool_shaft.rpm_text(3.0) == "28.65"
+    assert tool_charts.speed_shown(away) == pytest.approx(loudest)
+    assert tool_charts.speed_shown(respond_tool(tool, 200.0)) == 200.0
+    assert (
+        SPEEDS[0] <= tool_charts.speed_shown(respond_tool(machine("loose"), SPEEDS)) <= SPEEDS[-1]
+    )
+    assert "2865 rpm" in words(tool_charts.response_charts(response, 300.0)["moment"])
+    assert tool_charts.rpm_text(1200.0) == "11459" and tool_charts.rpm_text(3.0) == "28.65"
 
 
 # -- studies ---------------------------------------------------------------------------------------
@@ -154,7 +156,7 @@ def test_the_determinant_has_its_zeros_marked() -> None:
     tool = machine("paper")
     modes = vibrate_tool(tool, 3)
     chart = determinant_chart(tool, 8.0, 400)
-    drawn = tool_designs.determinant_charts(chart, modes)["determinant"]
+    drawn = tool_charts.determinant_charts(chart, modes)["determinant"]
     (panel,) = drawn.panels
     np.testing.assert_array_equal(panel.curves[0].y, chart.value[0])
     found = [x for x, _ in marks(panel, "zeros")]
@@ -164,14 +166,14 @@ def test_the_determinant_has_its_zeros_marked() -> None:
     titles = [one.title for one in pictures("cutter")["determinant"].panels]
     assert titles == ["vertical plane", "lateral plane"]
     x, y = np.array([1.0, 2.0, 3.0, 4.0]), np.array([1.0, -1.0, -1.0, 3.0])
-    assert tool_designs.zeros_of(x, y, np.array([0.0, 1.4, 9.0])) == [1.4]
-    assert tool_designs.zeros_of(x, y, np.array([0.0, 1.4])) == [1.4, 3.25]
+    assert tool_charts.zeros_of(x, y, np.array([0.0, 1.4, 9.0])) == [1.4]
+    assert tool_charts.zeros_of(x, y, np.array([0.0, 1.4])) == [1.4, 3.25]
 
 
 def test_frequencies_against_a_number() -> None:
     tool = machine("paper")
     variation = vary_tool(tool, "harness", "harness.stiffness", np.geomspace(1e3, 1e6, 7), 3)
-    chart = tool_designs.variation_charts(variation)["variation"]
+    chart = tool_charts.variation_charts(variation)["variation"]
     (panel,) = chart.panels
     assert panel.x.scale == "log" and panel.y.text == "natural frequency, 1/min"
     assert panel.x.text == "stiffness of the harness at harness, kN/m"
@@ -181,7 +183,7 @@ def test_frequencies_against_a_number() -> None:
     assert harness is not None and panel.lines[0].at == pytest.approx(harness.stiffness[0])
     assert "now 46.48 kN/m" in words(chart) and "both planes" in words(chart)
     position = vary_tool(tool, "handle", "position", np.linspace(0.1, 1.4, 5))
-    (panel,) = tool_designs.variation_charts(position)["variation"].panels
+    (panel,) = tool_charts.variation_charts(position)["variation"].panels
     assert panel.x.scale == "linear" and panel.x.text == "position of handle, mm"
     assert panel.right_axis is not None and panel.right_axis.text == "λ"
     top = float(np.max(position.parameter))
@@ -195,7 +197,7 @@ def test_frequencies_against_a_number() -> None:
     level = next(line.at for line in panel.lines if line.axis == "y")
     assert scale_of(tool) * level**2 == pytest.approx(tool.operation.speed)
     ground = vary_tool(tool, "engine", "rotational_stiffness", np.array([1.0, 2.0]), 2)
-    told = words(tool_designs.variation_charts(ground)["variation"])
+    told = words(tool_charts.variation_charts(ground)["variation"])
     assert "rotational stiffness of engine to the ground, N m/rad" in told and "now" not in told
 
 
@@ -205,7 +207,7 @@ def test_planes_that_differ_in_a_variation() -> None:
     told = words(chart)
     assert "stiffness of the absorber at front-handle, kN/m" in told
     assert "lateral plane" in told and "now 61.7 kN/m" in told and "work, 7500 rpm" in told
-    assert all(tool_designs.number_unit(dimension).name for dimension in KEYS.values())
+    assert all(tool_charts.number_unit(dimension).name for dimension in KEYS.values())
 
 
 # -- over speed ------------------------------------------------------------------------------------
@@ -235,7 +237,7 @@ def test_transmission_of_each_station() -> None:
     inside = [one for one in modes if SPEEDS[0] <= one <= SPEEDS[-1]]
     for panel in chart.panels:
         assert [line.at for line in panel.lines if line.role == "natural"] == pytest.approx(inside)
-    assert "natural frequency" not in words(tool_shaft.transmission_charts(found)["transmission"])
+    assert "natural frequency" not in words(tool_charts.transmission_charts(found)["transmission"])
 
 
 def test_acceleration_and_what_is_allowed() -> None:
@@ -245,14 +247,14 @@ def test_acceleration_and_what_is_allowed() -> None:
     assert panel.y.text == "RMS, m/s²" and panel.y.scale == "log"
     (curve,) = curves(panel, "kind 0")
     np.testing.assert_allclose(curve.y, np.hypot(*exposure.grips["handle"].acceleration))
-    assert tool_shaft.duration_of(exposure) == 2.5 * 3600
+    assert tool_charts.duration_of(exposure) == 2.5 * 3600
     for role, a8 in (("action", 2.5), ("limit", 5.0)):
         (line,) = curves(panel, role)
         for each in (line.y * factor(line.x / (2 * np.pi))).tolist():
             assert partial_exposure(each, 2.5 * 3600) == pytest.approx(a8)
     assert "2.5 h a day" in words(chart) and " m/s² at 7" in words(chart)
     undamped = expose_tool(load_tool("nagamine-irie"), SPEEDS)
-    assert " m/s² at " not in words(tool_shaft.exposure_charts(undamped)["acceleration"])
+    assert " m/s² at " not in words(tool_charts.exposure_charts(undamped)["acceleration"])
 
 
 def test_exposure_and_levels() -> None:
@@ -261,7 +263,7 @@ def test_exposure_and_levels() -> None:
     for number, grip in enumerate(exposure.grips.values()):
         (curve,) = curves(chart.panels[0], f"kind {number}")
         np.testing.assert_allclose(curve.y, grip.a_hv)
-    hours = tool_shaft.duration_of(exposure) / 3600
+    hours = tool_charts.duration_of(exposure) / 3600
     flat = [curves(chart.panels[0], role)[0].y[0] for role in ("action", "limit")]
     assert flat == pytest.approx([2.5 * np.sqrt(8 / hours), 5 * np.sqrt(8 / hours)])
     limit = flat[1]
@@ -275,8 +277,8 @@ def test_exposure_and_levels() -> None:
     assert "limit: A(8) of 5 m/s²" in told and "action: A(8) of 2.5 m/s²" in told
     assert all(text in told for text in ("rear-grip", "front-handle", "work, 7500 rpm"))
     idle = expose_tool(replace(machine("paper"), work=(), operation=None), SPEEDS)
-    assert tool_shaft.levels(idle) == {"action": 2.5, "limit": 5.0}
-    told = words(tool_shaft.exposure_charts(idle)["exposure"])
+    assert tool_charts.levels(idle) == {"action": 2.5, "limit": 5.0}
+    told = words(tool_charts.exposure_charts(idle)["exposure"])
     assert "8 h a day" in told and "A(8) =" not in told and "work," not in told
     for name in ("exposure", "transmission"):
         assert "quieter ones" in words(pictures("crowded")[name])
@@ -312,7 +314,7 @@ def designed() -> ToolDesign:
 
 def test_each_hand_before_and_after() -> None:
     found = designed()
-    chart = tool_designs.design(found)
+    chart = tool_charts.design(found)
     check(chart)
     hands = [
         curves(chart.panels[0], f"kind {k}")
@@ -334,7 +336,7 @@ def test_measures_and_many_changes() -> None:
     found = designed()
     assert found.tool.design is not None
     plan = replace(found.tool.design, measure="peak", hands=("rear-grip",))
-    told = words(tool_designs.design(replace(found, tool=replace(found.tool, design=plan))))
+    told = words(tool_charts.design(replace(found, tool=replace(found.tool, design=plan))))
     assert "aₕᵥ of the worst hand, largest: " in told
     assert "rear-grip" in told and "front-handle:" not in told
     count = 11

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from equipoise.figures import tool_designs, tool_shaft, tool_side
+from equipoise.figures import tool_charts, tool_side
 from equipoise.handheld.hand_exposure import expose_tool
 from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool, Work
 from equipoise.handheld.modes import determinant_chart, vary_tool, vibrate_tool
@@ -120,13 +120,13 @@ def drawn_anew(kind: str) -> Drawn:
     modes = vibrate_tool(tool, 8 if kind == "cutter" else 5)
     drawn = {"side": tool_side.side(tool), **tool_side.mode_pictures(modes)}
     if kind == "close together":
-        return drawn | tool_shaft.response_charts(respond_tool(tool, 700.0))
+        return drawn | tool_charts.response_charts(respond_tool(tool, 700.0))
     highest = 1.3 * float(modes.planes[0].parameter[-1])
-    drawn |= tool_designs.determinant_charts(determinant_chart(tool, highest, 300), modes)
+    drawn |= tool_charts.determinant_charts(determinant_chart(tool, highest, 300), modes)
     station, key = VARIED.get(kind, (tool.stations[0].name, "mass"))
     values = np.geomspace(1e3, 1e5, 9) if "stiffness" in key else np.linspace(0.0, 0.8, 9)
-    drawn |= tool_designs.variation_charts(vary_tool(tool, station, key, values, 6))
+    drawn |= tool_charts.variation_charts(vary_tool(tool, station, key, values, 6))
     if tool.grips:
-        drawn |= tool_shaft.transmission_charts(transmit(tool, SPEEDS), modes)
-        drawn |= tool_shaft.exposure_charts(expose_tool(tool, SPEEDS))
-    return drawn | tool_shaft.response_charts(respond_tool(tool, SPEEDS))
+        drawn |= tool_charts.transmission_charts(transmit(tool, SPEEDS), modes)
+        drawn |= tool_charts.exposure_charts(expose_tool(tool, SPEEDS))
+    return drawn | tool_charts.response_charts(respond_tool(tool, SPEEDS))

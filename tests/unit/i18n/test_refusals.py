@@ -201,7 +201,7 @@ OTHER_TEXTS = {
     "quantities/expressions.py": "regular expressions",
     "quantities/reading.py": "regular expressions",
     "figures/style.py": "names of styles",
-    "figures/tool_shaft.py": "names of styles",
+    "figures/tool_charts.py": "names of styles",
 }
 """Files or folders with f-strings of words that no reader gets as a sentence, and why."""
 

@@ -11,8 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.figures.path import Paths
-from equipoise.figures.planting import charts, tips
+from equipoise.figures.planting import Paths, charts, tips
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.field import PlantingArm, Soil
 from equipoise.planting.arms import machine_figures

@@ -16,7 +16,6 @@ import pytest
 import equipoise as eq
 from equipoise.balancing import comparison
 from equipoise.cli.linkage import analyze as command
-from equipoise.figures import analysis as charts
 from equipoise.figures import forces as forces_charts
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective, Phases
 from equipoise.present.cells import grid
@@ -353,7 +352,7 @@ def test_cards_and_titles_speak_of_all_rows() -> None:
 
 
 def test_a_cam_is_called_a_cam() -> None:
-    chart = next(iter(charts.joints(findings_of("cam-pusher").analysis)))
+    chart = next(iter(forces_charts.joints(findings_of("cam-pusher").analysis)))
     titles = [panel.title for panel in chart.panels]
     assert any(title.startswith("cam: ") for title in titles)
     assert not any("teeth" in title for title in titles)

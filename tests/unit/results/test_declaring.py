@@ -14,7 +14,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import EquipoiseError
 from equipoise.figures import render
-from equipoise.figures.points import kinematics, outputs_chart
+from equipoise.figures.motion import kinematics, outputs_chart
 from equipoise.i18n import speaking
 from equipoise.mechanism.outputs.declared import DECLARED, declared, declaring, output
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
