@@ -20,7 +20,7 @@ from scipy.integrate import solve_ivp
 
 import equipoise as eq
 from equipoise.mechanism.parts.force_elements import Motor
-from equipoise.running.run import Run
+from equipoise.running.run_results import Run
 from timing import in_turn, report
 
 TURNS, TOLERANCE, ROUNDS = 30, 1e-9, 3

@@ -15,7 +15,7 @@ from browser.live import LONGEST, OVER_A_SOCKET, Live
 from equipoise.mechanism.parts.run_plans import MOST_TURNS
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.present.cells import printed
-from equipoise.running.drives_run import DrivesRun
+from equipoise.running.run_results import DrivesRun
 from equipoise.web.figures import CHARTS
 from support.chosen import few
 from surface.running import example_text

@@ -18,8 +18,7 @@ from equipoise.exchange import mjcf
 from equipoise.exchange.formats import Job
 from equipoise.mechanism import JointProperties
 from equipoise.mechanism.parts.force_elements import Motor
-from equipoise.running.drives_run import DrivesRun
-from equipoise.running.run import Run
+from equipoise.running.run_results import DrivesRun, Run
 from support.machines import make
 from support.poses import Array
 

@@ -17,10 +17,9 @@ from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.running import tabulated
-from equipoise.running.blocks import run_headline
+from equipoise.running.blocks import drives_headline, run_headline
+from equipoise.running.collocation import Instant
 from equipoise.running.drivers import Driver
-from equipoise.running.drives_blocks import run_headline as run_headline_of_drives
-from equipoise.running.drives_run import DrivesRun
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import (
     Flywheel,
@@ -31,7 +30,7 @@ from equipoise.running.flywheel import (
     size_flywheel,
 )
 from equipoise.running.integration import Integration, Limits
-from equipoise.running.piece_motion import Instant
+from equipoise.running.run_results import DrivesRun
 from equipoise.vibration.coupled import StallError
 from support.analyses import subject_of
 from support.chosen import few
@@ -337,7 +336,7 @@ def test_a_run_on_its_support_is_as_even_as_its_flywheel_was_sized_for() -> None
     machine = eq.load("balance-rig")
     sized = eq.run(machine, "0.01 s", support=True, fluctuation="5 %")
     assert isinstance(sized, DrivesRun) and sized.flywheel is not None
-    assert "flywheel of" in " ".join(str(block) for block in run_headline_of_drives(sized))
+    assert "flywheel of" in " ".join(str(block) for block in drives_headline(sized))
     run = eq.run(with_flywheel(machine, sized.flywheel.inertia), support=True,
                  speed=sized.flywheel.speed)  # fmt: skip
     assert isinstance(run, DrivesRun) and run.last_cycle is not None

@@ -21,10 +21,10 @@ from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.running.blocks import verdict
+from equipoise.running.collocation import Instant
 from equipoise.running.drivers import Controller
 from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Integration
-from equipoise.running.piece_motion import Instant
 from equipoise.schema.files import json_text
 from equipoise.vibration.steady import speed_at
 from laws.test_run import GRAVITY, INERTIA, WEIGHT, crank

@@ -19,11 +19,11 @@ from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.running import integration
 from equipoise.running.blocks import run_blocks, run_headline, verdict
+from equipoise.running.collocation import Instant
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from equipoise.running.integration import Integration
-from equipoise.running.piece_motion import Instant
-from equipoise.running.run import Run
+from equipoise.running.run_results import Run
 from support.analyses import subject_of
 from support.chosen import EXHAUSTIVE, few
 from support.refusals import refused

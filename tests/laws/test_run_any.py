@@ -9,7 +9,7 @@ import tomli_w
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError
-from equipoise.running.drives_run import DrivesRun
+from equipoise.running.run_results import DrivesRun
 from support import machines_any
 
 

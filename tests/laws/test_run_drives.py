@@ -24,7 +24,7 @@ from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.results.blocks import Facts
 from equipoise.running import drives_integration
-from equipoise.running.drives_blocks import run_blocks, run_headline, verdict
+from equipoise.running.blocks import drives_blocks, drives_headline, drives_verdict
 from support.machines import make
 from support.machines_redundant import planet_train
 from support.refusals import refused
@@ -79,7 +79,7 @@ def test_a_crank_that_only_swings_does_not_keep_a_run_of_turns_going() -> None:
     back = [event for event in found.events if (event.kind, event.of) == ("reversal", "left")]
     assert len(back) == 20 and found.energy_error < 1e-9
     assert found.end.time == pytest.approx(back[-1].time, abs=0.1)
-    (headline, *_) = run_headline(found)
+    (headline, *_) = drives_headline(found)
     assert "20 times" in headline.text
 
 
@@ -191,7 +191,7 @@ def test_motors_that_cannot_lift_a_weight_stall() -> None:
     level = np.arccos(3.0 / (MASS * 9.81 * ARM))
     for course in found.drives.values():
         assert course.angle[-1] == pytest.approx(-level, abs=1e-4)
-    assert "stall" in verdict(found)
+    assert "stall" in drives_verdict(found)
 
 
 def five_bar(**drive: Any) -> eq.Machine:
@@ -217,8 +217,8 @@ def test_a_run_ends_in_a_dead_position() -> None:
     ends = [0.05 * np.exp(1j * state[0]), 0.12 + 0.05 * np.exp(1j * state[1])]
     assert abs(ends[1] - ends[0]) == pytest.approx(0.16, rel=1e-5)
     assert found.energy_error < 1e-9
-    assert any("dead position" in str(block) for block in run_blocks(found))
-    assert [*run_headline(found, alone=True)]
+    assert any("dead position" in str(block) for block in drives_blocks(found))
+    assert [*drives_headline(found, alone=True)]
 
 
 def apart(**changes: Any) -> eq.Machine:
@@ -395,5 +395,5 @@ def test_a_run_without_a_whole_cycle_has_no_last_one() -> None:
     for turns, cycles in ((0.2, 0), (1.2, 1)):
         run = eq.run(machine, turns=turns, speed=30.0)
         assert run.losses["A"][-1] > 0
-        heads = [block for block in run_headline(run, alone=True) if isinstance(block, Facts)]
+        heads = [block for block in drives_headline(run, alone=True) if isinstance(block, Facts)]
         assert len(heads) == cycles

@@ -17,8 +17,8 @@ from equipoise.mechanism.parts.machine import FurtherDrive
 from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.mechanism.parts.support import FREEDOMS, Mount, Support
 from equipoise.mechanism.parts.timed_loads import TimedLoad
-from equipoise.running.drives_blocks import run_blocks, run_headline
-from equipoise.running.drives_run import DrivesRun
+from equipoise.running.blocks import drives_blocks, drives_headline
+from equipoise.running.run_results import DrivesRun
 from equipoise.running.support_equation import SupportedEquation
 from support.refusals import refused
 
@@ -121,7 +121,7 @@ def test_a_run_on_its_support_tells_gauges_and_mounts() -> None:
     )
     assert set(values["mounts"]) == {"spring", "bearing"}
     assert {*drives_charts(run)} == {"speed", "gauges", "mounts"}
-    tables = {getattr(block, "title", ""): block for block in run_blocks(run)}
+    tables = {getattr(block, "title", ""): block for block in drives_blocks(run)}
     rows = [row[0] for row in tables["Gauges and mounts"].rows]
     assert rows == ["gauge", "spring", "bearing"]
     assert "mounts" in [row[0] for row in tables["Energy from the start to the end"].rows]
@@ -130,8 +130,8 @@ def test_a_run_on_its_support_tells_gauges_and_mounts() -> None:
 def test_its_summary_has_what_gauges_read() -> None:
     run = on_support(eq.load("sieve"), "0.1 s")
     assert run.support is not None
-    (facts,) = (block for block in run_headline(run, alone=True) if hasattr(block, "items"))
-    texts = [block.text for block in run_headline(run) if hasattr(block, "text")]
+    (facts,) = (block for block in drives_headline(run, alone=True) if hasattr(block, "items"))
+    texts = [block.text for block in drives_headline(run) if hasattr(block, "text")]
     assert any("no motor" in text for text in texts)
     assert [line.partition(":")[0] for line in facts.items] == [*run.support.gauges]
     size = 1e3 * float(np.ptp(run.support.gauges["stand"]))

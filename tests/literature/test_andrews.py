@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.running.run import Run
+from equipoise.running.run_results import Run
 
 START = -0.0617138900142764496358948458001
 """beta at the start, rad; the linkage is at rest there."""

@@ -27,9 +27,9 @@ from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw
 from equipoise.mechanism.parts.machine import FurtherDrive, Row
 from equipoise.results.remarks import linkage_remarks
-from equipoise.running.drives_blocks import verdict
+from equipoise.running.blocks import drives_verdict
 from equipoise.running.drives_equation import DrivesEquation
-from equipoise.running.drives_friction import NEAR_REST
+from equipoise.running.friction import NEAR_REST
 from support.machines import make
 from support.pinned_bodies import PinnedBodies, in_rows
 from support.poses import Array, pins
@@ -362,7 +362,7 @@ def test_a_run_ends_where_a_stroke_has_no_lever() -> None:
     across = np.imag((pushed - end) * np.conj(pushed - pivot))
     assert abs(across) < 2e-3 * abs(pushed - end) * abs(pushed - pivot)
     assert found.energy_error < 1e-7
-    assert "right crank" in verdict(found)
+    assert "right crank" in drives_verdict(found)
 
 
 # -- the equations of motion -----------------------------------------------------------------------

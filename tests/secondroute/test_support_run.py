@@ -18,10 +18,9 @@ from equipoise.mechanism.parts.force_elements import Load, Motor
 from equipoise.mechanism.parts.laws import AngleLaw
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, Mount, Row, Support
-from equipoise.running.drives_friction import NEAR_REST
-from equipoise.running.drives_linkage import pose_of
-from equipoise.running.drives_run import DrivesRun
-from equipoise.running.linkage_rows import LinkageRows
+from equipoise.running.drives_linkage import LinkageRows, pose_of
+from equipoise.running.friction import NEAR_REST
+from equipoise.running.run_results import DrivesRun
 from equipoise.running.support_equation import SupportedEquation
 from equipoise.vibration.body import SupportBody
 from equipoise.vibration.excitation import WholeExcitation

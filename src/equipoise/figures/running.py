@@ -11,13 +11,11 @@ from equipoise.figures.chart_parts import varies
 from equipoise.figures.vibration import support_charts
 from equipoise.i18n import say, to_say
 from equipoise.results.charts import Axis, Chart, Curve, Panel, four_digits
-from equipoise.running.blocks import verdict
-from equipoise.running.drives_blocks import verdict as drives_verdict
+from equipoise.running.blocks import drives_verdict, verdict
 
 if TYPE_CHECKING:
     from equipoise.quantities import Dimension
-    from equipoise.running.drives_run import DrivesRun
-    from equipoise.running.run import Run
+    from equipoise.running.run_results import DrivesRun, Run
     from equipoise.signals import Array
 
 

@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.sweep import ToolSweep, Transmissions
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
-    from equipoise.running.drives_run import DrivesRun
-    from equipoise.running.run import Run
+    from equipoise.running.run_results import DrivesRun, Run
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Response
     from equipoise.vibration.sweep import Sweep

@@ -44,8 +44,7 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
     from equipoise.present.findings import Findings
     from equipoise.results.analysis import Analysis
-    from equipoise.running.drives_run import DrivesRun
-    from equipoise.running.run import Run
+    from equipoise.running.run_results import DrivesRun, Run
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Response
     from equipoise.vibration.sweep import Sweep
@@ -303,14 +302,13 @@ def ran(run: Run | DrivesRun | None) -> str:
     """The highest speed of a run, and how it ended."""
     if run is None:
         return ""
-    from equipoise.running.blocks import event_named as event_of_crank
-    from equipoise.running.drives_blocks import event_named
-    from equipoise.running.run import Run
+    from equipoise.running.blocks import drive_event_named, event_named
+    from equipoise.running.run_results import Run
 
     if isinstance(run, Run):
-        speeds, event = [run.crank_speed], event_of_crank(run.end)
+        speeds, event = [run.crank_speed], event_named(run.end)
     else:
-        speeds, event = [drive.speed for drive in run.drives.values()], event_named(run.end)
+        speeds, event = [drive.speed for drive in run.drives.values()], drive_event_named(run.end)
     fastest = max(float(np.max(np.abs(speed))) for speed in speeds)
     return say(
         "Speed up to {speed}, {event} after {time}",

@@ -1,3 +1,4 @@
-from .drives_run import DrivesRun as DrivesRun
-from .run import Run as Run
 from .run import run as run
+from .run_results import DrivesRun as DrivesRun
+from .run_results import Run as Run
+from .run_results import RunResult as RunResult

@@ -17,15 +17,24 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import LockError, ModelError, ResponseError
 from equipoise.i18n import Note
-from equipoise.running.drives_equation import DrivesEquation
-from equipoise.running.drives_friction import NEAR_REST, leaving, settled_at
+from equipoise.running.collocation import (
+    NODES,
+    POINTS,
+    NodeValues,
+    TimeSpan,
+    solved_span,
+    unresolved,
+)
+from equipoise.running.drives_equation import (
+    AT_CONTACT,
+    DrivesEquation,
+    DrivesRates,
+    DrivesReadings,
+)
 from equipoise.running.drives_linkage import References, cannot_be_assembled
-from equipoise.running.drives_rates import DrivesRates, DrivesReadings
 from equipoise.running.equation import just_after
+from equipoise.running.friction import NEAR_REST, leaving, settled_at
 from equipoise.running.integration import Limits
-from equipoise.running.mount_contacts import AT_CONTACT
-from equipoise.running.tabulated import NODES, POINTS
-from equipoise.running.time_collocation import NodeValues, TimeSpan, solved_span, unresolved
 from equipoise.signals import Array
 
 RESOLVED = 1e-9

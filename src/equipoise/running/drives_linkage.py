@@ -1,4 +1,4 @@
-"""A linkage whose drives each go their own ways, and its inertia.
+"""Equal linkages, `[[rows]]`, whose drives each go their own ways, and their inertia.
 
 With q the angles of the driven links, i and j two of them, and p and alpha the place of a link's
 anchor and its angle,
@@ -9,12 +9,17 @@ where h is what the links demand while the drives do not accelerate, and Q the g
 everything that acts beside the drives.  The steps of the linkage run once for many states: along
 each q, where they give dp/dq, and along the velocity that the machine has, where the crank's speed
 is 1, so that all derivatives by the crank angle are those by time.
+
+The states of all rows stand side by side in the last axis of arrays (..., R K), one row after the
+other, so that the linkage is computed once for all of them.  What the rows share, such as rotors, a
+support, and torques on the shafts that turn them all, is divided among them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,13 +32,112 @@ from equipoise.mechanism.dynamics.forces import flywheel_on, inertia_about
 from equipoise.mechanism.dynamics.friction import Demands
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import Row
 from equipoise.running.sources import AppliedSource, SourceInputs
 from equipoise.signals import Array
+from equipoise.vibration.linkages import rows_of
 
 References = Mapping[str, Array]
 """About what running angles (..., K), and unknowns of loops, are, by their names in a linkage."""
 STRIDE = 0.02
 """rad of the crank, by which loops are followed to the angle at which a run starts."""
+
+
+class DriveAngles(NamedTuple):
+    """Angles of all drives (N, K), rad, and their rates.
+
+    crank_angle : (K,) rad.  speeds : rad/s.
+    jacobian : (N, U, K), speeds with a unit of speed of each unknown alone.
+    bias_accelerations : rad/s2, while no unknown accelerates.
+    virtual_speeds : (N, U, K), with a unit of speed of each unknown while no given motion goes on,
+    so that its drive does no work.
+    effort_speeds : rad/s at which torques do work; of strokes m/s, at which forces do.
+    lengths : of strokes (P, K), m.  slopes : of these by the angles of all drives (P, N, K), m/rad.
+    """
+
+    crank_angle: Array
+    angles: Array
+    speeds: Array
+    jacobian: Array
+    bias_accelerations: Array
+    virtual_speeds: Array
+    effort_speeds: Array
+    lengths: Array
+    slopes: Array
+
+
+def drives_at(machine: Machine, crank_angle: float) -> tuple[Array, Array]:
+    """Angles of all drives (N,), rad, as the file has them at a crank angle, rad, and their
+    derivatives by it.
+    """
+    moved = machine.moved(np.array([crank_angle]))
+    angles, rates = (
+        np.array([np.ravel(moved[drive.link][order])[0] for drive in machine.driven])
+        for order in (0, 1)
+    )
+    return angles, rates
+
+
+@dataclass(frozen=True, eq=False)
+class LinkageRows:
+    """The R rows of a machine; the linkage of the file where it has none."""
+
+    machine: Machine
+
+    @cached_property
+    def all(self) -> tuple[Row, ...]:
+        """Phase and place of each row."""
+        return rows_of(self.machine)
+
+    @property
+    def count(self) -> int:
+        """How many rows."""
+        return len(self.all)
+
+    @cached_property
+    def phases(self) -> Array:
+        """(R,), rad, by which crank angles are larger than that of the drive."""
+        return np.array([row.phase for row in self.all])
+
+    @property
+    def as_in_file(self) -> bool:
+        """Whether there is one linkage, whose crank angle is that of the drive."""
+        return self.count == 1 and not self.all[0].phase
+
+    @cached_property
+    def offsets(self) -> Array:
+        """(R,), m, complex, of the planes of the rows beside the linkage of the file."""
+        return np.array([complex(*row.offset) for row in self.all])
+
+    @cached_property
+    def laterals(self) -> Array:
+        """(R,), m, z of the planes of the rows."""
+        return np.array([row.lateral for row in self.all])
+
+    def repeated(self, values: Array) -> Array:
+        """(..., R K) of what is the same in all rows (..., K)."""
+        return np.tile(values, self.count) if self.count > 1 else values
+
+    def of_each(self, values: Array, count: int) -> Array:
+        """(..., R K) of what differs by the row alone (..., R), in so many states K."""
+        return np.repeat(values, count, axis=-1)
+
+    def apart(self, values: Array) -> Array:
+        """(..., R, K) of values (..., R K)."""
+        return values.reshape(*values.shape[:-1], self.count, values.shape[-1] // self.count)
+
+    def joined(self, values: Array) -> Array:
+        """(..., R K) of values (..., R, K)."""
+        return values.reshape(*values.shape[:-2], -1)
+
+    def total(self, values: Array) -> Array:
+        """Sums (..., K) over the rows of values (..., R K)."""
+        return np.asarray(self.apart(values).sum(axis=-2)) if self.count > 1 else values
+
+    def first(self, values: Array) -> Array:
+        """(..., K) of the first row, of values (..., R K)."""
+        return values[..., : values.shape[-1] // self.count]
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,9 +24,9 @@ from equipoise.mechanism.kinematics.jumps import bends_of_rows, jumps_of_rows, r
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
+from equipoise.running.collocation import Tabulated
 from equipoise.running.friction import FRICTION, Friction
 from equipoise.running.sources import Factors, Source, sources_of
-from equipoise.running.tabulated import Tabulated
 from equipoise.signals import Array
 
 PIECES = 12

@@ -25,19 +25,20 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note
-from equipoise.running.drivers import LIMIT_REACHED, Driver
-from equipoise.running.equation import CrankEquation, just_after
-from equipoise.running.piece_motion import (
+from equipoise.running.collocation import (
     AT_ENDS,
     ELECTRIC,
     INTEGRALS,
+    NODES,
     ROW_PLACES,
     Instant,
     PieceMotion,
     TableRange,
     instant_of,
+    roughness,
 )
-from equipoise.running.tabulated import NODES, roughness
+from equipoise.running.drivers import LIMIT_REACHED, Driver
+from equipoise.running.equation import CrankEquation, just_after
 from equipoise.signals import Array
 
 RELATIVE, ABSOLUTE = 1e-11, 1e-13

@@ -1,291 +1,46 @@
-"""A machine that is set in motion by its motor, its weight, springs and loads."""
+"""A machine that is set in motion by its motors, its weight, springs and loads."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field, replace
-from functools import cached_property
-from itertools import pairwise
-from math import ceil, copysign, inf, pi
-from typing import Any, ClassVar
+from dataclasses import replace
+from math import ceil, inf, pi
 
 import numpy as np
 
-from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note
-from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.parts.force_kinds import rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.run_plans import MOST_TURNS, RunPlan
 from equipoise.quantities import Dimension, in_si
-from equipoise.results.result import Result
-from equipoise.running.drive_angles import drives_at
+from equipoise.running.collocation import ELECTRIC
 from equipoise.running.drivers import Driver
-from equipoise.running.drives_equation import DrivesEquation
-from equipoise.running.drives_run import DrivesRun, Start, run_drives
-from equipoise.running.electric import Electric
-from equipoise.running.energy_balance import energy_error, losses_apart
+from equipoise.running.drives_equation import BRAKE, DrivesEquation
+from equipoise.running.drives_integration import DrivesIntegration, DrivesTrack, joined
+from equipoise.running.drives_linkage import DriveAngles, drives_at
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
-from equipoise.running.integration import Event, Integration, Limits
-from equipoise.running.joint_forces import Passage, passage_of_crank
-from equipoise.running.piece_motion import ELECTRIC, Instant
-from equipoise.running.run_contacts import (
-    RunContact,
-    contacts_of_couplings,
-    contacts_of_elements,
+from equipoise.running.integration import Integration, Limits
+from equipoise.running.run_contacts import Passage
+from equipoise.running.run_results import (
+    DRIVE,
+    FREE,
+    GIVEN,
+    MOTOR,
+    DriveCourse,
+    DrivesRun,
+    Electric,
+    Run,
+    losses_apart,
 )
-from equipoise.running.sources import LOADS
 from equipoise.running.support_equation import SupportedEquation
-from equipoise.signals import Array
-from equipoise.vibration.linkages import rows_of
 
 TURNS = 300
 """Turns after which a run ends where nothing else ends it."""
 TURNS_OF_DRIVES = 30
 """The same of several drives, each turn of which takes longer to follow; two motors of their own
 speeds never come to a steady state."""
-STARTED = 0.95
-"""Share of the mean speed of a steady state at which a machine has started."""
-BRAKE, DRIVE = "brake", "drive"
 Progress = Callable[[int, int], None]
-
-
-@dataclass(frozen=True)
-class LastCycle:
-    """The last whole cycle of a run.
-
-    mean_speed : of the crank, rad/s, positive counterclockwise.  highest, lowest : its fastest and
-        slowest, rad/s, with the same sign; of a crank that turns clockwise `highest` is the least.
-    turns : of the crank in the cycle.
-    energy : that the drive gives in it, J.  time : that it takes, s.
-    """
-
-    mean_speed: float
-    highest: float
-    lowest: float
-    turns: int
-    energy: float
-    time: float
-
-    @property
-    def fluctuation(self) -> float:
-        """Coefficient of fluctuation: highest minus lowest speed, over the mean."""
-        return (self.highest - self.lowest) / self.mean_speed
-
-    @property
-    def energy_per_turn(self) -> float:
-        """Energy that the drive gives in a turn of the crank, J."""
-        return self.energy / self.turns
-
-    @property
-    def power(self) -> float:
-        """Mean power of the drive, W."""
-        return self.energy / self.time
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Run(Result):
-    """How a machine runs from a start on, at M instants that are not equally spaced.
-
-    time : (M,) s, rising.  crank_angle, crank_speed : (M,), rad and rad/s.
-    drive_torque : (M,), on the crank, N m.
-    work : what has acted -> work on the machine since the start (M,), J; the drive last.
-    events : what happened; the last one ended the run.
-    begins : instants at which a cycle began.
-    flywheel : the one that a wanted fluctuation needs, where it is asked for.
-    electric : circuit of a direct-current motor; None of any other.
-    losses : joint with friction -> energy lost in it since the start (M,), J.
-    """
-
-    machine: Machine
-    equation: CrankEquation
-    time: Array
-    crank_angle: Array
-    crank_speed: Array
-    drive_torque: Array
-    work: Mapping[str, Array]
-    events: tuple[Event, ...]
-    begins: tuple[Instant, ...]
-    flywheel: Flywheel | None = None
-    electric: Electric | None = None
-    losses: Mapping[str, Array] = field(default_factory=dict)
-    blocks_in = "running.blocks.run_blocks"
-    pictures_in = "figures.running.run_charts"
-    headline_in: ClassVar[str] = "running.blocks.run_headline"
-
-    @property
-    def end(self) -> Event:
-        """What ended the run."""
-        return self.events[-1]
-
-    @property
-    def turned(self) -> float:
-        """Turns of the crank from the start to the end."""
-        return float(self.crank_angle[-1] - self.crank_angle[0]) / (2 * pi)
-
-    @cached_property
-    def kinetic_energy(self) -> Array:
-        """(M,), J, from the linkage itself and not from what was integrated."""
-        return self.equation.energy(self.crank_angle, self.crank_speed)
-
-    @cached_property
-    def energy_error(self) -> float:
-        """Largest difference of kinetic energy and work done, over the largest of them all."""
-        circuits: list[tuple[Driver, Electric, Array]] = []
-        if self.electric is not None:
-            circuits = [(Driver.of(self.machine), self.electric, self.work[DRIVE])]
-        return energy_error(self.kinetic_energy, self.work.values(), circuits)
-
-    @cached_property
-    def contacts(self) -> tuple[RunContact, ...]:
-        """Contacts of one-sided parts in all rows, in the order in which they begin."""
-        contacts = [*contacts_of_couplings(self._passage)]
-        if any(element.one_sided for *_, element in rated_elements(self.machine)):
-            angles = (self.crank_angle + row.phase for row in rows_of(self.machine))
-            motions = [move(self.machine, angle) for angle in angles]
-            contacts += contacts_of_elements(motions, self.time, self.crank_speed)
-        return tuple(sorted(contacts, key=lambda contact: contact.begin))
-
-    @property
-    def _passage(self) -> Passage:
-        """The states that it has passed."""
-        off = next((event.time for event in self.events if event.kind == "off"), 0.0)
-        is_off = self.machine.drive.motor is None or off > 0
-        braked = np.sign(self.crank_speed) * self.machine.drive.brake * is_off * (self.time >= off)
-        machine, time = self.machine, self.time
-        return passage_of_crank(
-            machine, time, self.crank_angle, self.crank_speed, self.drive_torque - braked
-        )
-
-    @cached_property
-    def last_cycle(self) -> LastCycle | None:
-        """The last whole cycle; None where there was none."""
-        whole = [
-            (first, last, turns)
-            for first, last in pairwise(self.begins)
-            if (
-                turns := round(abs(last.angle - first.angle) / (2 * pi))
-            )  # 0 of a crank that swings
-        ]
-        if not whole:
-            return None
-        first, last, turns = whole[-1]
-        inside = (self.time >= first.time) & (self.time <= last.time)
-        size, time = np.abs(self.crank_speed[inside]), last.time - first.time
-        sense = copysign(1.0, last.angle - first.angle)
-        return LastCycle(
-            (last.angle - first.angle) / time,
-            sense * float(np.max(size)),
-            sense * float(np.min(size)),
-            turns,
-            float(last.work[-1] - first.work[-1]),
-            time,
-        )
-
-    @cached_property
-    def starting_time(self) -> float | None:
-        """Until the speed first reaches 95 % of its mean in the steady state, s; None without one,
-        where it began so fast, or where loads drive it backwards.
-        """
-        cycle = self.last_cycle
-        if self.end.kind != "steady" or cycle is None or self.driven_back is not None:
-            return None
-        fast = np.abs(self.crank_speed) >= STARTED * abs(cycle.mean_speed)
-        k = int(np.argmax(fast))
-        if k == 0:
-            return None
-        ends = np.abs(self.crank_speed[k - 1 : k + 1])
-        share = (STARTED * abs(cycle.mean_speed) - ends[0]) / (ends[1] - ends[0])
-        return float(self.time[k - 1] + share * (self.time[k] - self.time[k - 1]))
-
-    @cached_property
-    def driven_back(self) -> Event | None:
-        """Where the crank turned back for good, against the sense of its drive, and loads have
-        driven it since; None where they have not.
-
-        A load over the crank angle gives energy where the machine passes it backwards.
-        """
-        back = next((event for event in self.events[::-1] if event.kind == "reversal"), None)
-        loads = self.work.get(LOADS)
-        if back is None or loads is None or self.end.kind not in ("steady", "turns", "time"):
-            return None
-        if self.end.speed * self.machine.drive.speed >= 0:
-            return None
-        return back if loads[-1] > np.interp(back.time, self.time, loads) else None
-
-    @cached_property
-    def stopping(self) -> tuple[float, float] | None:
-        """Time, s, and turns of the crank, forward less back, from when the motor is switched off
-        to a standstill; None where either does not happen.
-        """
-        off = next((event for event in self.events if event.kind == "off"), None)
-        if off is None or self.end.kind != "standstill":
-            return None
-        turned = (self.end.crank_angle - off.crank_angle) / (2 * pi)
-        return self.end.time - off.time, turned * copysign(1.0, off.speed)
-
-    @cached_property
-    def lacking_torque(self) -> tuple[float, float] | None:
-        """Where a motor stalls: torque that the crank needs to go on, and that the motor gives,
-        N m; None where it does not.
-        """
-        if self.end.kind != "stall":
-            return None
-        driver = Driver.of(self.machine)
-        acting, holding = self.equation.at_rest(
-            self.end.crank_angle, self.equation.factors_at(self.end.time, self.end.time)
-        )
-        given = float(driver.torque(np.zeros(())))
-        return holding[driver.sense] - driver.sense * acting, driver.sense * given
-
-    def columns(self) -> list[tuple[str, str, Array]]:
-        """Name, unit and values (M,) of every signal."""
-        return [
-            ("time", "s", self.time),
-            ("crank_angle", "rad", self.crank_angle),
-            ("crank_speed", "rad/s", self.crank_speed),
-            ("drive_torque", "N m", self.drive_torque),
-            ("kinetic_energy", "J", self.kinetic_energy),
-            *((f"work.{name}", "J", values) for name, values in self.work.items()),
-            *((f"losses.{name}", "J", values) for name, values in self.losses.items()),
-            *(() if self.electric is None else self.electric.columns()),
-        ]
-
-    def to_dict(self) -> dict[str, Any]:
-        """The machine-readable output, in SI units."""
-        cycle, lacking, stopping = self.last_cycle, self.lacking_torque, self.stopping
-        return {
-            "title": self.machine.title,
-            "end": self.end.kind,
-            "turns": self.turned,
-            "starting_time": self.starting_time,
-            "last_cycle": None
-            if cycle is None
-            else vars(cycle)
-            | {
-                "fluctuation": cycle.fluctuation,
-                "energy_per_turn": cycle.energy_per_turn,
-                "power": cycle.power,
-            },
-            "stall": None
-            if lacking is None
-            else {"torque_needed": lacking[0], "torque_given": lacking[1]},
-            "stopping": None if stopping is None else {"time": stopping[0], "turns": stopping[1]},
-            "flywheel": None if self.flywheel is None else self.flywheel.to_dict(),
-            "energy_error": self.energy_error,
-            "events": [vars(event) for event in self.events],
-            "contacts": [contact.to_dict() for contact in self.contacts],
-            "time": self.time,
-            "crank_angle": self.crank_angle,
-            "crank_speed": self.crank_speed,
-            "drive_torque": self.drive_torque,
-            "kinetic_energy": self.kinetic_energy,
-            "work": dict(self.work),
-            "losses": dict(self.losses),
-            **({} if self.electric is None else {"electric": dict(vars(self.electric))}),
-        }
 
 
 def _check_turns(turns: float | None) -> None:
@@ -381,8 +136,8 @@ def run(
         limits = _limits_of_drives(machine, limits)
         start = _start(machine.drive.speed, speed, angle)
         equation = (SupportedEquation if on_support else DrivesEquation)(machine, start[1])
-        starts = _start_of_drives(machine, start, _turns_counted(limits, progress), speed is None)
-        return replace(run_drives(equation, limits, starts), flywheel=wheel)
+        starts = _start_of_drives(machine, start, speed is None)
+        return _run_drives(equation, limits, starts, _turns_counted(limits, progress), wheel)
     whole_turns = _turns_counted(limits, progress)
     first = 0.0 if machine.drive.motor is not None else machine.drive.speed
     start = _start(first, speed, angle)
@@ -454,10 +209,10 @@ def _limits_of_drives(machine: Machine, limits: Limits) -> Limits:
 
 
 def _start_of_drives(
-    machine: Machine, start: Sequence[float], on_turns: Callable[[float], None], usual: bool
-) -> Start:
-    """All drives at a speed of the crank, rad/s, and its angle, rad; where the speed is the `usual`
-    one, those with a motor are at rest.
+    machine: Machine, start: Sequence[float], usual: bool
+) -> tuple[list[float], list[float]]:
+    """Angles, rad, and speeds, rad/s, of all drives at a speed of the crank, rad/s, and its angle,
+    rad; where the speed is the `usual` one, those with a motor are at rest.
     """
     crank_speed, crank_angle = start
     angles, rates = (part.tolist() for part in drives_at(machine, crank_angle))
@@ -465,7 +220,7 @@ def _start_of_drives(
         0.0 if usual and drive.motor is not None else rate * crank_speed
         for drive, rate in zip(machine.driven, rates, strict=True)
     ]
-    return Start(angles, speeds, on_turns)
+    return angles, speeds
 
 
 def _result(equation: CrankEquation, integration: Integration, flywheel: Flywheel | None) -> Run:
@@ -485,16 +240,92 @@ def _result(equation: CrankEquation, integration: Integration, flywheel: Flywhee
     keys = [*(source.key for source in equation.sources), *brake, DRIVE]
     works = {key: works[key] for key in keys}
     return Run(
-        machine,
-        equation,
-        time,
-        crank_angle,
-        crank_speed,
-        torque,
-        works,
-        tuple(integration.events),
-        tuple(integration.begins),
-        flywheel,
-        None if driver.circuit is None else Electric(*electric),
-        losses,
+        machine=machine,
+        time=time,
+        crank_angle=crank_angle,
+        work=works,
+        losses=losses,
+        events=tuple(integration.events),
+        flywheel=flywheel,
+        equation=equation,
+        crank_speed=crank_speed,
+        drive_torque=torque,
+        begins=tuple(integration.begins),
+        electric=None if driver.circuit is None else Electric(*electric),
     )
+
+
+def _run_drives(
+    equation: DrivesEquation,
+    limits: Limits,
+    start: tuple[Sequence[float], Sequence[float]],
+    on_turns: Callable[[float], None],
+    flywheel: Flywheel | None,
+) -> DrivesRun:
+    """Run until something ends it; a support begins at rest in the drawn position.
+
+    start : angles, rad, and speeds, rad/s, of all drives.  on_turns : as of `DrivesIntegration`.
+    """
+    unknowns = equation.unknowns
+    integration = DrivesIntegration(equation, limits)
+    integration.on_turns = on_turns
+    at_rest = [0.0] * (equation.coordinates - len(equation.drives))
+    angles, speeds = ([*each, *at_rest] for each in start)
+    integration.follow([angles[k] for k in unknowns], [speeds[k] for k in unknowns])
+    track, rates = joined(integration.tracks), integration.rates
+    where = rates.where(track.time, track.states)
+    passed = DriveAngles(*(values.copy() for values in where))
+    of_rows = equation.in_rows(track.time, where, track.references)
+    pushed = () if equation.strokes is None else equation.strokes.places
+    lengths = dict(zip(pushed, equation.rows.first(of_rows.lengths), strict=True))
+    for k in pushed:
+        where.angles[k], where.speeds[k] = (
+            equation.rows.first(part[k]) for part in (of_rows.angles, of_rows.speeds)
+        )
+    courses = {
+        drive.link: DriveCourse(
+            drive.link,
+            MOTOR if drive.motor else FREE if k in unknowns else GIVEN,
+            where.angles[k],
+            where.speeds[k],
+            track.torques[k],
+            _electric(integration, k, track, where),
+            lengths.get(k),
+        )
+        for k, drive in enumerate(equation.drives)
+    }
+    works = dict(zip(rates.works, track.quadratures[2 * len(rates.circuits) :], strict=True))
+    works, losses = losses_apart(works, rates.rubbing)
+    return DrivesRun(
+        machine=equation.machine,
+        time=track.time,
+        crank_angle=where.crank_angle,
+        work=works,
+        losses=losses,
+        events=tuple(integration.events),
+        flywheel=flywheel,
+        equation=equation,
+        drives=courses,
+        cycle_begins=tuple(integration.marks),
+        where=of_rows,
+        passage=Passage(equation, track.time, passed, track.references, track.accelerations),
+        references=track.references,
+        support=equation.support_motion(where.angles, where.speeds),
+    )
+
+
+def _electric(
+    integration: DrivesIntegration, drive: int, track: DrivesTrack, where: DriveAngles
+) -> Electric | None:
+    """The circuit of a drive's motor; None of one without."""
+    rates = integration.rates
+    if drive not in rates.circuits:
+        return None
+    place = 2 * rates.circuits.index(drive)
+    if drive in rates.lagging:
+        current = rates.current(drive, track.states, where)
+    else:
+        off = next((event.time for event in integration.events if event.kind == "off"), inf)
+        motor = integration.equation.drivers()[drive]
+        current = np.where(track.time <= off, motor.current(where.speeds[drive]), 0.0)
+    return Electric(current, *track.quadratures[place : place + 2])

@@ -43,7 +43,6 @@ from equipoise.signals import Array
 Motions = Sequence[Motion]
 """Of each row of a machine, at the same N instants."""
 
-
 Factors = Sequence[Any]
 """Of each load over time (...), in the order of the file; none at all counts as 0."""
 

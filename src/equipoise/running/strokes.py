@@ -22,8 +22,14 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import MotionError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.running.drive_angles import DriveAngles, drives_at
-from equipoise.running.drives_linkage import DrivesPose, References, pose_of, references_at
+from equipoise.running.drives_linkage import (
+    DriveAngles,
+    DrivesPose,
+    References,
+    drives_at,
+    pose_of,
+    references_at,
+)
 from equipoise.signals import Array
 
 ITERATIONS, SQUARED = 12, 1e-8

@@ -23,8 +23,7 @@ from equipoise.web.replies import Reply
 from equipoise.web.result_blocks import block_messages, panel_charts
 
 if TYPE_CHECKING:
-    from equipoise.running.drives_run import DrivesRun
-    from equipoise.running.run import Run
+    from equipoise.running.run_results import DrivesRun, Run
 
 FRAME_TURN = pi / 36
 """rad that the fastest of several drives turns from one pose to the next, on average, as long as
@@ -96,7 +95,7 @@ def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:
     poses come along; on a support ``run.place`` (2 frames,), m, and ``run.angle`` (frames,), rad,
     too: the movement of that, larger than true.
     """
-    from equipoise.running.run import Run
+    from equipoise.running.run_results import Run
 
     block, frames = FloatBlock(), 0
     captions: list[Block] = []

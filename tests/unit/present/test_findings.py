@@ -17,7 +17,7 @@ from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.pictures import SECTIONS, LazyPicture, each, pictures
 from equipoise.quantities import PER_RPM
 from equipoise.results.blocks import SvgPicture
-from equipoise.running.run import Run
+from equipoise.running.run_results import Run
 from support.refusals import refused
 from surface.running import example_text
 

@@ -20,8 +20,7 @@ from equipoise.mechanism.parts.support import FREEDOMS, PLANAR
 from equipoise.present.cells import printed
 from equipoise.results.blocks import Block, Column, Facts, FileText, Notes, Table, Text, Value
 from equipoise.results.charts import Axis, Chart, Curve, Panel
-from equipoise.running.drives_run import DrivesRun
-from equipoise.running.run import Run
+from equipoise.running.run_results import DrivesRun, Run
 from equipoise.web import result_blocks, runs
 from equipoise.web.block import FloatBlock
 from equipoise.web.messages import message_of
