@@ -30,12 +30,12 @@ from equipoise.codegen.terms import (
 )
 from equipoise.codegen.trace import Array, Trace, links_of, numbered
 from equipoise.keys.paths import KeyPath
-from equipoise.mechanism.assembly.cam_groups import Displacement
+from equipoise.mechanism.assembly.contacts import Displacement
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import KernelCall, u
-from equipoise.mechanism.formulas import cam_kernels, kernels
-from equipoise.mechanism.formulas.cam_kernels import piece_value, plane_piece
+from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import MOST_POWERS, ROUNDING, PeriodicCurve, PlaneCurve
+from equipoise.mechanism.formulas.kernels import piece_value, plane_piece
 from equipoise.mechanism.formulas.rolling import HalfAngle, PitchCurve, RatioTable, RatioWaves
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Coupling
@@ -364,7 +364,7 @@ def trace_swung(trace: Trace, step: KernelCall, number: int) -> None:
     link, carrier = (name[len("phi(") : -1] for name in (step.outputs[0], step.inputs[5]))
     rest = trace.slot(f"rest({link})", partial(_turned, number), vector=True)
     sense = float(step.parameters[1])
-    lean, *rates = cam_kernels.swung(y, y1, y2, w_r, a_r, 0.0, w, a, 0.0, sense)
+    lean, *rates = kernels.swung(y, y1, y2, w_r, a_r, 0.0, w, a, 0.0, sense)
     trace.put(u(link), (trace.state[f"u({carrier})"] * rest * rotation(lean), *rates))
 
 
@@ -406,7 +406,7 @@ class _Law:
         state[f"phi({link})"] = state[f"phi({self.carrier})"] + y + offset
         state[f"ratio({link})"], state[f"bend({link})"] = ratio, bend
         rates = [state[name] for item in (self.driver, self.carrier) for name in u(item)[1:]]
-        self.trace.put(u(link)[1:], cam_kernels.followed(ratio, bend, *rates))
+        self.trace.put(u(link)[1:], kernels.followed(ratio, bend, *rates))
 
     def slot(self, what: str, read: Callable[[Linkage], Any], vector: bool = False) -> Any:
         return self.trace.slot(f"{what} of {self.link}", read, vector)
@@ -435,8 +435,8 @@ class _Law:
     def _half_angle(self, law: HalfAngle) -> tuple[Any, Any, Any]:
         lobes, mean = law.lobes, float(law.mean)
         numbers = mean, float(law.share), self.own("depth"), lobes
-        whole, twice, ratio, bend = cam_kernels.half_angle(self.turned(lobes), *numbers)
-        (along,) = cam_kernels.unit(whole)
+        whole, twice, ratio, bend = kernels.half_angle(self.turned(lobes), *numbers)
+        (along,) = kernels.unit(whole)
         self._rotate(law, along, twice)
         return mean * self.angle + float(2 * law.share / lobes) * angle_of(along), ratio, bend
 
@@ -468,7 +468,7 @@ class _Law:
                 for place, key in enumerate(("cosine", "sine"))
             ]
             wave = wave * turn
-            levels = cam_kernels.series_term(*levels, wave, *pair, float(order))  # type: ignore[call-arg]
+            levels = kernels.series_term(*levels, wave, *pair, float(order))  # type: ignore[call-arg]
         y, ratio, bend = (mean * level for level in levels)
         return y, ratio, bend
 

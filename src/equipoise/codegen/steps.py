@@ -32,8 +32,7 @@ from equipoise.codegen.trace import FAR, Array, Read, Trace, links_of, running_a
 from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
 from equipoise.keys import Frozen, cached_names, with_fields
-from equipoise.mechanism.assembly.cam_groups import Displacement
-from equipoise.mechanism.assembly.flanks import rolled
+from equipoise.mechanism.assembly.contacts import Displacement, rolled
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loopgroup import LoopForces
@@ -56,7 +55,7 @@ from equipoise.mechanism.dynamics.applied_loads import against_soil
 from equipoise.mechanism.dynamics.forces import inertia_moved, massless
 from equipoise.mechanism.dynamics.loads import load_at
 from equipoise.mechanism.dynamics.out_of_plane import contacts, statics
-from equipoise.mechanism.formulas import cam_kernels, kernels
+from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import PlaneCurve
 from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import ROUNDING
@@ -458,7 +457,7 @@ def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
             trace_coupling(trace, step)
         elif step.kernel is rolled:
             trace_rolled(trace, step, number)
-        elif step.kernel is cam_kernels.swung and not trace.counted:
+        elif step.kernel is kernels.swung and not trace.counted:
             trace_swung(trace, step, number)
         else:
             _trace_call(trace, step, steps, number)

@@ -21,7 +21,7 @@ from equipoise.exchange.parts import COUNTERWEIGHT, Part, parts
 from equipoise.i18n import Note, decimal_sign, spoken
 from equipoise.i18n.decimals import POINT
 from equipoise.i18n.languages import KNOWN
-from equipoise.mechanism.assembly.cam_fits import fits_of
+from equipoise.mechanism.assembly.cam_shapes import fits_of
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.symbols.scene import Scene

@@ -7,7 +7,7 @@ from math import degrees
 from typing import TYPE_CHECKING
 
 from equipoise.i18n import say
-from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
+from equipoise.mechanism.assembly.cam_shapes import fits_of, sharpest
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.quantities import format_quantity
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value

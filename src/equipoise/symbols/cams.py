@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from equipoise.mechanism.assembly.cam_fits import CamFit, fitted, sharpest
-from equipoise.mechanism.assembly.cam_shapes import CamShape
+from equipoise.mechanism.assembly.cam_shapes import CamFit, CamShape, fitted, sharpest
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.parts.cams import Cam

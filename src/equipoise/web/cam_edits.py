@@ -15,7 +15,7 @@ from typing import Any
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.builder import Guide
-from equipoise.mechanism.assembly.cam_fits import check_shape, fitted
+from equipoise.mechanism.assembly.cam_shapes import check_shape, fitted
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.kinematics.machine_draft import LinkPlacement

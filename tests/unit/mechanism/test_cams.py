@@ -13,7 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.mechanism import assemble
-from equipoise.mechanism.assembly.cam_fits import fits_of
+from equipoise.mechanism.assembly.cam_shapes import fits_of
 from equipoise.mechanism.dynamics.cam_contacts import let_go
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment

@@ -32,8 +32,8 @@ ANGLES = np.linspace(0.1, 6.2, 18)
 def only_loops() -> Iterator[None]:
     """Let Newton's method solve every group."""
     with pytest.MonkeyPatch.context() as patch:
-        for solver in ("_dyad", "_coupled"):
-            patch.setattr(f"equipoise.mechanism.assembly.ordering.{solver}", lambda *_: None)
+        for solver in ("_dyad_of", "_coupled"):
+            patch.setattr(f"equipoise.mechanism.assembly.groups.{solver}", lambda *_: None)
         yield
 
 

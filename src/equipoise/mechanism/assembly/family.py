@@ -31,7 +31,7 @@ from equipoise.keys import (
     with_fields,
 )
 from equipoise.keys.paths import KeyPath
-from equipoise.mechanism.assembly.cam_fits import can_be_made, fits_of
+from equipoise.mechanism.assembly.cam_shapes import can_be_made, fits_of
 from equipoise.mechanism.assembly.joints import Structure, all_sliders, coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage, ordered
 from equipoise.mechanism.assembly.steps import (

@@ -30,7 +30,7 @@ from equipoise.mechanism.assembly import assembly_modes
 from equipoise.mechanism.assembly.assembly_modes import surplus_cranks
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.cycle import Cycle, close, weakest
-from equipoise.mechanism.assembly.groups import hung
+from equipoise.mechanism.assembly.groups import has_two_known_pins, hung, next_group
 from equipoise.mechanism.assembly.joints import (
     Structure,
     drive_pivot,
@@ -40,7 +40,6 @@ from equipoise.mechanism.assembly.joints import (
     structure,
 )
 from equipoise.mechanism.assembly.loops import BranchError
-from equipoise.mechanism.assembly.ordering import has_two_known_pins, next_group
 from equipoise.mechanism.assembly.reach import with_cures
 from equipoise.mechanism.assembly.redundant_reactions import RedundantReactions, shared
 from equipoise.mechanism.assembly.steps import (

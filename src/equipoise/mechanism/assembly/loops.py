@@ -33,8 +33,8 @@ from equipoise.errors import MotionError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import Array, State, Step, along, p, u
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.formulas.cam_kernels import on_track
 from equipoise.mechanism.formulas.curves import HERMITE
+from equipoise.mechanism.formulas.kernels import on_track
 from equipoise.signals import first_below
 
 

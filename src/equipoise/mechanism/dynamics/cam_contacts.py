@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
-from equipoise.mechanism.assembly.cam_fits import fits_of, fitted, pressure_angle, sharpest
+from equipoise.mechanism.assembly.cam_shapes import fits_of, fitted, pressure_angle, sharpest
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.forces import forces as forces_of

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.mechanism.formulas.cam_kernels import piece_value, plane_piece
+from equipoise.mechanism.formulas.kernels import piece_value, plane_piece
 
 Array = np.ndarray[Any, Any]
 

@@ -28,7 +28,6 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.mechanism.formulas.cam_kernels import half_angle, series_term
 from equipoise.mechanism.formulas.curves import (
     MOST_POWERS,
     Array,
@@ -37,6 +36,7 @@ from equipoise.mechanism.formulas.curves import (
     direction,
     spline,
 )
+from equipoise.mechanism.formulas.kernels import half_angle, series_term
 
 Levels = tuple[Array, Array, Array]
 """Value, first and second derivative."""

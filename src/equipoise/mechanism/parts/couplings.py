@@ -22,7 +22,7 @@ from equipoise.i18n.terms import with_meaning
 from equipoise.keys import Frozen, Key, Keys, Listing, TextKind, declared, inside, key
 from equipoise.keys.declaring import listed_types, once
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
-from equipoise.mechanism.formulas.cam_kernels import followed
+from equipoise.mechanism.formulas.kernels import followed
 from equipoise.mechanism.outputs.declared import CONTACT, FORCES, PART_OF_FORCE, of_coupling
 from equipoise.mechanism.parts.element_kinds import PartKind
 from equipoise.quantities import number
