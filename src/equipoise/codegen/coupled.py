@@ -11,6 +11,7 @@ own angle, and its piece is looked up in tables, without a branch.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import is_dataclass, replace
 from functools import partial
 from itertools import pairwise
 from math import ceil, pi, prod, tau
@@ -28,7 +29,9 @@ from equipoise.codegen.terms import (
     rotation,
     select,
 )
-from equipoise.codegen.trace import Array, Trace, links_of, numbered
+from equipoise.codegen.trace import Array, Read, Trace, links_of, numbered
+from equipoise.dataclass import dataclass
+from equipoise.keys import cached_names, with_fields
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.contacts import Displacement
 from equipoise.mechanism.assembly.linkage import Linkage
@@ -36,9 +39,10 @@ from equipoise.mechanism.assembly.steps import KernelCall, u
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import MOST_POWERS, ROUNDING, PeriodicCurve, PlaneCurve
 from equipoise.mechanism.formulas.kernels import piece_value, plane_piece
-from equipoise.mechanism.formulas.rolling import HalfAngle, PitchCurve, RatioTable, RatioWaves
+from equipoise.mechanism.formulas.rolling import MOST_PRODUCTS
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.machine import FRAME
 
 Turning = Callable[[Array], tuple[Any, Any, Any]]
@@ -53,8 +57,6 @@ MOST_BINS = 20_000
 """Parts of a curve's length, of which none has more than one of its knots."""
 NOWHERE = 1e300
 """A knot that is never reached."""
-MOST_PRODUCTS = 6
-"""Power of a rotation up to which it is multiplied by itself."""
 
 
 def known_by_crank(trace: Trace) -> dict[str, Turning]:
@@ -376,126 +378,56 @@ def _turned(number: int, linkage: Linkage) -> Any:
 
 def trace_law(trace: Trace, step: KernelCall, number: int) -> None:
     """How something turns whose ratio varies: the step of this number of the ``motion``."""
-    _Law(trace, step, number).trace_driven()
+    driver, carrier, link = links_of(step)
+    state, base = trace.state, step.parameters[0]
+
+    def slot(value: Any, what: str, *path: int | str) -> Any:
+        return slotted(trace, value, f"{what} of {link}", partial(_parameters, number), path)
+
+    law = replace(base, **{key: slot(getattr(base, key), key, 0, key) for key in base.varied})
+    offset = slot(step.parameters[1], "offset", 1)
+    turns = state[f"u({driver})"] * state[f"u({carrier})"].conjugate() * rotation(-law.zero)
+    at = TracedAngle(trace, state[f"phi({driver})"] - state[f"phi({carrier})"] - law.zero, turns)
+    y, ratio, bend = law.values(at)
+    state[f"phi({link})"] = state[f"phi({carrier})"] + y + offset
+    state[f"ratio({link})"], state[f"bend({link})"] = ratio, bend
+    rates = [state[name] for item in (driver, carrier) for name in u(item)[1:]]
+    trace.put(u(link)[1:], kernels.followed(ratio, bend, *rates))
+    if (turn := law.turn(at)) is not None:
+        state[f"u({link})"] = rotation(offset) * state[f"u({carrier})"] * turn
+        trace.rotated.add(link)
 
 
-class _Law:
-    """A law in its place, and what of it each design has of its own.
-
-    angle : of the driver, seen from the carrier, from the law's zero on.
-    """
-
-    def __init__(self, trace: Trace, step: KernelCall, number: int) -> None:
-        self.trace, self.number = trace, number
-        self.driver, self.carrier, self.link = links_of(step)
-        self.law: Any = step.parameters[0]
-        driver, carrier = (trace.state[f"phi({item})"] for item in (self.driver, self.carrier))
-        self.angle = driver - carrier - self.own("zero")
-
-    def trace_driven(self) -> None:
-        link, state = self.link, self.trace.state
-        match self.law:
-            case HalfAngle():
-                y, ratio, bend = self._half_angle(self.law)
-            case RatioWaves():
-                y, ratio, bend = self._waves(self.law)
-            case _:
-                curve, begin = curve_of(self.law)
-                y, ratio, bend = curve_value(self.trace, curve, self.angle - begin)
-        offset = self.slot("offset", lambda linkage: _parameters(linkage, self.number)[1])
-        state[f"phi({link})"] = state[f"phi({self.carrier})"] + y + offset
-        state[f"ratio({link})"], state[f"bend({link})"] = ratio, bend
-        rates = [state[name] for item in (self.driver, self.carrier) for name in u(item)[1:]]
-        self.trace.put(u(link)[1:], kernels.followed(ratio, bend, *rates))
-
-    def slot(self, what: str, read: Callable[[Linkage], Any], vector: bool = False) -> Any:
-        return self.trace.slot(f"{what} of {self.link}", read, vector)
-
-    def own(self, key: str) -> Any:
-        """A number of the law."""
-        return self.slot(key, lambda linkage: getattr(_parameters(linkage, self.number)[0], key))
-
-    @property
-    def once(self) -> Any:
-        """exp(i x), with x counted from the law's zero."""
-        driver, carrier = (self.trace.state[f"u({item})"] for item in (self.driver, self.carrier))
-        zero = self.slot(
-            "turned back",
-            lambda linkage: np.exp(-1j * _parameters(linkage, self.number)[0].zero),
-            True,
-        )
-        return driver * carrier.conjugate() * zero
-
-    def turned(self, lobes: int) -> Any:
-        """exp(i lobes x), with x counted from the law's zero."""
-        if lobes > MOST_PRODUCTS:
-            return rotation(float(lobes) * self.angle)
-        return prod([self.once] * (lobes - 1), start=self.once)
-
-    def _half_angle(self, law: HalfAngle) -> tuple[Any, Any, Any]:
-        lobes, mean = law.lobes, float(law.mean)
-        numbers = mean, float(law.share), self.own("depth"), lobes
-        whole, twice, ratio, bend = kernels.half_angle(self.turned(lobes), *numbers)
-        (along,) = kernels.unit(whole)
-        self._rotate(law, along, twice)
-        return mean * self.angle + float(2 * law.share / lobes) * angle_of(along), ratio, bend
-
-    def _rotate(self, law: HalfAngle, along: Any, twice: Any) -> None:
-        """The rotation itself, where what swings is a product of others."""
-        mean, times = float(law.mean), float(2 * law.share / law.lobes)
-        if not times.is_integer() or abs(times) > MOST_PRODUCTS:
-            return
-        factors = [self.trace.state[f"u({self.carrier})"]]
-        if mean.is_integer() and abs(mean) <= MOST_PRODUCTS and law.lobes <= MOST_PRODUCTS:
-            factors += [_power(self.once, mean)] * abs(round(mean))
-        else:
-            factors.append(rotation(mean * self.angle))
-        factors += [_power(twice, times)] * (abs(round(times)) // 2)
-        factors += [_power(along, times)] * (round(times) % 2)
-
-        def begun(linkage: Linkage) -> Any:
-            return np.exp(1j * _parameters(linkage, self.number)[1])
-
-        self.trace.state[f"u({self.link})"] = prod(factors, start=self.slot("begun", begun, True))
-        self.trace.rotated.add(self.link)
-
-    def _waves(self, law: RatioWaves) -> tuple[Any, Any, Any]:
-        turn, wave, mean = self.turned(law.waves.lobes), 1.0, float(law.mean)
-        levels: tuple[Any, ...] = (self.angle, 1.0, 0.0)
-        for k, (_, _, order) in enumerate(law.waves.terms):
-            pair = [
-                self.slot(f"{key} {k + 1}", partial(_term, self.number, k, place))
-                for place, key in enumerate(("cosine", "sine"))
-            ]
-            wave = wave * turn
-            levels = kernels.series_term(*levels, wave, *pair, float(order))  # type: ignore[call-arg]
-        y, ratio, bend = (mean * level for level in levels)
-        return y, ratio, bend
-
-
-def curve_of(law: RatioTable | PitchCurve) -> tuple[PeriodicCurve, float]:
-    """A law as a curve, and the angle at which this begins."""
-    if isinstance(law, PitchCurve):
-        return law.summed()
-    curve, factor = law.table.spline, law.factor
-    assert isinstance(curve, PeriodicCurve)
-    return PeriodicCurve(curve.knots, factor * curve.powers, curve.waves), law.table.origin
-
-
-def _parameters(linkage: Linkage, number: int) -> tuple[Any, ...]:
+def _parameters(number: int, linkage: Linkage) -> tuple[Any, ...]:
     """Law and offset."""
     step = linkage.motion[number]
     assert isinstance(step, KernelCall)
     return step.parameters
 
 
-def _term(number: int, k: int, place: int, linkage: Linkage) -> Any:
-    """A cosine or sine of a series."""
-    return [*_parameters(linkage, number)[0].waves.terms][k][place]
+@dataclass(frozen=True)
+class TracedAngle:
+    """A `LawAngle` of terms.
 
+    rotation : exp(i angle).
+    """
 
-def _power(factor: Any, sign: float) -> Any:
-    return factor if sign > 0 else factor.conjugate()
+    trace: Trace
+    angle: Any
+    rotation: Any
+
+    def turned(self, lobes: int) -> Any:
+        if lobes > MOST_PRODUCTS:
+            return rotation(float(lobes) * self.angle)
+        return prod([self.rotation] * (lobes - 1), start=self.rotation)
+
+    def direction(self, vector: Any) -> Any:
+        (along,) = kernels.unit(vector)
+        return angle_of(along)
+
+    def curve(self, curve: PeriodicCurve, x: Any, factor: float) -> tuple[Any, Any, Any]:
+        larger = PeriodicCurve(curve.knots, factor * curve.powers, curve.waves)
+        return curve_value(self.trace, larger, x)
 
 
 FEW_PIECES = 2
@@ -543,3 +475,35 @@ class TracedCurve:
 def can_look_up(curve: PlaneCurve) -> bool:
     """Whether the piece of a curve can be looked up."""
     return bins(curve.arcs[0]) <= MOST_BINS
+
+
+def slotted(
+    trace: Trace, value: Any, name: str, read: Read, path: tuple[int | str, ...] = ()
+) -> Any:
+    """Copy of a value with slots for its real and complex numbers.
+
+    read : finds in the linkage of a design what the value is reached from by a path of attributes
+        and places.
+    """
+
+    def part(key: int | str, item: Any) -> Any:
+        return slotted(trace, item, name, read, (*path, key))
+
+    if isinstance(value, PlaneCurve):
+        return TracedCurve(trace, value)
+    if isinstance(value, tuple):
+        return tuple(part(k, item) for k, item in enumerate(value))
+    if is_dataclass(value) and not isinstance(value, type):
+        left = {*(value.still if isinstance(value, Element) else ()), *cached_names(type(value))}
+        given = {key: item for key, item in vars(value).items() if key not in left}
+        return with_fields(value, **{key: part(key, item) for key, item in given.items()})
+    if isinstance(value, float | complex):
+        return trace.slot(f"{name} {path}", partial(_at, read, path), isinstance(value, complex))
+    return value
+
+
+def _at(read: Read, path: tuple[int | str, ...], linkage: Linkage) -> Any:
+    value = read(linkage)
+    for key in path:
+        value = value[key] if isinstance(key, int) else getattr(value, key)
+    return value

@@ -12,19 +12,19 @@ last links first.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import fields, is_dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import reduce
 from math import pi
-from operator import attrgetter, itemgetter
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.coupled import TracedCurve, can_look_up
+from equipoise.codegen.coupled import can_look_up, slotted
 from equipoise.codegen.terms import ANGLE, Term, floor, greatest, least, pick, rotation
 from equipoise.codegen.trace import FAR as LOWEST
-from equipoise.codegen.trace import Read, Trace
+from equipoise.codegen.trace import Trace
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loopgroup import FAR, LoopForces
 from equipoise.mechanism.assembly.loops import (
@@ -39,7 +39,6 @@ from equipoise.mechanism.assembly.loops import (
     poses_in,
 )
 from equipoise.mechanism.assembly.steps import along, p, planar, size_of_bodies, u
-from equipoise.mechanism.formulas.curves import PlaneCurve
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.parts.machine import FRAME
 
@@ -111,11 +110,10 @@ class TracedGroup:
         self.machine = trace.machine
 
         def parts(key: str) -> Any:
-            read = attrgetter(key)
-            name = f"{key} {number}"
-            return self.slotted(
-                getattr(group, key), name, lambda linkage: read(linkage.motion[number])
-            )
+            def read(linkage: Linkage) -> Any:
+                return getattr(linkage.motion[number], key)
+
+            return slotted(trace, getattr(group, key), f"{key} {number}", read)
 
         self.group = replace(group, tree=parts("tree"), equations=parts("equations"))
         self.size = trace.slot("size", lambda linkage: size_of_bodies(linkage.machine))
@@ -123,23 +121,6 @@ class TracedGroup:
         self.step, self.marked, self.steady = (trace.graph.argument(item, ANGLE) for item in MARCH)
 
     # -- what is given -----------------------------------------------------------------------------
-
-    def slotted(self, value: Any, name: str, read: Read) -> Any:
-        """Copy of a value with terms for its numbers."""
-
-        def part(key: Any, get: Callable[[Any], Any]) -> Any:
-            return self.slotted(get(value), f"{name} {key}", lambda linkage: get(read(linkage)))
-
-        if isinstance(value, str) or callable(value):
-            return value
-        if isinstance(value, PlaneCurve):
-            return TracedCurve(self.trace, value)
-        if isinstance(value, tuple):
-            return tuple(part(k, itemgetter(k)) for k in range(len(value)))
-        if is_dataclass(value) and not isinstance(value, type):
-            keys = [field.name for field in fields(value)]
-            return replace(value, **{key: part(key, attrgetter(key)) for key in keys})
-        return self.trace.slot(name, read, isinstance(value, complex | np.complexfloating))
 
     def pose_of(self, body: str) -> Pose:
         """Pose of a body that is known; the frame and the crank have rates that are numbers."""
@@ -381,7 +362,7 @@ class _Forces:
         def read(linkage: Linkage) -> Any:
             return attrgetter("loops")(linkage.forces[number])
 
-        self.loops: tuple[Loop, ...] = self.solved.slotted(step.loops, f"loops {number}", read)
+        self.loops: tuple[Loop, ...] = slotted(trace, step.loops, f"loops {number}", read)
         self.poses = self.solved.final
         self.demands: dict[str, Demand] = {
             link: (trace.state[f"F({link})"], trace.state[f"M({link})"])

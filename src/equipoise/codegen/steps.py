@@ -18,6 +18,7 @@ import numpy as np
 
 from equipoise.codegen.coupled import (
     TracedCurve,
+    slotted,
     trace_coupling,
     trace_displacement,
     trace_law,
@@ -31,7 +32,7 @@ from equipoise.codegen.terms import VectorTerm, angle_of, rotation
 from equipoise.codegen.trace import FAR, Array, Read, Trace, links_of, running_angle
 from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
-from equipoise.keys import Frozen, cached_names, with_fields
+from equipoise.keys import with_fields
 from equipoise.mechanism.assembly.contacts import Displacement, rolled
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
@@ -232,26 +233,11 @@ def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, Trac
     """An element with terms for its numbers, and the bodies between which it acts."""
     name = f"{table}[{number}]"
 
-    def read(linkage: Linkage, steps: tuple[str | int, ...]) -> Any:
-        value = getattr(linkage.machine, table)[number]
-        for step in steps:
-            value = value[step] if isinstance(step, int) else getattr(value, step)
-        return value
+    def read(linkage: Linkage) -> Element:
+        element: Element = getattr(linkage.machine, table)[number]
+        return element
 
-    def traced(value: Any, *steps: str | int) -> Any:
-        """A value whose numbers are slots."""
-        if isinstance(value, Frozen):
-            still = value.still if isinstance(value, Element) else ()
-            traceds = {key: traced(var, *steps, key) for key, var in vars(value).items()
-                    if key not in {*still, *cached_names(type(value))}}  # fmt: skip
-            return with_fields(value, **traceds)
-        if isinstance(value, tuple):
-            return tuple(traced(item, *steps, k) for k, item in enumerate(value))
-        if not isinstance(value, float):
-            return value
-        return trace.slot(f"{name}{steps}", partial(read, steps=steps))
-
-    element: Element = traced(getattr(trace.machine, table)[number])
+    element: Element = slotted(trace, read(trace.linkage), name, read)
     return element, TracedBodies(trace, name)
 
 

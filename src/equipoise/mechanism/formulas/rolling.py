@@ -8,7 +8,8 @@ c i / (1 - i) from the second: so the ratio gives both curves, and the driver's 
 A ratio is negative of gears that mesh from outside, from 0 to 1 of a ring that a gear in it drives,
 and above 1 of a ring that drives the gear in it.
 
-Numbers of a law may be columns (P, 1), one for each of P designs; it then takes angles (P, K).
+Numbers of a law may be columns (P, 1), one for each of P designs; it then takes angles (P, K).  The
+same law runs on terms: a `LawAngle` says how an angle is turned and looked up there.
 
 Formulas: ``docs/theory.md``.
 
@@ -19,11 +20,12 @@ column.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, is_dataclass, replace
 from itertools import zip_longest
-from math import pi
-from typing import Any, Literal
+from math import pi, prod
+from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
@@ -36,15 +38,71 @@ from equipoise.mechanism.formulas.curves import (
     direction,
     spline,
 )
-from equipoise.mechanism.formulas.kernels import half_angle, series_term
+from equipoise.mechanism.formulas.kernels import half_angle, series_term, unit
 
 Levels = tuple[Array, Array, Array]
 """Value, first and second derivative."""
 Profile = Callable[[Array], Levels]
 """What repeats with the lobes of a gear."""
+MOST_PRODUCTS = 6
+"""Power of a rotation up to which it is multiplied by itself."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
 FEW_NODES, FEW_WEIGHTS = np.polynomial.legendre.leggauss(3)
 """Enough to rounding over a piece, and from the nearest of its ends."""
+
+
+class LawAngle(Protocol):
+    """The driver's angle, seen from the carrier, from the zero of a law on, as arrays or terms."""
+
+    @property
+    def angle(self) -> Any:
+        """The angle itself, rad, counted on through the turns."""
+
+    def turned(self, lobes: int) -> Any:
+        """exp(i lobes angle)."""
+
+    def direction(self, vector: Any) -> Any:
+        """Angle of a vector, within half a turn of 0."""
+
+    def curve(self, curve: Any, x: Any, factor: Any) -> Levels:
+        """A periodic curve times a factor, and its two derivatives, at x."""
+
+
+@dataclass(frozen=True)
+class ArrayAngle:
+    """A `LawAngle` of arrays."""
+
+    angle: Any
+
+    def turned(self, lobes: int) -> Any:
+        return np.exp(1j * lobes * self.angle)
+
+    def direction(self, vector: Any) -> Any:
+        return direction(vector)
+
+    def curve(self, curve: Any, x: Any, factor: Any) -> Levels:
+        y, first, second = curve.at(x)
+        return factor * y, factor * first, factor * second
+
+
+class RollingLaw(ABC):
+    """How far the driven gear turns by the driver's angle."""
+
+    zero: Any
+    """The driver's angle from which the law counts."""
+    varied: ClassVar[tuple[str, ...]] = ("zero",)
+    """Fields whose numbers designs may have of their own in compiled loops."""
+
+    @abstractmethod
+    def values(self, at: LawAngle) -> tuple[Any, Any, Any]:
+        """The driven gear's angle with its two derivatives by the driver's."""
+
+    def turn(self, at: LawAngle) -> Any:
+        """Rotation of the driven gear where it is a product of few others; None elsewhere."""
+        return None
+
+    def __call__(self, x: Any) -> tuple[Any, Any, Any]:
+        return self.values(ArrayAngle(x - self.zero))
 
 
 @dataclass(frozen=True)
@@ -62,7 +120,7 @@ class Waves:
         return ((cosine, sine, k * self.lobes) for k, (cosine, sine) in enumerate(pairs, 1))
 
     def __call__(self, x: Any) -> Levels:
-        _, value, first = self.summed(x)
+        _, value, first = self.summed(ArrayAngle(x))
         second = 0.0 * x
         turn, wave = np.exp(1j * self.lobes * x), 1.0
         for cosine, sine, order in self.terms:
@@ -70,10 +128,11 @@ class Waves:
             second = second - order * order * ((cosine - 1j * sine) * wave).real
         return value, first, second
 
-    def summed(self, x: Any) -> Levels:
+    def summed(self, at: LawAngle) -> Levels:
         """What it sums up to, from the mean alone on, its value and its first derivative."""
-        levels: Any = (x + 0.0, 1.0 + 0.0 * x, 0.0 * x)
-        turn, wave = np.exp(1j * self.lobes * x), 1.0
+        still = 0.0 * at.angle
+        levels: Any = (at.angle + still, 1.0 + still, still)
+        turn, wave = at.turned(self.lobes), 1.0
         for cosine, sine, order in self.terms:
             wave = wave * turn
             levels = series_term(*levels, wave, cosine, sine, order)  # type: ignore[call-arg]
@@ -115,7 +174,7 @@ class Tabled:
 
 
 @dataclass(frozen=True)
-class HalfAngle:
+class HalfAngle(RollingLaw):
     """y = mean x + (2 share / lobes) arg(1 + depth exp(i lobes x)), with x counted from zero.
 
     Of a pair of ellipses that is the tangent of half an angle times a factor, as of anomalies.
@@ -126,6 +185,8 @@ class HalfAngle:
     depth: Any
     lobes: int
     zero: Any = 0.0
+
+    varied = ("zero", "depth")
 
     @classmethod
     def ellipses(cls, eccentricity: Any, mean: float, lobes: int) -> HalfAngle:
@@ -147,29 +208,48 @@ class HalfAngle:
         wave = eccentricity * radius / (1 - radius)
         return cls(mean, 1 - mean, wave / (1 + (1 - wave * wave) ** 0.5), lobes)
 
-    def __call__(self, x: Any) -> tuple[Any, Any, Any]:
-        x = x - self.zero
-        turned = np.exp(1j * self.lobes * x)
-        text = half_angle(turned, self.mean, self.share, self.depth, self.lobes)
-        y = self.mean * x + (2 / self.lobes) * self.share * direction(text[0])
-        return y, text[2], text[3]
+    def values(self, at: LawAngle) -> tuple[Any, Any, Any]:
+        whole, _, ratio, bend = self._parts(at)
+        y = self.mean * at.angle + (2 / self.lobes) * self.share * at.direction(whole)
+        return y, ratio, bend
+
+    def turn(self, at: LawAngle) -> Any:
+        times, mean = float(2 * self.share / self.lobes), float(self.mean)
+        if not times.is_integer() or abs(times) > MOST_PRODUCTS:
+            return None
+        whole, twice, *_ = self._parts(at)
+        (along,) = unit(whole)
+        if mean.is_integer() and abs(mean) <= MOST_PRODUCTS and self.lobes <= MOST_PRODUCTS:
+            factors = [_power(at.turned(1), mean)] * abs(round(mean))
+        else:
+            factors = [np.exp(1j * (mean * at.angle))]
+        factors += [_power(twice, times)] * (abs(round(times)) // 2)
+        factors += [_power(along, times)] * (round(times) % 2)
+        return prod(factors[1:], start=factors[0])
+
+    def _parts(self, at: LawAngle) -> tuple[Any, ...]:
+        numbers = self.mean, self.share, self.depth, self.lobes
+        parts: tuple[Any, ...] = half_angle(at.turned(self.lobes), *numbers)
+        return parts
 
 
 @dataclass(frozen=True)
-class RatioWaves:
+class RatioWaves(RollingLaw):
     """The ratio is its mean times 1 and a Fourier series; so is its sum."""
 
     mean: Any
     waves: Waves
     zero: Any = 0.0
 
-    def __call__(self, x: Any) -> tuple[Any, Any, Any]:
-        y, first, second = self.waves.summed(x - self.zero)
+    varied = ("zero", "waves")
+
+    def values(self, at: LawAngle) -> tuple[Any, Any, Any]:
+        y, first, second = self.waves.summed(at)
         return self.mean * y, self.mean * first, self.mean * second
 
 
 @dataclass(frozen=True, eq=False)
-class RatioTable:
+class RatioTable(RollingLaw):
     """The ratio is a factor times the spline through a table; `table` has what that sums up to."""
 
     factor: Any
@@ -183,13 +263,12 @@ class RatioTable:
         whole = table.spline.summed()
         return cls(mean * whole.length / whole.rise, Tabled(whole, table.origin))
 
-    def __call__(self, x: Any) -> tuple[Any, Any, Any]:
-        y, first, second = self.table(x - self.zero)
-        return self.factor * y, self.factor * first, self.factor * second
+    def values(self, at: LawAngle) -> tuple[Any, Any, Any]:
+        return at.curve(self.table.spline, at.angle - self.table.origin, self.factor)
 
 
 @dataclass(frozen=True, eq=False)
-class PitchCurve:
+class PitchCurve(RollingLaw):
     """The driver's radius is a curve over the direction in its axes, against which it turns.
 
     factor : of the curve, over the distance of the centres; negative where the driver's axis and
@@ -235,6 +314,10 @@ class PitchCurve:
         pieces = period * np.sum(weights * factor * radius / (1 + factor * radius), axis=1)
         return cls(mean, curve, factor, knots, np.append(0.0, np.cumsum(pieces)))
 
+    def values(self, at: LawAngle) -> tuple[Any, Any, Any]:
+        curve, begin = self.summed()
+        return at.curve(curve, at.angle - begin, 1.0)
+
     def summed(self) -> tuple[PeriodicCurve, float]:
         """The driven gear's angle as pieces between the knots, to 1e-12, and where they begin."""
         half = 0.5 * np.diff(self.knots)
@@ -253,6 +336,7 @@ class PitchCurve:
         return self.factor * radius * rest, -self.factor * slope * rest * rest
 
     def __call__(self, x: Any) -> tuple[Any, Any, Any]:
+        """On arrays the quadrature goes on from the nearest knot, to rounding."""
         x = np.asarray(x - self.zero)
         begin, period = self.knots[0], self.knots[-1] - self.knots[0]
         rounds = np.floor((x - begin) / period)
@@ -266,8 +350,8 @@ class PitchCurve:
         return self.mean * period * rounds + come + way, ratio[-1], bend[-1]
 
 
-Rolling = HalfAngle | RatioWaves | RatioTable | PitchCurve
-"""How far the driven gear turns by the driver's angle."""
+def _power(factor: Any, sign: float) -> Any:
+    return factor if sign > 0 else factor.conjugate()
 
 
 def stacked(values: Sequence[Any]) -> Any:

@@ -20,7 +20,7 @@ from equipoise.mechanism.formulas.rolling import (
     PitchCurve,
     RatioTable,
     RatioWaves,
-    Rolling,
+    RollingLaw,
     Tabled,
     Waves,
 )
@@ -39,7 +39,7 @@ PIECES = 128
 """Pieces of a lobe over which a ratio is summed up, for each of its waves."""
 
 
-def law_of(shape: GearShape, mean: float) -> Rolling:
+def law_of(shape: GearShape, mean: float) -> RollingLaw:
     """The driven gear's angle by the driver's, both seen from the carrier; mean : ratio."""
     if shape.varies or np.ndim(shape.phase):
         return replace(_law.__wrapped__(shape, mean), zero=shape.phase)
@@ -47,7 +47,7 @@ def law_of(shape: GearShape, mean: float) -> Rolling:
 
 
 @lru_cache(maxsize=256)
-def _rolling(shape: GearShape, mean: float) -> Rolling:
+def _rolling(shape: GearShape, mean: float) -> RollingLaw:
     return replace(_law(_even(shape), mean), zero=shape.phase)
 
 
@@ -58,7 +58,7 @@ def _even(shape: GearShape) -> GearShape:
 
 
 @lru_cache(maxsize=64)
-def _law(shape: GearShape, mean: float) -> Rolling:
+def _law(shape: GearShape, mean: float) -> RollingLaw:
     """The law of a shape whose phase is 0."""
     if shape.kind == "elliptic":
         return HalfAngle.ellipses(shape.eccentricity, mean, shape.lobes)
@@ -237,7 +237,7 @@ def _overlap(shape: GearShape, mean: float) -> float:
 
 
 def _misfits(
-    shape: GearShape, law: Rolling, ratio: float, distance: float | None
+    shape: GearShape, law: RollingLaw, ratio: float, distance: float | None
 ) -> Iterator[KeyProblem]:
     """Tables whose curves do not close to a share of `MISFIT`."""
     if not shape.angle or not isinstance(law, RatioTable | PitchCurve):
