@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.backends import processors, run_loop
-from equipoise.codegen.coupled import known_by_crank
 from equipoise.codegen.emit import emit, own_motion
 from equipoise.codegen.extremes import CurveTops, GridTops, PanelTops
 from equipoise.codegen.figures import (
@@ -163,7 +162,7 @@ def all_angles(count: int, turns: int) -> Array:
 def jumps_alike(linkage: Linkage, paths: Collection[str]) -> bool:
     """Whether forces of all designs in which these numbers vary jump at the same crank angles."""
     trace = Trace(linkage, paths)
-    known = known_by_crank(trace).keys() - trace.shifted
+    known = trace.by_crank - trace.shifted
     jerking = (coupling for coupling in linkage.machine.couplings if len(coupling.jumps))
     return all(
         {item.driver, item.carrier} <= known and item.driven not in trace.late for item in jerking

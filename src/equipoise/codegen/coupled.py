@@ -29,24 +29,20 @@ from equipoise.codegen.terms import (
     rotation,
     select,
 )
-from equipoise.codegen.trace import Array, Read, Trace, links_of, numbered
+from equipoise.codegen.trace import Array, Read, Trace
 from equipoise.dataclass import dataclass
 from equipoise.keys import cached_names, with_fields
 from equipoise.keys.paths import KeyPath
-from equipoise.mechanism.assembly.contacts import Displacement
+from equipoise.mechanism.assembly.contacts import Displacement, RelationCall, RollingCall
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import KernelCall, u
+from equipoise.mechanism.assembly.steps import u
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import MOST_POWERS, ROUNDING, PeriodicCurve, PlaneCurve
 from equipoise.mechanism.formulas.kernels import piece_value, plane_piece
 from equipoise.mechanism.formulas.rolling import MOST_PRODUCTS
-from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.element_kinds import Element
-from equipoise.mechanism.parts.machine import FRAME
 
-Turning = Callable[[Array], tuple[Any, Any, Any]]
-"""Angle of a link at crank angles (N,), rad, and its two derivatives by them."""
 FEW = 16
 """Pieces of a curve, at most, that are found by comparing, which handles several angles at once."""
 ALIKE = 1e-14
@@ -59,64 +55,43 @@ NOWHERE = 1e300
 """A knot that is never reached."""
 
 
-def known_by_crank(trace: Trace) -> dict[str, Turning]:
-    """Links whose angle is a function of the crank angle alone: driven ones, and by couplings."""
-    turnings: dict[str, Turning] = {FRAME: lambda theta: (0.0 * theta, 0.0, 0.0)}
-    turnings |= {drive.link: drive.turned for drive in trace.machine.driven}
-    for step in trace.linkage.motion:
-        if isinstance(step, KernelCall) and step.outputs[0].startswith("phi("):
-            driver, carrier, driven = links_of(step)
-            if {driver, carrier} <= turnings.keys() and driven not in trace.loose:
-                turnings[driven] = partial(_followed, step, turnings[driver], turnings[carrier])
-    return turnings
-
-
-def _followed(step: KernelCall, driver: Turning, carrier: Turning, theta: Array) -> tuple[Any, ...]:
-    return step.kernel(*driver(theta), *carrier(theta), *step.parameters)
-
-
-def trace_coupling(trace: Trace, step: KernelCall) -> None:
-    """A coupling that need not be counted on, or one with a law."""
-    driver, carrier, link = links_of(step)
-    even = step.kernel is kernels.in_ratio and {driver, carrier} <= trace.orders.keys()
-    if even and not trace.counted:
-        _trace_uniform(trace, step)
-        return
-    turning = known_by_crank(trace)[link]
-    angle, first, second = (
-        trace.row(f"{name}({link})", partial(_part, turning, place))
-        for place, name in enumerate(("angle", "first", "second"))
-    )
-    start = _coupling(trace.linkage, link).start
-    if trace.counted:
-        put_off = trace.slot(
-            f"start({link})", lambda linkage: _coupling(linkage, link).start - start
-        )
-        trace.state[f"phi({link})"] = angle + put_off
+def trace_relation(trace: Trace, step: RelationCall, number: int) -> None:
+    """How a driven body follows: the step of this number of the ``motion``."""
+    coupling, numbers = step.coupling, step.parameters
+    if step.law is None:
+        inputs = [trace.state[name] for name in step.inputs]
+        name, read = f"relation of {coupling.name}", partial(_parameters, number)
+        own = any(path.begin(2) == trace.paths[coupling.name] for path in trace.varied)
+        fixed = [] if own else [*numbers[:-1]]
+        places = range(len(fixed), len(numbers))
+        given = [slotted(trace, numbers[k], name, read, (k,)) for k in places]
+        trace.put(step.outputs, step.kernel(*inputs, *fixed, *given))
+    elif coupling.driven in trace.loose:
+        _trace_law(trace, step, number)
     else:
-        turn = trace.slot(
-            f"start({link})",
-            lambda linkage: np.exp(1j * (_coupling(linkage, link).start - start)),
-            vector=True,
-        )
-        trace.state[f"u({link})"] = rotation(angle) * turn
-    trace.put(u(link)[1:], (first, second))
+        angle, *rates = map(trace.base_row, step.outputs)
+        start = trace.slot(f"start({coupling.driven})", partial(_start_beyond, number, coupling))
+        trace.put(step.outputs, (angle + start, *rates))
 
 
-def trace_rolled(trace: Trace, step: KernelCall, number: int) -> None:
+def _start_beyond(number: int, base: Coupling, linkage: Linkage) -> Any:
+    """By how much a driven body starts beyond the base's, rad."""
+    step = linkage.motion[number]
+    assert isinstance(step, RelationCall)
+    return step.coupling.start - base.start
+
+
+def trace_rolled(trace: Trace, step: RollingCall, number: int) -> None:
     """Where what rolls with a varying ratio touches: the step of this number of the ``forces``."""
-    name = step.outputs[0].removeprefix("lever(")[:-1]
-    link = next(coupling.driven for coupling in trace.machine.couplings if coupling.name == name)
-    if link in trace.loose:
-        ratio, bend = (trace.state[f"{what}({link})"] for what in ("ratio", "bend"))
+    coupling = step.coupling
+    if coupling.driven in trace.loose:
+        ratio, bend = (trace.state[f"{what}({coupling.driven})"] for what in ("ratio", "bend"))
     else:
-        law, turnings = step.parameters[0], known_by_crank(trace)
-        driver, carrier = (turnings[angle.removeprefix("phi(")[:-1]] for angle in step.inputs)
         ratio, bend = (
-            trace.row(f"{what}({name})", partial(_of_law, law, place, driver, carrier))
+            trace.row(f"{what}({coupling.name})", partial(_of_law, trace, step, place))
             for place, what in ((1, "ratio"), (2, "bend"))
         )
-    centres = trace.slot(f"centres({name})", partial(_centres, number), vector=True)
+    centres = trace.slot(f"centres({coupling.name})", partial(_centres, number), vector=True)
     lever, slope = step.outputs
     trace.state[lever] = centres * (1 / (1 - ratio))
     trace.state[slope] = kernels.pitch_slope(ratio, bend)
@@ -124,74 +99,35 @@ def trace_rolled(trace: Trace, step: KernelCall, number: int) -> None:
 
 def _centres(number: int, linkage: Linkage) -> Any:
     step = linkage.forces[number]
-    assert isinstance(step, KernelCall)
+    assert isinstance(step, RollingCall)
     return step.parameters[1]
 
 
-def _part(turning: Turning, place: int, theta: Array) -> Array:
-    return np.asarray(turning(theta)[place] + 0.0 * theta)
-
-
-def _of_law(law: Any, place: int, driver: Turning, carrier: Turning, theta: Array) -> Array:
-    return np.asarray(law(driver(theta)[0] - carrier(theta)[0])[place])
-
-
-def _coupling(linkage: Linkage, link: str) -> Coupling:
-    return next(coupling for coupling in linkage.machine.couplings if coupling.driven == link)
-
-
-def _trace_uniform(trace: Trace, step: KernelCall) -> None:
-    """What is driven by a driver and a carrier that turn in proportion to the crank does so too.
-
-    Its rotation is a cosine and sine of a multiple of the crank angle, known for all designs.
-    """
-    driver, carrier, link = links_of(step)
-    order = _follows(step, trace.orders[driver], trace.orders[carrier], 0.0)
-    trace.orders[link] = order
-    start = trace.slot(f"start({link})", lambda linkage: np.exp(1j * _start(linkage, link)), True)
-    trace.put(u(link), (trace.turned(order) * start, order, 0.0))
-
-
-def _follows(step: KernelCall, driver: Any, carrier: Any, offset: Any) -> Any:
-    """What the step makes of driver's and carrier's angle (or order, without an offset)."""
-    ratio = step.parameters[0]
-    angle, *_ = step.kernel(driver, 0.0, 0.0, carrier, 0.0, 0.0, ratio, offset)
-    return angle
-
-
-def _start(linkage: Linkage, link: str) -> Any:
-    """Angle of a link at crank angle 0, of links that turn in proportion to the crank."""
-    for step in linkage.motion:
-        if isinstance(step, KernelCall) and step.kernel is kernels.in_ratio:
-            driver, carrier, driven = links_of(step)
-            if driven == link:
-                offset = step.parameters[1]
-                return _follows(step, _start(linkage, driver), _start(linkage, carrier), offset)
-    return 0.0
+def _of_law(trace: Trace, step: RollingCall, place: int, theta: Array) -> Array:
+    return np.asarray(step.parameters[0](trace.base.relative(step.coupling, theta))[place])
 
 
 def can_trace_followers(linkage: Linkage) -> bool:
     """Whether the pieces of all laws can be looked up."""
-    cams = (step.cam for step in linkage.motion if isinstance(step, Displacement))
-    return all(bins(cam.law.curve.knots) <= MOST_BINS for cam in cams)
+    laws = (step.law for step in linkage.motion if isinstance(step, Displacement))
+    return all(bins(law.curve.knots) <= MOST_BINS for law in laws)
 
 
 def trace_displacement(trace: Trace, step: Displacement, number: int) -> None:
-    """Displacement of a cam's follower, with its two derivatives by the cam angle.
+    """Displacement of a follower, with its two derivatives by the angle of what it rides on.
 
     The law is linear in its amounts; those that designs change multiply unit curves.
 
     number : place of the step in the linkage's ``motion``.
     """
-    cam = step.cam
-    where = next(path for path, item in numbered(trace.machine) if item.driven == cam.driven)
-    varied = [p for p in cam.law.amounts if KeyPath((*where, cam.law_key, *p)) in trace.varied]
+    coupling, law = step.coupling, step.law
+    where = (*trace.paths[coupling.name], step.law_key)
+    varied = [path for path in law.amounts if KeyPath((*where, *path)) in trace.varied]
     curve_at = _evaluation(trace, step, number)
-    rest = cam.law.with_amounts(dict.fromkeys(varied, 0.0)).curve
-    y, y1, y2 = curve_at(rest, "constant part")
+    y, y1, y2 = curve_at(law.with_amounts(dict.fromkeys(varied, 0.0)).curve, "constant part")
     for path in varied:
-        amount = trace.slot(f"{path} of {cam.driven}", partial(_amount, number, path))
-        by, by1, by2 = curve_at(cam.law.unit_curve(path), str(path))
+        amount = trace.slot(f"{path} of {coupling.driven}", partial(_amount, number, path))
+        by, by1, by2 = curve_at(law.unit_curve(path), str(path))
         y, y1, y2 = y + amount * by, y1 + amount * by1, y2 + amount * by2
     trace.put(step.outputs, (y, y1, y2))
 
@@ -200,43 +136,43 @@ def _evaluation(
     trace: Trace, step: Displacement, number: int
 ) -> Callable[[PeriodicCurve, str], Sequence[Any]]:
     """Function that returns a curve, which is given with a name for its rows, and its two
-    derivatives at the cam's angle.
+    derivatives at the angle of the law.
     """
-    cam, turnings = step.cam, known_by_crank(trace)
-    known = {cam.driver, cam.carrier} <= turnings.keys() - trace.shifted
-    if known and cam.driven not in trace.late:
-        turned = turnings[cam.driver], turnings[cam.carrier]
+    coupling = step.coupling
+    late = coupling.driven in trace.late
+    known = {coupling.driver, coupling.carrier} <= trace.by_crank - trace.shifted
+    if known and not late:
         return lambda curve, name: [
-            trace.row(f"{output}, {name}", partial(_displaced, curve, cam, turned, place))
+            trace.row(f"{output}, {name}", partial(_displaced, trace, step, curve, place))
             for place, output in enumerate(step.outputs)
         ]
-    driver, carrier = (trace.state[f"phi({body})"] for body in (cam.driver, cam.carrier))
-    origin: Any = float(cam.law.origin)
-    if cam.driven in trace.late:
-        origin = trace.slot(f"origin of {cam.driven}", partial(_origin, number))
+    driver, carrier = (trace.state[f"phi({body})"] for body in coupling.bodies[::2])
+    origin: Any = float(step.law.origin)
+    if late:
+        origin = trace.slot(f"origin of {coupling.driven}", partial(_origin, number))
     angle = driver - carrier - origin
     return lambda curve, _: curve_value(trace, curve, angle)
 
 
 def _displaced(
-    curve: PeriodicCurve, cam: Cam, turned: tuple[Turning, Turning], place: int, theta: Array
+    trace: Trace, step: Displacement, curve: PeriodicCurve, place: int, theta: Array
 ) -> Array:
-    driver, carrier = (turning(theta)[0] for turning in turned)
-    return np.asarray(curve.at(driver - carrier - cam.law.origin)[place])
+    angle = trace.base.relative(step.coupling, theta) - step.law.origin
+    return np.asarray(curve.at(angle)[place])
 
 
-def _cam(number: int, linkage: Linkage) -> Cam:
+def _law(number: int, linkage: Linkage) -> Any:
     step = linkage.motion[number]
     assert isinstance(step, Displacement)
-    return step.cam
+    return step.law
 
 
 def _amount(number: int, path: KeyPath, linkage: Linkage) -> Any:
-    return _cam(number, linkage).law.amounts[path]
+    return _law(number, linkage).amounts[path]
 
 
 def _origin(number: int, linkage: Linkage) -> Any:
-    return _cam(number, linkage).law.origin
+    return _law(number, linkage).origin
 
 
 def curve_value(trace: Trace, curve: PeriodicCurve, angle: Any) -> tuple[Any, Any, Any]:
@@ -360,25 +296,9 @@ def _in_bins(curve: PeriodicCurve, count: int) -> tuple[Array, Array]:
     return first.astype(float), knot
 
 
-def trace_swung(trace: Trace, step: KernelCall, number: int) -> None:
-    """How a pinned follower turns whose carrier turns in proportion to the crank."""
-    y, y1, y2, w_r, a_r, _, w, a = (trace.state.get(name) for name in step.inputs)
-    link, carrier = (name[len("phi(") : -1] for name in (step.outputs[0], step.inputs[5]))
-    rest = trace.slot(f"rest({link})", partial(_turned, number), vector=True)
-    sense = float(step.parameters[1])
-    lean, *rates = kernels.swung(y, y1, y2, w_r, a_r, 0.0, w, a, 0.0, sense)
-    trace.put(u(link), (trace.state[f"u({carrier})"] * rest * rotation(lean), *rates))
-
-
-def _turned(number: int, linkage: Linkage) -> Any:
-    step = linkage.motion[number]
-    assert isinstance(step, KernelCall)
-    return np.exp(1j * np.asarray(step.parameters[0]))
-
-
-def trace_law(trace: Trace, step: KernelCall, number: int) -> None:
-    """How something turns whose ratio varies: the step of this number of the ``motion``."""
-    driver, carrier, link = links_of(step)
+def _trace_law(trace: Trace, step: RelationCall, number: int) -> None:
+    """How a body turns by a law at each design's own angle, or with each design's own numbers."""
+    driver, link, carrier = step.coupling.bodies
     state, base = trace.state, step.parameters[0]
 
     def slot(value: Any, what: str, *path: int | str) -> Any:
@@ -399,9 +319,9 @@ def trace_law(trace: Trace, step: KernelCall, number: int) -> None:
 
 
 def _parameters(number: int, linkage: Linkage) -> tuple[Any, ...]:
-    """Law and offset."""
+    """Numbers of a relation and its offset."""
     step = linkage.motion[number]
-    assert isinstance(step, KernelCall)
+    assert isinstance(step, RelationCall)
     return step.parameters
 
 

@@ -19,21 +19,19 @@ import numpy as np
 from equipoise.codegen.coupled import (
     TracedCurve,
     slotted,
-    trace_coupling,
     trace_displacement,
-    trace_law,
+    trace_relation,
     trace_rolled,
-    trace_swung,
 )
 from equipoise.codegen.loops import trace_loop_forces, trace_loops
 from equipoise.codegen.redundant_forces import trace_shared
 from equipoise.codegen.strokes import TracedStrokes, trace_pushes
 from equipoise.codegen.terms import VectorTerm, angle_of, rotation
-from equipoise.codegen.trace import FAR, Array, Read, Trace, links_of, running_angle
+from equipoise.codegen.trace import FAR, Array, Read, Trace, running_angle
 from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
 from equipoise.keys import with_fields
-from equipoise.mechanism.assembly.contacts import Displacement, rolled
+from equipoise.mechanism.assembly.contacts import Displacement, RelationCall, RollingCall
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loopgroup import LoopForces
@@ -43,7 +41,6 @@ from equipoise.mechanism.assembly.steps import (
     KernelCall,
     Rotation,
     RunningAngle,
-    State,
     Step,
     along,
     demand_names,
@@ -61,7 +58,6 @@ from equipoise.mechanism.formulas.curves import PlaneCurve
 from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import ROUNDING
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
-from equipoise.mechanism.parts.couplings import coupled
 from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.field import PARTS
 from equipoise.mechanism.parts.force_kinds import ForceElement
@@ -404,8 +400,7 @@ def run_motion(trace: Trace, driven: Mapping[str, tuple[Any, Any, Any, Any]]) ->
     """From the angles of driven links, with their rotations and rates, to every link."""
     for link, (angle, *values) in {FRAME: (0.0, 1 + 0j, 0.0, 0.0), **driven}.items():
         trace.put(u(link), values)
-        if trace.counted:
-            trace.state[f"phi({link})"] = angle
+        trace.state[f"phi({link})"] = angle
     for number, step in enumerate(trace.linkage.motion):
         trace_step(trace, step, "motion", number)
 
@@ -413,7 +408,7 @@ def run_motion(trace: Trace, driven: Mapping[str, tuple[Any, Any, Any, Any]]) ->
 def _driven(trace: Trace, drive: Drive | FurtherDrive) -> tuple[Any, Any, Any, Any]:
     """Angle, rotation and rates of a driven link, which no design changes."""
     if trace.machine.has_crank:
-        return trace.theta, trace.turned(1.0), 1.0, 0.0
+        return trace.theta, rotation(trace.theta), 1.0, 0.0
     angle, first, second = (
         trace.row(f"{name}({drive.link})", partial(_turned, drive, place))
         for place, name in enumerate(("angle", "first", "second"))
@@ -434,19 +429,14 @@ def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
     if isinstance(step, RunningAngle):
         running_angle(trace, step.link)
     elif isinstance(step, Rotation):
-        if trace.counted and step.link not in trace.rotated:
+        if step.link not in trace.rotated:
             trace.state[f"u({step.link})"] = rotation(trace.state[f"phi({step.link})"])
+    elif isinstance(step, RelationCall):
+        trace_relation(trace, step, number)
+    elif isinstance(step, RollingCall):
+        trace_rolled(trace, step, number)
     elif isinstance(step, KernelCall):
-        if step.kernel is coupled and links_of(step)[-1] in trace.loose:
-            trace_law(trace, step, number)
-        elif step.kernel is coupled or (step.kernel is kernels.in_ratio and not trace.counted):
-            trace_coupling(trace, step)
-        elif step.kernel is rolled:
-            trace_rolled(trace, step, number)
-        elif step.kernel is kernels.swung and not trace.counted:
-            trace_swung(trace, step, number)
-        else:
-            _trace_call(trace, step, steps, number)
+        _trace_call(trace, step, steps, number)
     elif isinstance(step, Displacement):
         trace_displacement(trace, step, number)
     elif isinstance(step, LoopGroup):
@@ -459,13 +449,13 @@ def _trace_call(trace: Trace, step: KernelCall, steps: str, number: int) -> None
     inputs = [trace.state[name] for name in step.inputs]
     known = list(inspect.signature(step.kernel).parameters)[len(inputs) :]
     numbers = [
-        trace.slot(
+        value if isinstance(value, int) else trace.slot(
             f"{parameter} of {step.outputs[-1]}",
             _parameter(steps, number, place),
             isinstance(value, complex | np.complexfloating),
         )
         for place, (parameter, value) in enumerate(zip(known, step.parameters, strict=True))
-    ]
+    ]  # fmt: skip
     trace.put(step.outputs, step.kernel(*inputs, *numbers))
     if step.kernel is kernels.rpr:
         size = trace.slot("size", lambda linkage: size_of_bodies(linkage.machine))
@@ -483,60 +473,41 @@ PROBED = 0.1 + np.arange(90) * 0.31
 """Crank angles (K,), rad, at which it is seen whether something moves."""
 
 
-class PrescribedMotion:
-    """The motion of a linkage: its state at crank angles, kept while they stay the same."""
-
-    def __init__(self, linkage: Linkage) -> None:
-        self.linkage = linkage
-        self.theta, self.state = PROBED, linkage.solve(PROBED)
-        self.probed = self.state
-
-    def part(self, name: str, part: str, theta: Array) -> Array:
-        """Real or imaginary part (N,) of a value of the state at crank angles (N,), rad."""
-        if theta is not self.theta:
-            self.theta, self.state = theta, self.linkage.solve(theta)
-        return _part(self.state, name, part, theta)
-
-
-def _part(state: State, name: str, part: str, theta: Array) -> Array:
-    return np.asarray(getattr(np.asarray(state[name]), part) + 0.0 * theta)
-
-
 def trace_prescribed(trace: Trace) -> None:
     """Add where each link is, and the numbers of dyads."""
-    motion, linkage = PrescribedMotion(trace.linkage), trace.linkage
+    linkage, probed = trace.linkage, trace.base.at(PROBED)
     size = float(size_of_bodies(linkage.machine))
     for link in linkage.joints.bodies:
         anchor = linkage.anchors[link]
         for name in () if f"p({anchor})" in trace.state else p(anchor):
-            trace.state[name] = _vector(trace, motion, name, size)
+            trace.state[name] = _vector(trace, name, size)
         turn, *rates = u(link)
-        trace.state[turn] = _vector(trace, motion, turn, 1.0)
+        trace.state[turn] = _vector(trace, turn, 1.0)
         for name in rates:
-            trace.state[name] = _number(trace, motion, name, "real", 1.0)
+            trace.state[name] = _number(trace, name, "real", 1.0)
     inputs = {
         name for step in linkage.forces if isinstance(step, KernelCall) for name in step.inputs
     }
-    for name in sorted(inputs & motion.probed.keys() - trace.state.keys()):
-        vector = np.iscomplexobj(motion.probed[name])
-        trace.state[name] = (_vector(trace, motion, name, size) if vector
-                             else _number(trace, motion, name, "real", 1.0))  # fmt: skip
+    for name in sorted(inputs & probed.keys() - trace.state.keys()):
+        vector = np.iscomplexobj(probed[name])
+        trace.state[name] = (_vector(trace, name, size) if vector
+                             else _number(trace, name, "real", 1.0))  # fmt: skip
     for group in linkage.groups:
         if group.margin is not None and not group.through:
-            trace.state[group.margin] = _number(trace, motion, group.margin, "real", 1.0)
+            trace.state[group.margin] = _number(trace, group.margin, "real", 1.0)
 
 
-def _vector(trace: Trace, motion: PrescribedMotion, name: str, size: float) -> VectorTerm:
-    return VectorTerm(*(_number(trace, motion, name, part, size) for part in ("real", "imag")))
+def _vector(trace: Trace, name: str, size: float) -> VectorTerm:
+    return VectorTerm(*(_number(trace, name, part, size) for part in ("real", "imag")))
 
 
-def _number(trace: Trace, motion: PrescribedMotion, name: str, part: str, size: float) -> Any:
+def _number(trace: Trace, name: str, part: str, size: float) -> Any:
     """A number where it stands still, else a row."""
-    values: Any = _part(motion.probed, name, part, PROBED)
+    values = trace.base.part(name, part, PROBED)
     middle = float(np.max(values) + np.min(values)) / 2
     if np.ptp(values) <= STANDING * size:
         return 0.0 if abs(middle) <= STANDING * size else middle
-    return trace.row(f"{part} {name}", partial(motion.part, name, part))
+    return trace.base_row(name, part)
 
 
 # -- forces ----------------------------------------------------------------------------------------

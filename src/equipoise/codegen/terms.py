@@ -372,8 +372,31 @@ def pick(table: Term, place: Any) -> Any:
 
 
 def rotation(angle: Any) -> VectorTerm:
-    """exp(i angle)."""
+    """exp(i angle); of a sum of what the crank angle and what the design alone decides, the product
+    of both, of which an inner loop evaluates no function.
+    """
+    if type(angle) is Term and angle.mask == BOTH and (parts := _apart(angle)):
+        first, second = map(rotation, parts)
+        return first * second
     return VectorTerm(_operation("cos", angle), _operation("sin", angle))
+
+
+def _apart(angle: Any) -> tuple[Any, Any] | None:
+    """Summands that the crank angle and that the design alone decides; None of any other."""
+    if type(angle) is not Term or angle.mask == DESIGN:
+        return 0.0, angle
+    if angle.mask == ANGLE:
+        return angle, 0.0
+    if angle.op == "*" and type(angle.args[0]) is not Term and (parts := _apart(angle.args[1])):
+        return multiply(angle.args[0], parts[0]), multiply(angle.args[0], parts[1])
+    sides = [_apart(arg) for arg in angle.args] if angle.op in ("+", "-") else []
+    if not sides or None in sides:
+        return None
+    if len(sides) == 1:
+        sides = [(0.0, 0.0), *sides]
+    how = add if angle.op == "+" else subtract
+    (a, b), (c, d) = (side for side in sides if side is not None)
+    return how(a, c), how(b, d)
 
 
 def angle_of(vector: Any) -> Any:

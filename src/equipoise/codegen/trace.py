@@ -12,10 +12,11 @@ import numpy as np
 from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Graph, Term, VectorTerm, angle_of, rotation
 from equipoise.dataclass import dataclass
 from equipoise.keys.paths import KeyPath
+from equipoise.mechanism.assembly.contacts import RelationCall
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import KernelCall, RunningAngle, Step, p, planar, u
+from equipoise.mechanism.assembly.steps import State, p, planar, u
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.couplings import Coupling, coupled
+from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME, Machine
 
 Array = np.ndarray[Any, Any]
@@ -58,6 +59,31 @@ class AngleFunction:
     formula: Any = None
 
 
+class BaseMotion:
+    """The motion of a linkage: its state at crank angles, kept while they stay the same."""
+
+    def __init__(self, linkage: Linkage) -> None:
+        self.linkage = linkage
+        self.theta: Array | None = None
+        self.state: State = {}
+
+    def at(self, theta: Array) -> State:
+        """The state at crank angles (N,), rad."""
+        if theta is not self.theta:
+            self.theta, self.state = theta, self.linkage.solve(theta)
+        return self.state
+
+    def part(self, name: str, part: str, theta: Array) -> Array:
+        """Real or imaginary part (N,) of a value of the state at crank angles (N,), rad."""
+        return np.asarray(getattr(np.asarray(self.at(theta)[name]), part) + 0.0 * theta)
+
+    def relative(self, coupling: Coupling, theta: Array) -> Array:
+        """Angle (N,) of a coupling's driver, seen from its carrier, rad."""
+        driver, carrier = (self.part(f"phi({body})", "real", theta)
+                           for body in (coupling.driver, coupling.carrier))  # fmt: skip
+        return driver - carrier
+
+
 @dataclass(frozen=True)
 class Recurrence:
     """A value that each crank angle has from the one before.
@@ -75,16 +101,16 @@ class Trace:
     """The state of a linkage in terms.
 
     state : values by the names that steps have for them.
-    paths : of the numbers in which designs differ; None of one design.
     fixed : whether no design changes the motion, so that the crank angle alone decides it.
     loose : couplings of varying ratio at angles, or by numbers, that designs change.
     shifted : links that designs start at other angles.
+    paths : of couplings in the file, by their names.
     varied : paths of the numbers in which designs differ.
     late : followers whose laws designs begin at angles of their own.
     rotated : those of them whose rotation is known without their angle.
-    counted : whether angles of links are counted on from crank angle to crank angle, because a
-        coupling follows a link that a dyad moves.
-    orders : link -> turns in a turn of the crank, of links that turn in proportion to it.
+    by_crank : bodies whose angles, up to those at which designs start, are functions of the crank
+        angle alone.
+    base : motion of the linkage itself.
     apart : number of a dyad with a block -> how far, over the size of the machine and squared, the
         block is from its guide's pivot.  Near there the number drops too fast to be resolved
         between crank angles.
@@ -107,15 +133,14 @@ class Trace:
         self.following: dict[Term, Any] = {}
         self.width = 0
         self.fixed = linkage.shared is not None and paths is not None
-        self.shifted, self.loose = _changed(linkage, paths or ())
+        self.paths = {item.name: where for where, item in numbered(self.machine)}
         self.varied = {*map(KeyPath.parse, paths or ())}
+        self.shifted = {item.driven for where, item in numbered(self.machine)
+                        if where / "start" in self.varied}  # fmt: skip
+        self.by_crank, self.loose = _followed(self)
         self.late = {*_begun_elsewhere(self.machine, self.varied)}
         self.rotated: set[str] = set()
-        steps = any(map(_counts, linkage.motion)) or _drives_on(self.machine)
-        steps |= bool(self.loose or self.late)
-        steps |= not self.shifted.isdisjoint(_turning(self.machine))
-        self.counted = steps or not self.machine.has_crank
-        self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
+        self.base = BaseMotion(linkage)
         self.apart: dict[str, Any] = {}
 
     # -- what is given -----------------------------------------------------------------------------
@@ -142,9 +167,9 @@ class Trace:
         self.rows.setdefault("theta", AngleFunction("theta", "the crank angle", np.asarray, term))
         return term
 
-    def turned(self, order: float) -> VectorTerm:
-        """exp(i order theta)."""
-        return rotation(order * self.theta)
+    def base_row(self, name: str, part: str = "real") -> Term:
+        """Part of a value of the state that no design changes: that of the base."""
+        return self.row(f"{part} {name}", partial(self.base.part, name, part))
 
     def rate(self, key: str) -> Any:
         """The crank's ``speed`` or ``acceleration``."""
@@ -226,57 +251,26 @@ def _straight(trace: Trace, link: str) -> Any:
     return middle + slope * trace.theta if np.ptp(rest) < 2 * FARTHEST else None
 
 
-def _drives_on(machine: Machine) -> bool:
-    """Whether the angle of a pinned follower is one that another coupling starts from."""
-    carrying = {
-        body for coupling in machine.couplings for body in (coupling.driver, coupling.carrier)
-    }
-    surfaces = (coupling for coupling in machine.couplings if coupling.contact == "surface")
-    return any(surface.driven in carrying for surface in surfaces)
-
-
-def _counts(step: Step) -> bool:
-    """Whether a step asks for the angle of a link that a dyad moves, or gives one of a rack's."""
-    racked = isinstance(step, KernelCall) and step.kernel in (kernels.rolled, kernels.wound)
-    return racked or isinstance(step, RunningAngle)
-
-
-def links_of(step: KernelCall) -> list[str]:
-    """Driver, carrier and driven link of a coupling's step."""
-    angles = step.inputs[0], step.inputs[3], step.outputs[0]
-    return [name.removeprefix("phi(")[:-1] for name in angles]
-
-
-def _turning(machine: Machine) -> set[str]:
-    """Bodies from whose angle a law counts."""
-    laws = [coupling for coupling in machine.couplings if coupling.relation[0] is coupled]
-    return {body for law in laws for body in (law.driver, law.carrier)}
-
-
-def _changed(linkage: Linkage, paths: Collection[str]) -> tuple[set[str], set[str]]:
-    """Links that designs start at other angles; couplings of varying ratio at angles, or by
-    numbers, that designs change.
+def _followed(trace: Trace) -> tuple[set[str], set[str]]:
+    """Bodies whose angles are functions of the crank angle alone; driven bodies of couplings of
+    varying ratio at angles, or by numbers, that designs change.
     """
-    shifted, shaped = set(), set()
-    varied = {*map(KeyPath.parse, paths)}
-    for where, item in numbered(linkage.machine):
-        if where / "start" in varied:
-            shifted.add(item.driven)
-        if any(path.begin(3) == where / "shape" for path in varied):
-            shaped.add(item.driven)
-    text, loose = {FRAME, *(drive.link for drive in linkage.machine.driven)}, set()
-    for step in linkage.motion:
-        if not (isinstance(step, KernelCall) and step.outputs[0].startswith("phi(")):
+    machine = trace.machine
+    shaped = {item.driven for where, item in numbered(machine)
+              if any(path.begin(3) == where / "shape" for path in trace.varied)}  # fmt: skip
+    by_crank, loose = {FRAME, *(drive.link for drive in machine.driven)}, set[str]()
+    for step in trace.linkage.motion:
+        if not isinstance(step, RelationCall) or step.coupling.slides:
             continue
-        driver, carrier, driven = links_of(step)
-        known = {driver, carrier} <= text
-        if step.kernel is not coupled:
-            text |= {driven} if known else set()
-        elif known and driven not in shaped and shifted.isdisjoint((driver, carrier)):
-            text.add(driven)
+        driver, driven, carrier = step.coupling.bodies
+        known = {driver, carrier} <= by_crank
+        if step.law is None:
+            by_crank |= {driven} if known else set()
+        elif known and driven not in shaped and trace.shifted.isdisjoint((driver, carrier)):
+            by_crank.add(driven)
         else:
             loose.add(driven)
-    return shifted, loose
+    return by_crank, loose
 
 
 def _begun_elsewhere(machine: Machine, varied: set[KeyPath]) -> Iterator[str]:

@@ -35,6 +35,7 @@ from equipoise.mechanism.assembly.steps import (
 )
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.kernels import travelled
+from equipoise.mechanism.parts import laws
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import (
     Coupling,
@@ -43,7 +44,27 @@ from equipoise.mechanism.parts.couplings import (
     RollingLine,
     Seat,
     StrandLine,
+    coupled,
 )
+
+
+@dataclass(frozen=True)
+class RelationCall(KernelCall):
+    """The relation of a coupling, of whose numbers the last is the offset of the driven body."""
+
+    coupling: Coupling
+
+    @property
+    def law(self) -> Law | None:
+        """By which the driven body's angle follows; None in a fixed ratio."""
+        return self.parameters[0] if self.kernel is coupled else None
+
+
+@dataclass(frozen=True)
+class RollingCall(KernelCall):
+    """Where pitch curves that are no circles touch: their law, and the way between the pins."""
+
+    coupling: Coupling
 
 
 @dataclass(frozen=True)
@@ -144,7 +165,7 @@ class Flank:
             angles = (f"phi({self.driver.body})", f"phi({self.coupling.carrier})")
             kernel = kernels.rolling_forces
             return (
-                KernelCall(rolled, angles, (line.law, line.centres), place),
+                RollingCall(rolled, angles, (line.law, line.centres), place, self.coupling),
                 KernelCall(kernels.pitch_place, (f"p({self.pin})", turn, lever), (), (pitch,)),
                 sense_call,
                 KernelCall(kernel, (*inputs, *place), (line.radial,), outputs),
@@ -171,13 +192,13 @@ class Flank:
         inputs = (*self.driver.coordinate, f"phi({carrier})", *u(carrier)[1:])
         kernel, numbers = coupling.relation
         state = run(before, dict(builder.now))
-        bare = KernelCall(kernel, inputs, (*numbers, 0.0), driven.coordinate)
+        bare = RelationCall(kernel, inputs, (*numbers, 0.0), driven.coordinate, coupling)
         with np.errstate(all="ignore"):  # what cannot come to crank angle 0 is refused later
             offset = coupling.start - at_start(run([bare], state)[driven.coordinate[0]])
         reached = builder.reach(bearer, guide.base if guide else driven.point)
         if guide:
             reached += builder.reach(carrier, self.pin)
-        related = KernelCall(kernel, inputs, (*numbers, offset), driven.coordinate)
+        related = replace(bare, parameters=(*numbers, offset))
         motion = (*before, *reached, related, driven.moved(carrier))
         builder.add({driven.body: driven.point}, [driven.point])
         if not guide:
@@ -285,13 +306,22 @@ def _pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
 class Displacement:
     """What the law of a cam says at the angle that this has turned against its carrier."""
 
-    cam: Cam
+    coupling: Cam
     outputs: tuple[str, str, str]
 
+    @property
+    def law(self) -> laws.Law:
+        return self.coupling.law
+
+    @property
+    def law_key(self) -> str:
+        """Of the law, in the table of the coupling."""
+        return self.coupling.law_key
+
     def run(self, state: State) -> None:
-        cam = self.cam
-        angle = np.asarray(state[f"phi({cam.driver})"]) - state[f"phi({cam.carrier})"]
-        state.update(zip(self.outputs, cam.law.value(angle), strict=True))
+        coupling = self.coupling
+        angle = np.asarray(state[f"phi({coupling.driver})"]) - state[f"phi({coupling.carrier})"]
+        state.update(zip(self.outputs, self.law.value(angle), strict=True))
 
 
 def cam_contact(builder: Builder, joints: Structure, cam: Cam) -> CamPush:
@@ -457,7 +487,7 @@ def _swung(builder: Builder, joints: Structure, fit: CamFit, lift: tuple[str, ..
     builder.running.add(link)
     return [
         *steps,
-        KernelCall(kernels.swung, inputs, (fit.rest, fit.sense), angles),
+        KernelCall(kernels.swung, inputs, (fit.rest, int(fit.sense)), angles),
         Rotation(link),
     ]
 
