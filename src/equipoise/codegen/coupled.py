@@ -61,7 +61,8 @@ def trace_relation(trace: Trace, step: RelationCall, number: int) -> None:
     if step.law is None:
         inputs = [trace.state[name] for name in step.inputs]
         name, read = f"relation of {coupling.name}", partial(_parameters, number)
-        own = any(path.begin(2) == trace.paths[coupling.name] for path in trace.varied)
+        where = trace.paths[coupling.name]
+        own = any(path.begin(2) == where and path != where / "start" for path in trace.varied)
         fixed = [] if own else [*numbers[:-1]]
         places = range(len(fixed), len(numbers))
         given = [slotted(trace, numbers[k], name, read, (k,)) for k in places]

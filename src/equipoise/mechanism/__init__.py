@@ -10,9 +10,9 @@ from equipoise.mechanism.parts import commanded
 
 def _pushed_angles(machine: Any) -> Any:
     """The angles of links that are pushed."""
-    from equipoise.mechanism.kinematics import cylinders, multi_stroke
+    from equipoise.mechanism.kinematics.cylinders import commanded_link, commanded_links
 
-    return (multi_stroke if machine.drives else cylinders).commanded(machine)
+    return (commanded_links if machine.drives else commanded_link)(machine)
 
 
 commanded.finders.append(_pushed_angles)
