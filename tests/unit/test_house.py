@@ -238,7 +238,6 @@ BY_KIND = {
     "design/lifts.py": "parameters of the gears of a planting arm",
     "exchange/reading/imported.py": "gears of imported files",
     "figures/changes.py": "springs that balancing added",
-    "mechanism/assembly/cam_shapes.py": "the cams themselves",
     "planting": "arms on a carrier, which gears turn",
     "symbols/scene.py": "springs, which are stretched between points",
 }

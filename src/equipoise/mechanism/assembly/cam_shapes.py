@@ -420,8 +420,9 @@ def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> C
 
 
 def fits_of(machine: Machine, joints: Structure) -> tuple[CamFit, ...]:
-    """All cams of a machine."""
-    return tuple(fitted(machine, joints, cam) for cam in machine.cams)
+    """All couplings of a machine that push by a surface."""
+    couplings: Any = (item for item in machine.couplings if item.contact == "surface")
+    return tuple(fitted(machine, joints, cam) for cam in couplings)
 
 
 def pressure_angle(cam: Cam, state: State) -> Array:

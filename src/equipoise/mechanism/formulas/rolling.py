@@ -443,15 +443,3 @@ class Strands:
             if np.all(inside & (abs(way.imag) <= share * self.distance)):
                 return True
         return False
-
-    @property
-    def wraps(self) -> tuple[Any, Any]:
-        """Angles over which the belt lies on driver and driven pulley, rad."""
-        lean = 2 * np.arcsin(self.sine)
-        return pi + lean, pi - lean * np.sign(self.other)
-
-    @property
-    def belt_length(self) -> Any:
-        """Of the whole belt, m."""
-        first, second = self.wraps
-        return 2 * self.length + self.radius * first + abs(self.other) * second
