@@ -300,7 +300,7 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     if of not in COMMANDS:
         whole = whole.removeprefix("summary.").removeprefix("outputs.")
         return _of_analysis(cast("Machine", model), _STATISTIC.sub("", whole))
-    kinds = (dimension_at(declaration, whole, model) for declaration in declarations(of))
+    kinds = (dimension_at(declared, whole, model) for declared in COMMANDS[of]().declared)
     return next((kind for kind in kinds if kind), None)
 
 
@@ -329,37 +329,6 @@ def _by_order(path: str) -> str | None:
     output, _, last = path.rpartition(".")
     own = _of_output(output)
     return BY_ORDER[last].kind(own, False) if last in BY_ORDER else own
-
-
-def declarations(of: str) -> Iterator[Declarations]:
-    """What each result of a command declares."""
-    if of == "respond":
-        from equipoise.vibration.response import Response
-
-        yield Response.declared
-    elif of == "balance":
-        from equipoise.balancing.balanced import Balanced
-
-        yield Balanced.declared
-    elif of == "plant":
-        from equipoise.planting.summary import PlantingFigures
-
-        yield PlantingFigures.declared
-    else:
-        yield from answers_about_tools().values()
-
-
-def answers_about_tools() -> dict[str, Declarations]:
-    """What each answer about a tool declares."""
-    from equipoise.handheld.hand_exposure import ToolExposure
-    from equipoise.handheld.modes import ToolModes
-    from equipoise.handheld.sweep import ToolSweep
-
-    return {
-        "modes": ToolModes.declared,
-        "respond": flat(ToolSweep.declared),
-        "exposure": ToolExposure.declared,
-    }
 
 
 _STATISTIC = re.compile(rf"\.({'|'.join(FIGURES_OF_LISTS)})$")
@@ -430,46 +399,74 @@ def _lead_to(ways: Sequence[tuple[Step, ...]], name: str, path: tuple[str, ...])
     )
 
 
-def _planted(model: Machine | Tool, wanted: Wanted) -> Values:
-    from equipoise.planting.summary import plant
+@dataclass(frozen=True)
+class CommandOutputs:
+    """The outputs of a command: how they are computed, and what its results declare of them.
 
-    return plant(cast("Machine", model)).to_dict(wanted)
+    compute : their values, nested, of a model; only those under the keys given where that saves
+        time, all where None is given.
+    declared : of each result of the command.
+    """
+
+    compute: Callable[[Any, Wanted], Values]
+    declared: tuple[Declarations, ...]
 
 
-def _responded(model: Machine | Tool, wanted: Wanted) -> Values:
+def _plant() -> CommandOutputs:
+    from equipoise.planting.summary import PlantingFigures, plant
+
+    return CommandOutputs(
+        lambda machine, wanted: plant(machine).to_dict(wanted), (PlantingFigures.declared,)
+    )
+
+
+def _respond() -> CommandOutputs:
     from equipoise.vibration.forced import respond
+    from equipoise.vibration.response import Response
 
-    return respond(cast("Machine", model)).to_dict()
+    return CommandOutputs(lambda machine, _: respond(machine).to_dict(), (Response.declared,))
 
 
-def _balanced(model: Machine | Tool, wanted: Wanted) -> Values:
+def _balance() -> CommandOutputs:
+    from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.optimisation import balance
 
-    return balance(cast("Machine", model)).to_dict(wanted)
+    return CommandOutputs(
+        lambda machine, wanted: balance(machine).to_dict(wanted), (Balanced.declared,)
+    )
 
 
-def _of_tool(model: Machine | Tool, wanted: Wanted) -> Values:
+def _tool() -> CommandOutputs:
     """`equipoise tool` without further options; only those of its answers that have the keys."""
-    from equipoise.handheld.sweep import default_answers
+    from equipoise.handheld.hand_exposure import ToolExposure
+    from equipoise.handheld.modes import ToolModes, vibrate_tool
+    from equipoise.handheld.sweep import MODES, ToolSweep, default_answers, sweep_tool
 
-    tool = cast("Tool", model)
-    values: dict[str, Any] = {"title": tool.title}
-    for name in default_answers(tool):
-        left = None if wanted is None else set(wanted) - set(values)
-        if left is None or not left.isdisjoint(answers_about_tools()[name]):
-            values |= _answer(tool, name, left)
-    return values
+    answers: dict[str, tuple[Callable[[Tool, Wanted], Values], Declarations]] = {
+        "modes": (lambda tool, _: vibrate_tool(tool, MODES).to_dict(), ToolModes.declared),
+        "respond": (
+            lambda tool, wanted: sweep_tool(tool, _speeds(tool)).to_dict(wanted),
+            flat(ToolSweep.declared),
+        ),
+        "exposure": (_exposure, ToolExposure.declared),
+    }
+
+    def compute(tool: Tool, wanted: Wanted) -> Values:
+        values: dict[str, Any] = {"title": tool.title}
+        for name in default_answers(tool):
+            answer, declared = answers[name]
+            left = None if wanted is None else set(wanted) - set(values)
+            if left is None or not left.isdisjoint(declared):
+                values |= answer(tool, left)
+        return values
+
+    return CommandOutputs(compute, tuple(declared for _, declared in answers.values()))
 
 
-def _answer(tool: Tool, name: str, wanted: Wanted) -> Values:
+def _exposure(tool: Tool, wanted: Wanted) -> Values:
+    """The exposure of a hand, at the working speed alone where no list over speeds is wanted."""
     from equipoise.handheld.hand_exposure import ToolExposure, expose_tool
-    from equipoise.handheld.modes import vibrate_tool
-    from equipoise.handheld.sweep import MODES, sweep_tool
 
-    if name == "modes":
-        return vibrate_tool(tool, MODES).to_dict()
-    if name == "respond":
-        return sweep_tool(tool, _speeds(tool)).to_dict(wanted)
     over_speeds = {key for key, item in ToolExposure.declared.items() if item.along}
     if wanted is None or not over_speeds.isdisjoint(wanted):
         return expose_tool(tool, _speeds(tool)).to_dict()
@@ -488,13 +485,14 @@ def _speeds(tool: Tool) -> np.ndarray[Any, Any]:
     return speeds_between(tool, *ends, SPEEDS)
 
 
-COMMANDS: dict[str, Callable[[Machine | Tool, Wanted], Values]] = {
-    "plant": _planted,
-    "respond": _responded,
-    "balance": _balanced,
-    "tool": _of_tool,
+COMMANDS: dict[str, Callable[[], CommandOutputs]] = {
+    "plant": _plant,
+    "respond": _respond,
+    "balance": _balance,
+    "tool": _tool,
 }
-"""By the command's name; `analyze` stands apart, for its crank angles."""
+"""By the command's name, imported where it is called for; `analyze` stands apart, for its crank
+angles."""
 
 ANGLES = 360
 """Crank angles in a turn to begin with."""
@@ -629,7 +627,7 @@ def _values(
     study: Study, model: Machine | Tool, command: str, wanted: set[str] | None
 ) -> Mapping[str, Any]:
     if command != "analyze":
-        return COMMANDS[command](model, wanted)
+        return COMMANDS[command]().compute(model, wanted)
     return analyzed(cast("Machine", model), study.angles or ANGLES, wanted)
 
 

@@ -279,7 +279,7 @@ def _figures_of(model: Machine | Tool, asked: Request, study: Study) -> tuple[li
     """Figures, and whether they stand still."""
     angles, tolerance = study.angles, study.tolerance
     if asked.command != "analyze":
-        values = COMMANDS[asked.command](model, asked.wanted)
+        values = COMMANDS[asked.command]().compute(model, asked.wanted)
         return [read(values, steps) for steps in asked.steps], True
     machine = cast("Machine", model)
     if angles is not None:
