@@ -20,7 +20,7 @@ import equipoise as eq
 import support.findings
 from equipoise.balancing.advice import advise
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.sentences import deterioration_sentences
+from equipoise.balancing.outcome import deterioration_sentences
 from equipoise.balancing.workshop import in_short
 from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.outputs.declared import declared

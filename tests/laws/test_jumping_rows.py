@@ -17,9 +17,8 @@ from equipoise.balancing.box_bounds import CLOSE
 from equipoise.balancing.cylinder_phasing import PhasedRows, PhaseObjective
 from equipoise.balancing.design_variables import LinkParameters
 from equipoise.balancing.effects import Effects
-from equipoise.balancing.jump_bounds import CubicPieces, JumpBounds
-from equipoise.balancing.jump_readings import JumpReadings
-from equipoise.balancing.phasing import choose_phases
+from equipoise.balancing.jump_bounds import CubicPieces, JumpBounds, JumpReadings
+from equipoise.balancing.phase_search import choose_phases
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.balance import (

@@ -18,8 +18,7 @@ from scipy.optimize import differential_evolution, minimize
 import equipoise as eq
 from equipoise.balancing.box_bounds import CLOSE
 from equipoise.balancing.cylinder_phasing import Combine
-from equipoise.balancing.phase_search import PhaseSearch
-from equipoise.balancing.phasing import Phasing, choose_phases
+from equipoise.balancing.phase_search import PhaseSearch, Phasing, choose_phases
 from equipoise.errors import UsageError
 from equipoise.mechanism.parts.balance import Objective, Phases
 from support.chosen import few

@@ -13,8 +13,7 @@ import equipoise as eq
 from equipoise.balancing.cylinder_phasing import PhasedRows, PhaseObjective
 from equipoise.balancing.phase_grid import PhaseGrid
 from equipoise.balancing.phase_polish import ActivePeaks, square_with_slopes
-from equipoise.balancing.phase_search import PhaseSearch
-from equipoise.balancing.phasing import choose_phases
+from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.mechanism.parts.balance import MEASURES, Objective, Phases
 from equipoise.vibration.forced import respond
 from support.chosen import few_together

@@ -22,7 +22,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.patterns import PATTERNS, arranged, halved, patterns_for
-from equipoise.balancing.phasing import choose_phases
+from equipoise.balancing.phase_search import choose_phases
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic

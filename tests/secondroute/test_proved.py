@@ -14,7 +14,7 @@ import pytest
 from scipy.optimize import differential_evolution
 
 import equipoise as eq
-from equipoise.balancing.phasing import choose_phases
+from equipoise.balancing.phase_search import choose_phases
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.machine import Machine
 from laws.test_phases import Dumb

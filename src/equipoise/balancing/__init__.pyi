@@ -17,7 +17,7 @@ from .optimisation import balance as balance
 from .pareto import Front as Front
 from .pareto import trade_off as trade_off
 from .patterns import arranged as arranged
-from .phasing import Phasing as Phasing
-from .phasing import choose_phases as choose_phases
+from .phase_search import Phasing as Phasing
+from .phase_search import choose_phases as choose_phases
 from .physical_consistency import feasibility as feasibility
 from .sensitivity import sensitivities as sensitivities

@@ -32,8 +32,7 @@ from equipoise.balancing.headlines import (
 )
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance, in_phases
-from equipoise.balancing.phase_search import PhaseSearch
-from equipoise.balancing.phasing import phasing_of
+from equipoise.balancing.phase_search import PhaseSearch, phasing_of
 from equipoise.balancing.policy import (
     AIMED_FROM,
     ALL_BUT_GONE,

@@ -18,7 +18,7 @@ from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
 from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
-from equipoise.balancing.phasing import Phasing
+from equipoise.balancing.phase_search import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.rounding import NEARLY
 from equipoise.balancing.solution import SAME_FRICTION, Solution

@@ -14,21 +14,19 @@ from equipoise.balancing.outcome import (
     beside_mounts,
     beside_the_aim,
     broken_capacities,
+    deterioration_sentences,
+    figure_named,
+    figure_unit,
     first_sentences,
     large_besides,
     large_figures,
     mounts_beside_change,
     preloads,
+    proof_sentences,
     sentences_beyond_masses,
     steadying_sentence,
     why_nothing,
     with_more_room,
-)
-from equipoise.balancing.sentences import (
-    deterioration_sentences,
-    figure_named,
-    figure_unit,
-    proof_sentences,
     worst_deteriorations,
 )
 from equipoise.balancing.workshop import in_short, sentences
@@ -56,7 +54,7 @@ from equipoise.results.yardsticks import sentence
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
-    from equipoise.balancing.phasing import Phasing
+    from equipoise.balancing.phase_search import Phasing
 
 OVER = 1e-6
 """Share by which a limit may be passed that is met exactly: programs keep theirs to 1e-8."""

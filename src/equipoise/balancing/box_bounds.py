@@ -31,8 +31,7 @@ from itertools import pairwise
 import numpy as np
 
 from equipoise.balancing.cylinder_phasing import AREA_SAMPLES, Cost, PhaseObjective, by_orders
-from equipoise.balancing.jump_bounds import JumpBounds
-from equipoise.balancing.jump_readings import Forms, JumpReadings, linear_forms
+from equipoise.balancing.jump_bounds import Forms, JumpBounds, JumpReadings, linear_forms
 from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows, smoothed
 from equipoise.balancing.phase_grid import alike
 from equipoise.balancing.rounding import TINY

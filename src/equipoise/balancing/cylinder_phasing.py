@@ -19,8 +19,7 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.balancing.jumping_rows import JumpingRows, smoothed
-from equipoise.balancing.levers import lever, signals_of_row
-from equipoise.balancing.objectives import read_rows
+from equipoise.balancing.objectives import lever, read_rows, signals_of_row
 from equipoise.balancing.rounding import NEARLY, TINY
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError

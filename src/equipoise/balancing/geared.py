@@ -20,11 +20,10 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.design_variables import with_parameters
+from equipoise.balancing.design_variables import AddedWeight, with_parameters
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.rounding import NEARLY, TINY
 from equipoise.balancing.solution import Solution, solve_problem
-from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
 from equipoise.dataclass import dataclass
 from equipoise.design.solvers import DesignProblem, DesignSolution, solve

@@ -7,6 +7,16 @@ A sum of rows has a peak of at least its value at any crank angle, so that over 
 for whichever row k the angle t goes with: a side of a jump stays one wherever its row is, which no
 angle that all rows share does.  The least of a piece over an interval is that of the control points
 of its cubic, so that the bound is one of the curves themselves and meets them in small boxes.
+
+Where rows depend on numbers x (x_0 = 1), such as masses, a sum of rows at a crank angle that goes
+with row k is linear in them,
+
+    sum_j x_j F_j(phi),   F_j = f_kj(t) + sum_{i /= k} f_ij(t + phi_i - phi_k)
+
+and over a box of phases each F_j lies between sums of what the pieces of f_ij reach there.  The
+least of x_j F_j over an interval of x_j is concave in x_j, so that the chord between its ends is
+nowhere above: a reading that is linear in x, below every peak in the box.  Of a vector the readings
+are along the direction that it has in the middle of the box.
 """
 
 from __future__ import annotations
@@ -16,7 +26,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.jumping_rows import JumpingRows
+from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows
+from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.balance import Measure
 from equipoise.signals import Array
@@ -277,3 +288,308 @@ class CubicPieces:
             inner = pick(table[level, row, from_first], table[level, row, from_last])
             result.append(np.where(between > 0, pick(ends, inner), ends))
         return result[0], result[1]
+
+
+MOST = 12
+"""Crank angles between jumps, and sides of jumps, at which a box is read."""
+MOST_VALUES = 2**26
+"""Values of tables of pieces: half a GiB."""
+
+
+@dataclass(frozen=True, eq=False)
+class Forms:
+    """Of B boxes R readings, each constants (B, R) + slopes (B, R, K) @ numbers, of which the
+    largest is no more than a value anywhere in the box.
+    """
+
+    constants: Array
+    slopes: Array
+
+    def at(self, numbers: Array) -> Array:
+        """Readings (B, R) with numbers (B, K)."""
+        return np.asarray(self.constants + np.einsum("brk,bk->br", self.slopes, numbers))
+
+    def with_more(self, other: Forms) -> Forms:
+        return Forms(
+            np.concatenate([self.constants, other.constants], axis=1),
+            np.concatenate([self.slopes, other.slopes], axis=1),
+        )
+
+
+def linear_forms(least: Array, most: Array, low: Array, high: Array) -> Forms:
+    """Forms of sums x @ F, x_0 = 1, of which each F is between least and most (B, R, 1 + K).
+
+    low, high : (B, K) ends of the numbers.
+    """
+    low, high = low[:, None], high[:, None]
+    first, last = (np.minimum(end * least[..., 1:], end * most[..., 1:]) for end in (low, high))
+    width = high - low
+    chord = np.divide(last - first, width, out=np.zeros_like(first), where=width > 0)
+    # where numbers have one sign the chord is the least itself, of which no digits are to be lost
+    slopes = np.where(low >= 0, least[..., 1:], np.where(high <= 0, most[..., 1:], chord))
+    return Forms(least[..., 0] + np.sum(first - slopes * low, axis=2), slopes)
+
+
+@dataclass(frozen=True, eq=False)
+class BoxReadings:
+    """Of B boxes: groups of forms, the largest of each of which sum up to a measure's bound; the
+    measure's values (B,) in the middles as far as they are read, and losses (B, m) by the rows'
+    sides of the box.
+    """
+
+    groups: tuple[Forms, ...]
+    values: Array
+    losses: Array
+
+
+@dataclass(frozen=True, eq=False)
+class JumpReadings:
+    """Reads the peak or peak to peak of rows over boxes."""
+
+    designs: JumpingDesigns
+    measure: Measure
+
+    @property
+    def possible(self) -> bool:
+        """Whether the tables of all pieces are small enough to be held."""
+        start = self.designs.each[0]
+        cells, levels = len(start.curves[0][0].x) + self._bins, 2 + int(np.log2(self._bins))
+        return 4 * len(self.pieces.cubics) * levels * cells <= MOST_VALUES
+
+    def over(self, middles: Array, halves: Array) -> BoxExtremes:
+        """Bounds over boxes of phases alone, with middles and half sides (B, m), rad."""
+        none = np.zeros((len(middles), 0))
+        readings = self.readings(middles, halves, none, none, none)
+        bounds = np.sum([np.max(item.constants, axis=1) for item in readings.groups], axis=0)
+        return BoxExtremes(bounds, readings.values, readings.losses)
+
+    def readings(
+        self, middles: Array, halves: Array, numbers: Array, low: Array, high: Array
+    ) -> BoxReadings:
+        """Over boxes of phases with middles and half sides (B, m), rad, and of numbers between low
+        and high (B, K), read where these are `numbers`; row 1 is not moved.
+        """
+        halves = halves.copy()
+        halves[:, 0] = 0.0
+        shares = np.concatenate([np.ones((len(numbers), 1)), numbers], axis=1)
+        of_one = 2 * self._leading * self._bins * len(self._functions[0])
+        step = max(1, 4 * AT_ONCE // of_one)
+        parts = [
+            self._some(*(item[k : k + step] for item in (middles, halves, shares, low, high)))
+            for k in range(0, len(middles), step)
+        ]
+        groups = tuple(
+            Forms(
+                *(np.concatenate([getattr(item, name) for item in some]) for name in vars(some[0]))
+            )
+            for some in zip(*(part.groups for part in parts), strict=True)
+        )
+        values, losses = (
+            np.concatenate([getattr(part, name) for part in parts]) for name in ("values", "losses")
+        )
+        return BoxReadings(groups, values, losses)
+
+    def _some(
+        self, middles: Array, halves: Array, shares: Array, low: Array, high: Array
+    ) -> BoxReadings:
+        ahead = middles[:, None, :] - middles[:, : self._leading, None]
+        reach = halves[:, None, :] + halves[:, : self._leading, None]
+        each = np.arange(self._leading)
+        reach[:, each, each] = 0.0
+        ends = []
+        for sign in SIGNS[:1] if self._is_vector else SIGNS:
+            leader, angles = self._angles(ahead, reach, sign * shares)
+            ends.append(self._read(leader, angles, ahead, reach, halves, sign, shares, low, high))
+        if self.measure == "peak_to_peak" and not self._is_vector:
+            values = np.sum([value for _, value, _ in ends], axis=0)
+            losses = np.sum([loss for _, _, loss in ends], axis=0)
+            return BoxReadings(tuple(forms for forms, _, _ in ends), values, losses)
+        forms, value, losses = ends[0]
+        for other, another, lost in ends[1:]:
+            forms = forms.with_more(other)
+            losses = np.where((another > value)[:, None], lost, losses)
+            value = np.maximum(value, another)
+        return BoxReadings((forms,), value, losses)
+
+    # -- what there is to read ---------------------------------------------------------------------
+
+    @cached_property
+    def pieces(self) -> CubicPieces:
+        """Of all functions: by row, then number, then component."""
+        start = self.designs.each[0]
+        places = start.curves[0][0].x
+        rows = range(len(start.curves))
+        cubics = [
+            jumping_row.curves[row][0].c[..., c]
+            for row in rows
+            for jumping_row in self.designs.each
+            for c in range(start.curves[row][0].c.shape[-1])
+        ]
+        return CubicPieces(places[:-1], np.diff(places), np.array(cubics))
+
+    @cached_property
+    def _functions(self) -> Array:
+        """Places (m, 1 + K, C) of the functions among the pieces."""
+        start = self.designs.each[0]
+        shape = (len(start.curves), len(self.designs.each), -1)
+        return np.arange(len(self.pieces.cubics)).reshape(shape)
+
+    @property
+    def _is_vector(self) -> bool:
+        return self.designs.each[0].is_vector
+
+    @property
+    def _bins(self) -> int:
+        return BINS * self.designs.each[0].turns
+
+    @property
+    def _leading(self) -> int:
+        return min(len(self._functions), MOST_LEADING)
+
+    @cached_property
+    def _windows(self) -> tuple[Array, Array]:
+        return self.pieces.windows(self._bins)
+
+    @cached_property
+    def _centres(self) -> Array:
+        """Values (functions, 2 N) in the middles of bins, twice around the cycle."""
+        theta = (np.arange(2 * self._bins) + 0.5) * (self.pieces.period / self._bins)
+        row = np.arange(len(self.pieces.cubics))[:, None]
+        return self.pieces.values(*np.broadcast_arrays(row, theta))
+
+    # -- where -------------------------------------------------------------------------------------
+
+    def _angles(self, ahead: Array, reach: Array, shares: Array) -> tuple[Array, Array]:
+        """Rows (B, A) with which crank angles go, and these as the rows count them (B, A), rad."""
+        spacing, boxes = self.pieces.period / self._bins, len(ahead)
+        rough = self._rough(ahead, reach, shares)
+        parts = rough.reshape(boxes, self._leading, SEGMENTS, -1)
+        size = parts.shape[3]
+        tops = np.argmax(parts, axis=3) + size * np.arange(SEGMENTS)
+        highest = np.max(parts, axis=3).reshape(boxes, -1)
+        tops, leader = (tops + 0.5) * spacing, np.arange(self._leading)[:, None]
+        leading, tops = _first(highest, tops.reshape(boxes, -1), SEGMENTS)
+        chosen = [(leading, self._topped(leading, tops, ahead, shares))]
+        sides = self._sides
+        if len(sides):
+            shape = (boxes, self._leading, len(sides))
+            at = np.broadcast_to(sides, shape).reshape(boxes, -1)
+            lead = np.broadcast_to(leader, shape[1:]).reshape(1, -1).repeat(boxes, axis=0)
+            height = self._sum(lead, at, ahead, shares)
+            chosen.append(_first(height, at, len(sides)))
+        return tuple(np.concatenate(both, axis=1) for both in zip(*chosen, strict=True))  # type: ignore[return-value]
+
+    def _topped(self, leader: Array, angles: Array, ahead: Array, shares: Array) -> Array:
+        """Crank angles (B, A) led to the tops of parabolas."""
+        width = self.pieces.period / self._bins
+        neighbors = np.concatenate([angles - width, angles, angles + width], axis=1)
+        heights = self._sum(np.tile(leader, 3), neighbors, ahead, shares)
+        before, top, after = np.split(heights, 3, axis=1)
+        bend = before - 2 * top + after
+        way = np.divide(before - after, 2 * bend, out=np.zeros_like(bend), where=bend < 0)
+        return np.asarray(angles + width * np.clip(way, -1.0, 1.0))
+
+    @cached_property
+    def _sides(self) -> Array:
+        rows = self.designs.each[0]
+        every = rows.edges(np.zeros(1))
+        if len(every) > MOST_SIDES:
+            every = every[: 2 * len(rows.jumps)][:MOST_SIDES]
+        return np.asarray(every)
+
+    def _rough(self, ahead: Array, reach: Array, shares: Array) -> Array:
+        """Bounds (B, k, N) at the N crank angles of bins, with shares (B, 1 + K) of the numbers."""
+        spacing, count = self.pieces.period / self._bins, self._bins
+        first = np.floor((ahead - reach) / spacing).astype(int)
+        wide = np.minimum(np.floor((ahead + reach) / spacing).astype(int) - first + 1, count)
+        level = np.log2(wide).astype(int)
+        last = first + wide - 2**level
+        least, most = self._windows
+        middle = np.floor(ahead / spacing).astype(int) % count
+        factors = [shares[:, None, None, :, None]]
+        if self._is_vector:
+            factors[0] = factors[0] * self._along(middle, shares)[:, :, :, None, :]
+        bound = np.zeros((*ahead.shape[:2], count))
+        for row, functions in enumerate(self._functions):
+            for (j, c), function in np.ndenumerate(functions):
+                at = [(level[..., row], function, item[..., row] % count) for item in (first, last)]
+                low = np.minimum(least[at[0]], least[at[1]])
+                high = np.maximum(most[at[0]], most[at[1]])
+                factor = factors[0][..., j, c]
+                bound += np.where(factor > 0, factor * low, factor * high)
+        return bound
+
+    def _along(self, middle: Array, shares: Array) -> Array:
+        """Directions (B, k, N, C) of the sum in the middles of boxes."""
+        window = np.lib.stride_tricks.sliding_window_view(self._centres, self._bins, axis=1)
+        components = self._functions.shape[2]
+        total = np.zeros((*middle.shape[:2], self._bins, components))
+        for row, functions in enumerate(self._functions):
+            for (j, c), function in np.ndenumerate(functions):
+                total[..., c] += shares[:, j, None, None] * window[function, middle[..., row]]
+        return np.asarray(total / np.maximum(np.linalg.norm(total, axis=3, keepdims=True), TINY))
+
+    # -- readings there ----------------------------------------------------------------------------
+
+    def _values(self, leader: Array, angles: Array, ahead: Array) -> tuple[Array, Array, Array]:
+        """Functions (B, A, m, 1 + K, C) at crank angles (B, A); which, and where, rad."""
+        each = np.arange(len(ahead))[:, None]
+        at = angles[..., None] + ahead[each, leader]  # (B, A, m)
+        where = np.broadcast_to(at[..., None, None], (*at.shape, *self._functions.shape[1:]))
+        which = np.broadcast_to(self._functions, where.shape)
+        return self.pieces.values(which, where), which, where
+
+    def _sum(self, leader: Array, angles: Array, ahead: Array, shares: Array) -> Array:
+        """Value (B, A) of the sum in the middles of boxes; of a vector its size."""
+        values, _, _ = self._values(leader, angles, ahead)
+        total = np.einsum("bamjc,bj->bac", values, shares)
+        return np.asarray(np.linalg.norm(total, axis=2) if self._is_vector else total[..., 0])
+
+    def _read(
+        self,
+        leader: Array,
+        angles: Array,
+        ahead: Array,
+        reach: Array,
+        halves: Array,
+        sign: float,
+        shares: Array,
+        low: Array,
+        high: Array,
+    ) -> tuple[Forms, Array, Array]:
+        """Forms of R readings, the highest value (B,), and the losses (B, m) of the best."""
+        here, which, where = self._values(leader, angles, ahead)
+        each = np.arange(len(ahead))[:, None]
+        far = reach[each, leader]  # (B, A, m)
+        own = np.arange(ahead.shape[2]) == leader[..., None]
+        margin = (far + SLACK)[..., None, None]
+        least, most = self.pieces.extremes(which, where - margin, where + margin)
+        least, most = (np.where(own[..., None, None], here, item) for item in (least, most))
+        total = np.einsum("bamjc,bj->bac", here, shares)
+        along = np.full_like(total, sign)
+        if self._is_vector:
+            along = total / np.maximum(np.linalg.norm(total, axis=2, keepdims=True), TINY)
+        along = along[:, :, None, None]
+        least, most = (
+            np.sum(np.where((along > 0) == at_least, along * least, along * most), axis=4)
+            for at_least in (True, False)
+        )  # (B, A, m, 1 + K)
+        here = np.sum(along * here, axis=4)
+        forms = linear_forms(np.sum(least, axis=2), np.sum(most, axis=2), low, high)
+        shares = shares[:, None, None]
+        whole = np.sum(here * shares, axis=3)
+        drops = whole - np.sum(np.minimum(least * shares, most * shares), axis=3)  # (B, A, m)
+        best = np.argmax(np.sum(whole - drops, axis=2), axis=1)
+        row, at = np.arange(len(best)), np.arange(drops.shape[2])
+        lost, lead = drops[row, best], leader[row, best]
+        share = halves / np.maximum(far[row, best], SLACK)
+        sides = lost * np.where(at == lead[:, None], 0.0, share)
+        sides[row, lead] = np.sum(lost - sides, axis=1)
+        sides[:, 0] = 0.0
+        return forms, np.max(np.sum(whole, axis=2), axis=1), sides
+
+
+def _first(height: Array, angles: Array, of_each: int) -> tuple[Array, Array]:
+    """The rows (B, A) and the crank angles (B, A) of the largest heights (B, k * of_each)."""
+    order = np.argsort(-height, axis=1, kind="stable")[:, :MOST]
+    return order // of_each, np.take_along_axis(angles, order, axis=1)

@@ -13,8 +13,7 @@ from dataclasses import replace
 
 from equipoise.balancing.balanced import Balanced, bending_notes, result_of
 from equipoise.balancing.geared import GearSearch, WithShafts, with_shafts
-from equipoise.balancing.phase_search import PhaseSearch
-from equipoise.balancing.phasing import Phasing, choose_phases
+from equipoise.balancing.phase_search import PhaseSearch, Phasing, choose_phases
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.rows_and_masses import JointPhaseMassOptimizer
 from equipoise.balancing.solution import Solution

@@ -15,9 +15,9 @@ from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.blocks import shown_unit
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
+from equipoise.balancing.outcome import gap_text, scope_of
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.rounding import NEARLY
-from equipoise.balancing.sentences import gap_text, scope_of
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say

@@ -10,6 +10,7 @@ import numpy as np
 
 from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.design_variables import (
+    AddedWeight,
     DesignVariables,
     FreeSpring,
     MovedCenter,
@@ -25,7 +26,6 @@ from equipoise.balancing.objectives import (
 )
 from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.rounding import NEARLY
-from equipoise.balancing.weights import AddedWeight
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note

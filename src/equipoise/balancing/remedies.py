@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.design_variables import AddedWeight
 from equipoise.balancing.effects import Signal
 from equipoise.balancing.headlines import HeadlineLimit
 from equipoise.balancing.objectives import measured_each
@@ -31,7 +32,6 @@ from equipoise.balancing.policy import (
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import Room, outline_of
 from equipoise.balancing.rounding import NEARLY
-from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.balance import (

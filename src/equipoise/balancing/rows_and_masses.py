@@ -2,7 +2,7 @@
 
 For given phases the best masses are those of a cone program, and for given masses the best phases
 are searched: one after the other from several beginnings, until neither gains any more.  Branch and
-bound over boxes of phases and of those numbers of the masses that matter (`phase_bound`) then gives
+bound over boxes of phases and of those numbers of the masses that matter (`box_bounds`) then gives
 a bound on any improvement, and begins anew where it meets a better solution.
 """
 
@@ -23,8 +23,14 @@ from equipoise.balancing.jumping_rows import JumpingDesigns
 from equipoise.balancing.objectives import LinearizationPoint, of_rows_alone, read, reading_of
 from equipoise.balancing.phase_grid import distinct
 from equipoise.balancing.phase_polish import Step, most_steps, polished
-from equipoise.balancing.phase_search import PhaseSearch, Progress, stepped, with_phases
-from equipoise.balancing.phasing import Phasing, phasing_of
+from equipoise.balancing.phase_search import (
+    PhaseSearch,
+    Phasing,
+    Progress,
+    phasing_of,
+    stepped,
+    with_phases,
+)
 from equipoise.balancing.problem import WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import NoSolutionError, Program
 from equipoise.balancing.solution import ROUNDS as FRICTION_ROUNDS

@@ -15,11 +15,10 @@ from math import inf, isfinite
 import numpy as np
 
 from equipoise.balancing.branch_and_bound import MOST_NODES, ProvedSolution, minimise
-from equipoise.balancing.design_variables import DesignVariables, MovedCenter
+from equipoise.balancing.design_variables import AddedWeight, DesignVariables, MovedCenter
 from equipoise.balancing.objectives import mean_square_rows, unit_of
 from equipoise.balancing.problem import ADDED, WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import Affine, NoSolutionError, Program, StalledError
-from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
 from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq

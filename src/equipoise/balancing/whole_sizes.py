@@ -14,11 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.balancing.design_variables import with_parameters
+from equipoise.balancing.design_variables import RADII, with_parameters
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.problem import ADDED, Problem
 from equipoise.balancing.rounding import NEARLY
-from equipoise.balancing.weights import RADII
 from equipoise.balancing.workshop import Change, Piece
 from equipoise.i18n import Note, localized, say
 from equipoise.mechanism.dynamics.parameters import parameter_values

@@ -13,7 +13,7 @@ from equipoise.results.result import Result
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
-    from equipoise.balancing.phasing import Phasing
+    from equipoise.balancing.phase_search import Phasing
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
     from equipoise.studies.objective_map import Landscape

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.balancing.objectives import unit_of
-from equipoise.balancing.outcome import good_already
-from equipoise.balancing.sentences import figure_named, figure_unit
+from equipoise.balancing.outcome import figure_named, figure_unit, good_already
 from equipoise.dataclass import dataclass
 from equipoise.i18n import localized, say, sentence_start, to_say
 from equipoise.mechanism.assembly.joints import moving_links

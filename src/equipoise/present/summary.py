@@ -7,8 +7,12 @@ from itertools import product
 from math import pi
 
 from equipoise.balancing.comparison import WORSE
-from equipoise.balancing.outcome import benefit_sentences, good_already
-from equipoise.balancing.sentences import deterioration_sentences, listed
+from equipoise.balancing.outcome import (
+    benefit_sentences,
+    deterioration_sentences,
+    good_already,
+    listed,
+)
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, sentence_start, to_say
 from equipoise.mechanism.outputs.declared import joint_named, named

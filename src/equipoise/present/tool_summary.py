@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.balancing.comparison import WORSE
-from equipoise.balancing.sentences import larger
+from equipoise.balancing.outcome import larger
 from equipoise.exposure.blocks import VERDICTS, clock, limit_broken
 from equipoise.exposure.daily import verdict_of
 from equipoise.handheld.blocks import UNITS

@@ -15,16 +15,16 @@ from equipoise.balancing.advice import advice_against, advise
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.optimisation import balance
-from equipoise.balancing.outcome import no_benefit_sentences
-from equipoise.balancing.phase_search import PhaseSearch
-from equipoise.balancing.problem import Problem
-from equipoise.balancing.sentences import (
+from equipoise.balancing.outcome import (
     deterioration_sentences,
     figure_named,
     figure_unit,
+    no_benefit_sentences,
     objectives_text,
     proof_sentences,
 )
+from equipoise.balancing.phase_search import PhaseSearch
+from equipoise.balancing.problem import Problem
 from equipoise.balancing.workshop import SPREAD, sentences
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError

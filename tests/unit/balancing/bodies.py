@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.weights import AddedWeight
+from equipoise.balancing.design_variables import AddedWeight
 from equipoise.mechanism.parts.balance import Shape, Weight
 from equipoise.mechanism.parts.machine import Machine
 from unit.mechanism.build import crank_rocker

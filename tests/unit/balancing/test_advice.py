@@ -17,6 +17,9 @@ from equipoise.balancing.first_order import end_weights_for
 from equipoise.balancing.headlines import Saving, assessed, watched_of, worse_headlines
 from equipoise.balancing.outcome import (
     benefit_sentences,
+    deterioration_sentences,
+    objectives_text,
+    proof_sentences,
     sentences_beyond_masses,
     why_not,
     why_nothing,
@@ -37,7 +40,6 @@ from equipoise.balancing.remedies import (
     with_sectors,
 )
 from equipoise.balancing.room import pivots_of, room_about, rooms_about
-from equipoise.balancing.sentences import deterioration_sentences, objectives_text, proof_sentences
 from equipoise.balancing.spaced_arms import spaced_arms_for
 from equipoise.balancing.workshop import in_short, sentences
 from equipoise.errors import EquipoiseError, MassError

@@ -16,7 +16,7 @@ from equipoise.balancing.box_bounds import CLOSE
 from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.objectives import of_all_rows
-from equipoise.balancing.phasing import choose_phases
+from equipoise.balancing.phase_search import choose_phases
 from equipoise.balancing.problem import Problem
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objective, Phases, Weight

@@ -9,7 +9,7 @@ import pytest
 
 from equipoise.balancing import box_bounds as module
 from equipoise.balancing.box_bounds import FormSum, least_of_forms
-from equipoise.balancing.jump_readings import Forms
+from equipoise.balancing.jump_bounds import Forms
 from support.chosen import few
 
 Array = np.ndarray

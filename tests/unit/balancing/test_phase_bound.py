@@ -17,8 +17,7 @@ from equipoise.balancing.cylinder_phasing import (
     PhaseObjective,
     RowSignals,
 )
-from equipoise.balancing.phase_search import PhaseSearch
-from equipoise.balancing.phasing import choose_phases
+from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.mechanism.parts.balance import MEASURES, Objective, Phases
 from support.chosen import EXHAUSTIVE
 from support.rows_in_time import side_by_side

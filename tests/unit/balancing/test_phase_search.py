@@ -24,8 +24,7 @@ from equipoise.balancing.patterns import (
 )
 from equipoise.balancing.phase_grid import PhaseGrid, alike, coarsened, distinct, sorted_choices
 from equipoise.balancing.phase_polish import most_steps
-from equipoise.balancing.phase_search import MOST_KINKED, PhaseSearch
-from equipoise.balancing.phasing import choose_phases
+from equipoise.balancing.phase_search import MOST_KINKED, PhaseSearch, choose_phases
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.parts.balance import Measure, Objective, Phases

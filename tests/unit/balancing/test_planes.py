@@ -12,8 +12,8 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.objectives import signals_of
+from equipoise.balancing.outcome import freedoms
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.sentences import freedoms
 from equipoise.balancing.workshop import covers
 from equipoise.errors import ModelError
 from equipoise.mechanism.assembly.linkage import assemble

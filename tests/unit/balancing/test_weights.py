@@ -12,9 +12,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from equipoise.balancing.design_variables import MovedCenter
+from equipoise.balancing.design_variables import AddedWeight, MovedCenter
 from equipoise.balancing.program import Affine, NoSolutionError, Program
-from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import pieces_of
 from equipoise.mechanism.parts.balance import SHAPES, CenterMove, Shape, Weight, largest_mass
 from unit.balancing.bodies import (

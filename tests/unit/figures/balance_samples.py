@@ -9,7 +9,7 @@ from math import pi
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.pareto import Front, trade_off
-from equipoise.balancing.phasing import Phasing, choose_phases
+from equipoise.balancing.phase_search import Phasing, choose_phases
 from equipoise.figures.pictures import pictures_of
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row

@@ -14,8 +14,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.balancing.blocks import outcome_blocks
-from equipoise.balancing.outcome import benefit_sentences
-from equipoise.balancing.sentences import deterioration_sentences
+from equipoise.balancing.outcome import benefit_sentences, deterioration_sentences
 from equipoise.i18n import Note, speaking
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
