@@ -17,7 +17,8 @@ from equipoise.balancing.box_bounds import CLOSE
 from equipoise.balancing.cylinder_phasing import PhasedRows, PhaseObjective
 from equipoise.balancing.design_variables import LinkParameters
 from equipoise.balancing.effects import Effects
-from equipoise.balancing.jump_bounds import CubicPieces, JumpBounds, JumpReadings
+from equipoise.balancing.jump_bounds import JumpReadings
+from equipoise.balancing.jumping_rows import JumpingDesigns
 from equipoise.balancing.phase_search import choose_phases
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
@@ -174,7 +175,8 @@ def test_no_phases_in_a_box_are_below_its_bound(measure: Measure) -> None:
         Objective("drive_torque", measure)
     )
     assert rows.jumping is not None
-    bounds, chance = JumpBounds(rows.jumping, measure), np.random.default_rng(2)
+    bounds = JumpReadings(JumpingDesigns((rows.jumping,)), measure)
+    chance = np.random.default_rng(2)
     middles = chance.uniform(0, 2 * pi, (12, 4)) * [0, 1, 1, 1]
     here = rows.jumping.values(middles, measure)
     for half in (0.5, 0.05, 1e-3, 1e-5):
@@ -194,7 +196,8 @@ def test_pieces_lie_between_their_extremes() -> None:
     chance = np.random.default_rng(3)
     low, width = chance.uniform(-9.0, 9.0, 300), 10.0 ** chance.uniform(-6, 1, 300)
     low[:20] = rows.jumps[0] - width[:20] / 2
-    least, most = CubicPieces.of(rows).extremes(np.ones(300, int), low, low + width)
+    pieces = JumpReadings(JumpingDesigns((rows,)), "peak").pieces
+    least, most = pieces.extremes(np.ones(300, int), low, low + width)
     curve, _ = rows.curves[1]
     inside = curve(low[:, None] + width[:, None] * np.linspace(0.0, 1.0, 2001))[..., 0]
     small = 1e-9 * float(np.ptp(inside))

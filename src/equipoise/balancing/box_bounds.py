@@ -31,12 +31,11 @@ from itertools import pairwise
 import numpy as np
 
 from equipoise.balancing.cylinder_phasing import AREA_SAMPLES, Cost, PhaseObjective, by_orders
-from equipoise.balancing.jump_bounds import Forms, JumpBounds, JumpReadings, linear_forms
-from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows, smoothed
+from equipoise.balancing.jump_bounds import Forms, JumpReadings, linear_forms
+from equipoise.balancing.jumping_rows import JumpingDesigns, smoothed
 from equipoise.balancing.phase_grid import alike
 from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
-from equipoise.mechanism.parts.balance import Measure
 from equipoise.signals import AT_ONCE, Array, Periodic
 
 PENALTY = 1e4
@@ -286,7 +285,7 @@ class Bounder:
     cost: Cost
     numbers: Numbers
     prices: tuple[float, ...]
-    jumps: Mapping[int, JumpBounds | JumpReadings] = field(default_factory=dict)
+    jumps: Mapping[int, JumpReadings] = field(default_factory=dict)
     designs: Mapping[int, JumpReadings] = field(default_factory=dict)
 
     @classmethod
@@ -294,7 +293,7 @@ class Bounder:
         """For a cost whose terms may jump: read smoothed, and by the pieces between jumps."""
         if numbers is None:
             jumps = {
-                place: _by_pieces_of(rows, term.measure)
+                place: JumpReadings(JumpingDesigns((rows,)), term.measure)
                 for place, term in enumerate(cost.measured)
                 if (rows := term.jumping) is not None
             }
@@ -571,13 +570,6 @@ class Bounder:
         prices = np.array([price / term.scale for price, term in pairs]).reshape(-1, 1)
         whole = np.vstack([factors, np.repeat(prices, len(x), axis=1)]) / sizes
         return np.asarray(np.einsum("tb,tbij->bij", whole, np.array(grams)))
-
-
-def _by_pieces_of(rows: JumpingRows, measure: Measure) -> JumpBounds | JumpReadings:
-    """What bounds extremes of rows over boxes of phases."""
-    if rows.is_vector:
-        return JumpReadings(JumpingDesigns((rows,)), measure)
-    return JumpBounds(rows, measure)
 
 
 def _with_one(numbers: Array) -> Array:

@@ -26,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows
+from equipoise.balancing.jumping_rows import JumpingDesigns
 from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.balance import Measure
@@ -44,147 +44,6 @@ SIGNS = (1.0, -1.0)
 """Of the highest and of the lowest value, each as the highest of a signal."""
 SLACK = 1e-11
 """rad, by which intervals are made longer, beyond rounding."""
-
-
-@dataclass(frozen=True, eq=False)
-class BoxExtremes:
-    """Of B boxes: bounds (B,) of a measure from below, its values (B,) in the middles as far as
-    they are read, and the loss (B, m) that each row's side of the box has in the bound.
-    """
-
-    bounds: Array
-    values: Array
-    losses: Array
-
-
-@dataclass(frozen=True, eq=False)
-class JumpBounds:
-    """Bounds the peak or peak to peak of rows with one component over boxes of phases."""
-
-    rows: JumpingRows
-    measure: Measure
-
-    def over(self, middles: Array, halves: Array) -> BoxExtremes:
-        """Over boxes with middles (B, m) and half sides (B, m), rad; row 1 is not moved."""
-        halves = halves.copy()
-        halves[:, 0] = 0.0
-        step = max(1, AT_ONCE // (2 * self._leading * self._bins))
-        parts = [
-            self._over(middles[k : k + step], halves[k : k + step])
-            for k in range(0, len(middles), step)
-        ]
-        names = ("bounds", "values", "losses")
-        return BoxExtremes(*(np.concatenate([getattr(part, n) for part in parts]) for n in names))
-
-    def _over(self, middles: Array, halves: Array) -> BoxExtremes:
-        # (B, k, i): of row i behind row k
-        ahead = middles[:, None, :] - middles[:, : self._leading, None]
-        reach = halves[:, None, :] + halves[:, : self._leading, None]
-        each = np.arange(self._leading)
-        reach[:, each, each] = 0.0
-        rough = self._rough(ahead, reach)
-        high, low = (
-            self._closely(halves, ahead, reach, item, sign)
-            for item, sign in zip(rough, SIGNS, strict=True)
-        )
-        if self.measure == "peak_to_peak":
-            both = [a + b for a, b in zip(high, low, strict=True)]
-            return BoxExtremes(*both)
-        upper = high[0] >= low[0]
-        losses = np.where(upper[:, None], high[2], low[2])
-        return BoxExtremes(np.maximum(high[0], low[0]), np.maximum(high[1], low[1]), losses)
-
-    # -- all crank angles, roughly -----------------------------------------------------------------
-
-    def _rough(self, ahead: Array, reach: Array) -> tuple[Array, Array]:
-        """Bounds (B, k, N) of the sum, and of minus the sum, at the N crank angles of bins."""
-        spacing, count = self.rows.period / self._bins, self._bins
-        first = np.floor((ahead - reach) / spacing).astype(int)
-        wide = np.minimum(np.floor((ahead + reach) / spacing).astype(int) - first + 1, count)
-        level = np.log2(wide).astype(int)
-        last = first + wide - 2**level
-        shape = (*ahead.shape[:2], count)
-        high, low = np.zeros(shape), np.zeros(shape)
-        least, most = self._windows
-        for row in range(ahead.shape[2]):
-            ends = [(level[..., row], row, at[..., row] % count) for at in (first, last)]
-            high += np.minimum(least[ends[0]], least[ends[1]])
-            low -= np.maximum(most[ends[0]], most[ends[1]])
-        return high, low
-
-    @cached_property
-    def _bins(self) -> int:
-        return BINS * self.rows.turns
-
-    @cached_property
-    def _leading(self) -> int:
-        """Rows with which crank angles go."""
-        return min(len(self.rows.curves), MOST_LEADING)
-
-    @cached_property
-    def _windows(self) -> tuple[Array, Array]:
-        return self.pieces.windows(self._bins)
-
-    @cached_property
-    def pieces(self) -> CubicPieces:
-        return CubicPieces.of(self.rows)
-
-    # -- the best of them, closely -----------------------------------------------------------------
-
-    def _closely(
-        self, halves: Array, ahead: Array, reach: Array, rough: Array, sign: float
-    ) -> tuple[Array, Array, Array]:
-        """Bounds (B,), values in the middles (B,) and losses (B, m) of the sum times a sign."""
-        boxes, leading, rows = ahead.shape
-        angles = self._angles(ahead, rough, sign)  # (B, k, A)
-        at = angles[..., None] + ahead[:, :, None, :]  # (B, k, A, m)
-        row = np.broadcast_to(np.arange(rows), at.shape)
-        here = sign * self.pieces.values(row, at)
-        far = reach[:, :, None, :] + SLACK
-        least, most = self.pieces.extremes(row, at - far, at + far)
-        least = least if sign > 0 else -most
-        own = np.eye(rows, dtype=bool)[:leading, None]
-        least = np.where(own, here, least)
-        bounds = np.sum(least, axis=3).reshape(boxes, -1)
-        best = np.argmax(bounds, axis=1)
-        k, a = np.unravel_index(best, angles.shape[1:])
-        each, each_row = np.arange(boxes), np.arange(rows)
-        drops = (here - least)[each, k, a]  # (B, m), to which the leading row's side adds as well
-        share = halves / np.maximum(reach[each, k], SLACK)
-        sides = drops * np.where(each_row == k[:, None], 0.0, share)
-        sides[each, k] = np.sum(drops - sides, axis=1)
-        sides[:, 0] = 0.0
-        values = np.max(np.sum(here, axis=3).reshape(boxes, -1), axis=1)
-        whole = np.maximum(bounds[each, best], np.max(rough, axis=(1, 2)))
-        return whole, values, sides
-
-    def _angles(self, ahead: Array, rough: Array, sign: float) -> Array:
-        """Crank angles (B, k, A), as each leading row counts them: the best of each segment, led
-        to the top of a parabola, and all sides of jumps.
-        """
-        boxes, leading, count = rough.shape
-        spacing = self.rows.period / count
-        parts = rough.reshape(boxes, leading, SEGMENTS, -1)
-        size = parts.shape[3]
-        places = np.argmax(parts, axis=3) + size * np.arange(SEGMENTS)
-        theta = (places + 0.5) * spacing
-        neighbors = theta[..., None] + spacing * np.array([-1.0, 0.0, 1.0])  # (B, k, S, 3)
-        at = neighbors[..., None] + ahead[:, :, None, None, :]
-        row = np.broadcast_to(np.arange(ahead.shape[2]), at.shape)
-        before, top, after = np.moveaxis(sign * np.sum(self.pieces.values(row, at), axis=4), 3, 0)
-        bend = before - 2 * top + after
-        way = np.divide(before - after, 2 * bend, out=np.zeros_like(bend), where=bend < 0)
-        theta = theta + spacing * np.clip(way, -1.0, 1.0)
-        sides = np.broadcast_to(self._sides, (boxes, leading, len(self._sides)))
-        return np.concatenate([theta, sides], axis=2)
-
-    @cached_property
-    def _sides(self) -> Array:
-        """Crank angles of both sides of jumps, and of bends where these are few."""
-        every = self.rows.edges(np.zeros(1))
-        if len(every) > MOST_SIDES:
-            every = every[: 2 * len(self.rows.jumps)][:MOST_SIDES]
-        return np.asarray(every)
 
 
 def _doubled(bins: Array, pick: Any) -> Array:
@@ -206,13 +65,6 @@ class CubicPieces:
     starts: Array
     widths: Array
     cubics: Array
-
-    @classmethod
-    def of(cls, rows: JumpingRows) -> CubicPieces:
-        """Of rows with one component."""
-        places = rows.curves[0][0].x
-        cubics = np.array([curve.c[..., 0] for curve, _ in rows.curves])
-        return cls(places[:-1], np.diff(places), cubics)
 
     @property
     def period(self) -> float:
@@ -333,13 +185,18 @@ def linear_forms(least: Array, most: Array, low: Array, high: Array) -> Forms:
 @dataclass(frozen=True, eq=False)
 class BoxReadings:
     """Of B boxes: groups of forms, the largest of each of which sum up to a measure's bound; the
-    measure's values (B,) in the middles as far as they are read, and losses (B, m) by the rows'
-    sides of the box.
+    measure's values (B,) in the middles as far as they are read, and the loss (B, m) that each
+    row's side of the box has in the bound.
     """
 
     groups: tuple[Forms, ...]
     values: Array
     losses: Array
+
+    @property
+    def bounds(self) -> Array:
+        """Bounds (B,) of the measure from below, where no numbers are free."""
+        return np.asarray(np.sum([np.max(item.constants, axis=1) for item in self.groups], axis=0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -356,12 +213,10 @@ class JumpReadings:
         cells, levels = len(start.curves[0][0].x) + self._bins, 2 + int(np.log2(self._bins))
         return 4 * len(self.pieces.cubics) * levels * cells <= MOST_VALUES
 
-    def over(self, middles: Array, halves: Array) -> BoxExtremes:
-        """Bounds over boxes of phases alone, with middles and half sides (B, m), rad."""
+    def over(self, middles: Array, halves: Array) -> BoxReadings:
+        """Over boxes of phases alone, with middles and half sides (B, m), rad."""
         none = np.zeros((len(middles), 0))
-        readings = self.readings(middles, halves, none, none, none)
-        bounds = np.sum([np.max(item.constants, axis=1) for item in readings.groups], axis=0)
-        return BoxExtremes(bounds, readings.values, readings.losses)
+        return self.readings(middles, halves, none, none, none)
 
     def readings(
         self, middles: Array, halves: Array, numbers: Array, low: Array, high: Array
@@ -397,8 +252,8 @@ class JumpReadings:
         each = np.arange(self._leading)
         reach[:, each, each] = 0.0
         ends = []
-        for sign in SIGNS[:1] if self._is_vector else SIGNS:
-            leader, angles = self._angles(ahead, reach, sign * shares)
+        for sign, rough in zip(self._signs, self._rough(ahead, reach, shares), strict=True):
+            leader, angles = self._angles(ahead, rough, sign * shares)
             ends.append(self._read(leader, angles, ahead, reach, halves, sign, shares, low, high))
         if self.measure == "peak_to_peak" and not self._is_vector:
             values = np.sum([value for _, value, _ in ends], axis=0)
@@ -439,6 +294,11 @@ class JumpReadings:
         return self.designs.each[0].is_vector
 
     @property
+    def _signs(self) -> tuple[float, ...]:
+        """1 for what is highest, -1 for what is lowest: a vector's size has no use for this."""
+        return SIGNS[:1] if self._is_vector else SIGNS
+
+    @property
     def _bins(self) -> int:
         return BINS * self.designs.each[0].turns
 
@@ -459,10 +319,12 @@ class JumpReadings:
 
     # -- where -------------------------------------------------------------------------------------
 
-    def _angles(self, ahead: Array, reach: Array, shares: Array) -> tuple[Array, Array]:
-        """Rows (B, A) with which crank angles go, and these as the rows count them (B, A), rad."""
+    def _angles(self, ahead: Array, rough: Array, shares: Array) -> tuple[Array, Array]:
+        """Rows (B, A) with which crank angles go, and these as the rows count them (B, A), rad.
+
+        rough : bounds (B, k, N) at the N crank angles of bins.
+        """
         spacing, boxes = self.pieces.period / self._bins, len(ahead)
-        rough = self._rough(ahead, reach, shares)
         parts = rough.reshape(boxes, self._leading, SEGMENTS, -1)
         size = parts.shape[3]
         tops = np.argmax(parts, axis=3) + size * np.arange(SEGMENTS)
@@ -497,8 +359,10 @@ class JumpReadings:
             every = every[: 2 * len(rows.jumps)][:MOST_SIDES]
         return np.asarray(every)
 
-    def _rough(self, ahead: Array, reach: Array, shares: Array) -> Array:
-        """Bounds (B, k, N) at the N crank angles of bins, with shares (B, 1 + K) of the numbers."""
+    def _rough(self, ahead: Array, reach: Array, shares: Array) -> list[Array]:
+        """Bounds (B, k, N) at the N crank angles of bins, with shares (B, 1 + K) of the numbers; of
+        the sum and of minus the sum, or of a vector's size alone.
+        """
         spacing, count = self.pieces.period / self._bins, self._bins
         first = np.floor((ahead - reach) / spacing).astype(int)
         wide = np.minimum(np.floor((ahead + reach) / spacing).astype(int) - first + 1, count)
@@ -506,18 +370,19 @@ class JumpReadings:
         last = first + wide - 2**level
         least, most = self._windows
         middle = np.floor(ahead / spacing).astype(int) % count
-        factors = [shares[:, None, None, :, None]]
+        factors = shares[:, None, None, :, None]
         if self._is_vector:
-            factors[0] = factors[0] * self._along(middle, shares)[:, :, :, None, :]
-        bound = np.zeros((*ahead.shape[:2], count))
+            factors = factors * self._along(middle, shares)[:, :, :, None, :]
+        bounds = [np.zeros((*ahead.shape[:2], count)) for _ in self._signs]
         for row, functions in enumerate(self._functions):
             for (j, c), function in np.ndenumerate(functions):
                 at = [(level[..., row], function, item[..., row] % count) for item in (first, last)]
                 low = np.minimum(least[at[0]], least[at[1]])
                 high = np.maximum(most[at[0]], most[at[1]])
-                factor = factors[0][..., j, c]
-                bound += np.where(factor > 0, factor * low, factor * high)
-        return bound
+                for k, sign in enumerate(self._signs):
+                    factor = sign * factors[..., j, c]
+                    bounds[k] += np.where(factor > 0, factor * low, factor * high)
+        return bounds
 
     def _along(self, middle: Array, shares: Array) -> Array:
         """Directions (B, k, N, C) of the sum in the middles of boxes."""
