@@ -112,6 +112,27 @@ def test_two_shafts_with_ranges(monkeypatch: pytest.MonkeyPatch) -> None:
     assert found <= min(grid) * (1 + 1e-6)
 
 
+# On every change: `test_two_shafts_with_choices_each`.
+@pytest.mark.exhaustive
+def test_the_example_with_two_ranges_against_a_fine_grid() -> None:
+    """No pair of given ratios is better, each with a plan of its own: 0.1 apart over the range of
+    the rocker, and 0.005 apart about the ratio that is found.
+    """
+    machine = eq.load("balance-geared-two")
+    assert machine.balance is not None
+    first, second = machine.balance.geared
+    found = eq.balance(machine)
+    ratio, other = (one.values["ratio"] for one in found.changes if one.kind == "gears")
+    ratios = [0.2 + 0.1 * k for k in range(29)] + [ratio + 0.005 * k for k in range(-4, 5)]
+    grid = {
+        (one.ratio, two.ratio): eq.balance(machine, replace(machine.balance, geared=(one, two)))
+        for one, two in product(each(first, ratios), each(second, FRACTIONS))
+    }
+    least = min(one.cost for one in grid.values())
+    assert found.cost <= least * (1 + 1e-6)
+    assert grid[(ratio, ratio), (other, other)].cost == pytest.approx(found.cost, rel=1e-6)
+
+
 # Proofs and limits of gears: the other tests of this file.
 @pytest.mark.exhaustive
 def test_order_of_shafts_does_not_count() -> None:
