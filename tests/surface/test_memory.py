@@ -261,14 +261,14 @@ CONES = """
 import sys
 import numpy as np
 from scipy import sparse
-from equipoise.balancing.program import clarabel_solver
+from equipoise.balancing.program import solve_cones
 from equipoise.errors import UsageError
 from equipoise.limits import limit_process
 
 matrix = sparse.csc_matrix(np.random.default_rng(0).normal(size=(6000, 300)))
 limit_process()
 try:
-    clarabel_solver(np.ones(300), matrix, np.ones(6000), [("nonnegative", 6000)], 1e-8)
+    solve_cones(np.ones(300), matrix, np.ones(6000), [("nonnegative", 6000)], 1e-8)
 except UsageError as error:
     sys.exit(str(error))
 """

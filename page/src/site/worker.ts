@@ -71,7 +71,7 @@ type Sent = { task: Uint8Array } | { kind: string; bytes: Uint8Array };
 
 /** Without a message for so long, what follows from the last one is computed, ms. */
 const PAUSE = 200;
-/** What makes balancing faster is loaded after what it cannot do without. */
+/** Balancing needs the solver late, and would begin again: it is loaded with what comes before. */
 const SOLVER = { name: "clarabel", after: "scipy" };
 
 const base = new URL(".", self.location.href);

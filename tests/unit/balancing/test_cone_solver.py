@@ -1,4 +1,4 @@
-"""Our cone solver against Clarabel: random programs, and the plans of the examples."""
+"""Cone programs against what is known of them: random ones with a solution, and one by hand."""
 
 from __future__ import annotations
 
@@ -8,10 +8,7 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-import equipoise as eq
-from equipoise.balancing import program
-from equipoise.balancing.program import clarabel_solver, interior_point_solver
-from support.chosen import few
+from equipoise.balancing.program import solve_cones
 
 TOLERANCE = 1e-8
 
@@ -39,15 +36,15 @@ def random_program(seed: int) -> tuple[Any, ...]:
     return -matrix.T @ dual, sparse.csc_matrix(matrix), right, sizes
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_random_programs_have_the_same_value(seed: int) -> None:
+@pytest.mark.parametrize("seed", range(5))
+def test_random_programs_end_in_a_certificate(seed: int) -> None:
+    """Rows are kept, and no value is below that of the dual, which is the same."""
     cost, matrix, right, cones = random_program(seed)
-    one = clarabel_solver(cost, matrix, right, cones, TOLERANCE)
-    two = interior_point_solver(cost, matrix, right, cones, TOLERANCE)
-    assert one.status == two.status == "solved"
-    assert two.value == pytest.approx(one.value, rel=1e-6, abs=1e-6)
-    assert two.dual_value == pytest.approx(two.value, rel=1e-6, abs=1e-6)
-    slack = right - matrix @ two.x
+    end = solve_cones(cost, matrix, right, cones, TOLERANCE)
+    assert end.status == "solved"
+    assert end.dual_value == pytest.approx(end.value, rel=1e-6, abs=1e-6)
+    np.testing.assert_allclose(matrix.T @ end.z, -cost, atol=1e-6 * (1 + abs(cost).max()))
+    slack = right - matrix @ end.x
     assert abs(slack[:2]).max() < 1e-6 * (1 + abs(right).max())
     assert slack[2:11].min() > -1e-6 * (1 + abs(right).max())
 
@@ -58,7 +55,7 @@ def test_constraints_that_exclude_each_other_are_infeasible(cone: tuple[Any, int
         matrix, right = np.array([[1.0], [-1.0]]), np.array([-1.0, -1.0])
     else:  # |x + 3| <= -1
         matrix, right = np.array([[0.0], [-1.0]]), np.array([-1.0, 3.0])
-    end = interior_point_solver(np.ones(1), sparse.csc_matrix(matrix), right, [cone], TOLERANCE)
+    end = solve_cones(np.ones(1), sparse.csc_matrix(matrix), right, [cone], TOLERANCE)
     assert end.status == "infeasible"
 
 
@@ -67,24 +64,7 @@ def test_a_program_by_hand() -> None:
     matrix = sparse.csc_matrix(np.array([[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0]]))
     right = np.array([1.0, 0.0, 0.0])
     cones: Any = [("second-order", 3)]
-    end = interior_point_solver(np.ones(2), matrix, right, cones, 1e-9)
+    end = solve_cones(np.ones(2), matrix, right, cones, 1e-9)
     assert end.value == pytest.approx(-np.sqrt(2), rel=1e-8)
     np.testing.assert_allclose(end.x, -np.sqrt(0.5), rtol=1e-6)
     np.testing.assert_allclose(end.z[0], np.sqrt(2), rtol=1e-6)
-
-
-PLANS = (
-    *("balance-coupler", "balance-crank", "balance-rig", "balance-shafts", "balance-spring"),
-    *("exudyn-slider-crank", "four-stroke-engine", "knife-drive", "pick-and-place", "twin-engine"),
-)
-"""Without those whose search solves hundreds of large programs, which differ in nothing else."""
-
-
-@pytest.mark.parametrize("name", few(PLANS, {*PLANS} - {"balance-rig", "balance-shafts"}))
-def test_plans_of_the_examples_come_to_the_same(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    machine, found = eq.load(name), []
-    for solver in (clarabel_solver, interior_point_solver):
-        monkeypatch.setattr(program, "usual_solver", lambda solver=solver: solver)
-        found.append(eq.balance(machine).objectives)
-    for key, (before, after) in found[0].items():
-        assert found[1][key][1] == pytest.approx(after, rel=1e-6, abs=1e-9 * abs(before))

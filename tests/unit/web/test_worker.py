@@ -9,12 +9,9 @@ from unittest.mock import Mock
 
 import pytest
 
-from equipoise.balancing import program
-from equipoise.balancing.program import interior_point_solver
 from equipoise.i18n import catalogue
 from equipoise.web import worker
 from equipoise.web.worker import Background, Foreground
-from support.chosen import EXHAUSTIVE
 from unit.web.pages import unpacked
 
 
@@ -268,18 +265,3 @@ def test_a_language_is_spoken_once_its_texts_are_loaded(
     ]
     assert spoken["words"]["Undo"] == catalogue("ja")["Undo"]
     assert asked(page, "undo")[0]["message"] == catalogue("ja")["there is nothing to undo"]
-
-
-# Another solution fails in `test_plans_of_the_examples_come_to_the_same` too.
-@EXHAUSTIVE
-def test_a_balance_without_clarabel_comes_to_the_same(
-    page: Foreground, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked(page, "balance")
-    (first,) = [one for one in done_beside(page) if one["type"] == "balanced"]
-    asked(page, "undo")
-    monkeypatch.setattr(program, "usual_solver", lambda: interior_point_solver)
-    asked(page, "balance")
-    (other,) = [one for one in done_beside(page) if one["type"] == "balanced"]
-    for one, two in zip(first["aims"], other["aims"], strict=True):
-        assert two["after"] == pytest.approx(one["after"], rel=1e-6)
