@@ -82,7 +82,7 @@ Remedy = tuple[Machine, tuple[Change, ...], Balance]
 LEVEL = 1e-4
 """Of the couples that phases make between the rows: what is left of them, they may keep."""
 ROUNDING = 1e-9
-"""Over a limit: by how much a figure may be above it."""
+"""Over a limit: by how much a figure may be above it, as it is computed anew from the machine."""
 LOUD, MOST_RESONANCES = 0.1, 2
 """Share of the loudest from which a resonance among the speeds is looked at; how many of them."""
 

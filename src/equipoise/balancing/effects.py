@@ -39,7 +39,8 @@ from equipoise.mechanism.parts.places import in_frame
 from equipoise.signals import Array, JumpSampling, Periodic
 
 ANGLES = 720
-"""Crank angles in a turn at which balancing looks."""
+"""Crank angles in a turn at which balancing looks: eight of the 90th order; peaks between them are
+met by rows that are added where a program breaks them (`Program.solve`)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,9 +35,10 @@ more."""
 SAMPLES = 96
 """In a turn, on which peaks are judged until they are polished."""
 FEWEST = 4
-"""Phases in a turn below which a grid is useless."""
+"""Phases in a turn below which a grid is useless: of order 2 it would see one in a period."""
 MOST_CANDIDATES = 3_000
-"""Best arrangements among which different ones are looked for."""
+"""Best arrangements among which different ones are looked for: beside each good one lie all its
+neighbours on the grid."""
 SAME = 1e-12
 """Over the largest amplitude: a difference of two rows that is rounding."""
 BETTER = 1e-9

@@ -95,10 +95,17 @@ THICKNESS_OF_LINK = 3.0
 """Of a plate over the thickness of the link that carries it."""
 THICKEST_PLATE = 0.03
 """m, beyond which no workshop screws it on."""
+PLATES = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+"""Thicknesses of plate, times a power of ten, mm: those in stock, of which a plate is cut."""
+ROOM_ABOUT_PIN = 0.05
+"""m: reach of a counterweight on a link that has no other point than its pin, or the size of the
+machine where that is less: nothing else says how far such a link may reach."""
 HUB = 0.25
 """Inner radius of a sector over its outer one: inside is the shaft."""
 MOST_TAKEN = 0.5
 """Share of a link's mass that is taken off it at most: the rest bears its load."""
+HOLE_RADII = (5e-3, 10e-3, 15e-3, 20e-3, 30e-3, 40e-3)
+"""m, of holes that take mass off: a drill makes the smaller ones, a hole saw the others."""
 
 # -- gauges ----------------------------------------------------------------------------------------
 

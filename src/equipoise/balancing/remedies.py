@@ -21,6 +21,7 @@ from equipoise.balancing.effects import Signal
 from equipoise.balancing.headlines import HeadlineLimit
 from equipoise.balancing.objectives import measured_each
 from equipoise.balancing.policy import (
+    HOLE_RADII,
     HUB,
     LEAST_GAIN,
     LEAST_GAIN_OF_ADDED,
@@ -28,6 +29,7 @@ from equipoise.balancing.policy import (
     MASS_PRICE,
     MOST_TAKEN,
     PEAK_PRICE,
+    PLATES,
 )
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import Room, outline_of
@@ -48,14 +50,12 @@ from equipoise.results.yardsticks import FigureAssessment
 from equipoise.signals import Array
 
 STEEL = MATERIALS["steel"]
-PLATES = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
-"""Thicknesses in stock, times a power of ten, mm."""
 GRID, FINE_GRID, SMALL = 10e-3, 1e-3, 20e-3
 """m: steps of radii, and those of rooms that are smaller than this."""
 SAMPLES, CHUNK = 120, 128
 """Crank angles in a turn at which shapes are compared; how many at once."""
 DIRECTIONS, WIDTHS = range(-180, 180, 10), (30, 60, 90, 120, 150, 180)
-"""Degrees that are tried first."""
+"""Degrees that are tried first: all round, and sectors of steps that fine ones bridge."""
 FINE_DIRECTIONS, FINE_WIDTHS = range(-9, 10), range(-25, 30, 5)
 """Degrees about the best of these."""
 PLATE_SHARES, OUTER_SHARES = (1.0, 0.5, 0.25, 0.125), (1.0, 0.85, 0.7, 0.5)
@@ -432,9 +432,7 @@ class DrilledHole:
 
 
 HOLE_GRID, HOLE_PLACES = 5e-3, 12
-"""Grid of centres, m; places across a body that are tried."""
-HOLE_RADII = (5e-3, 10e-3, 15e-3, 20e-3, 30e-3, 40e-3)
-"""m."""
+"""Grid of centres, m, so that a drawing has round numbers; places across a body that are tried."""
 
 
 def best_holes(comparison: Comparison) -> Iterator[DrilledHole]:

@@ -27,6 +27,7 @@ from equipoise.balancing.policy import (
     REACH_OF_CRANK,
     REACH_OF_LARGEST_LINK,
     REACH_OF_LINK,
+    ROOM_ABOUT_PIN,
     THICKEST_PLATE,
     THICKNESS_OF_LINK,
     THICKNESS_OF_REACH,
@@ -499,11 +500,6 @@ def _reach(link: Link, at: str) -> float:
     return max(abs(place - center) + radius for place, radius in places)
 
 
-SMALLEST = 0.05
-"""Room of a counterweight on a link that has no other point than its pin, m; less in a machine
-that is smaller."""
-
-
 def pin_of(machine: Machine, link: str) -> str:
     """The link's point in the frame; its first point where it has none."""
     points = machine.links[link].points
@@ -513,7 +509,7 @@ def pin_of(machine: Machine, link: str) -> str:
 def reach_of(machine: Machine, link: str) -> float:
     """Distance of what of a link is farthest from its pin, m: a point, or an edge of a body."""
     own = _reach(machine.links[link], pin_of(machine, link))
-    return own or min(SMALLEST, float(size_of_bodies(machine)))
+    return own or min(ROOM_ABOUT_PIN, float(size_of_bodies(machine)))
 
 
 def _most_thick(machine: Machine, link: str, reach: float) -> float:

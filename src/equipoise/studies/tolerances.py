@@ -1,14 +1,13 @@
 """What manufacturing tolerances do to the figures of a machine, and shares of the variance.
 
-A and B are two tables of designs that have nothing to do with each other.  A with the columns of
-one cause taken from B gives the effect of that cause: first order, by itself; total, with all its
-interactions with others (Sobol 2001).  The estimates are (b) and (f) of Table 2 of
+The scatter of each figure comes from one run over many machines, whose numbers are drawn from their
+tolerances.  Which tolerance causes it comes from a second run of about the same length.
+
+In this, A and B are two tables of designs that have nothing to do with each other.  A with the
+columns of one cause taken from B gives the effect of that cause: first order, by itself; total,
+with all its interactions with others (Sobol 2001).  The estimates are (b) and (f) of Table 2 of
 Saltelli et al. 2010.  A once more, with the tolerance of one cause halved or gone, gives the
 scatter that is left; that is computed, not inferred.
-
-The scatter of each figure comes from one run over many machines, whose numbers are drawn from their
-tolerances.  Which tolerance causes it comes from a second run of about the same length, see
-`equipoise.studies.tolerances`.
 """
 
 from __future__ import annotations
