@@ -2,7 +2,7 @@
 
 Plan -> shafts -> free numbers -> cone program -> best numbers -> new machine -> what it does.
 
-Gears are searched around the program (`gear_search`).  Where phases of rows are free, they and the
+Gears are searched around the program (`geared`).  Where phases of rows are free, they and the
 masses are searched together, after the gears.
 """
 

@@ -21,9 +21,10 @@ from equipoise.results import analysis as analysis_module
 from equipoise.results.analysis import ABOUT, BESIDE_OUTPUTS, BY_ORDER, FOUR_BAR, order_values
 from equipoise.results.outputs import unit_of
 from equipoise.schema.template import Template
-from equipoise.studies.commands import dimension_of, find_outputs, read, resolve, scale
+from equipoise.studies.commands import COMMANDS, dimension_of, find_outputs, read, resolve, scale
 from equipoise.studies.evaluate import OneByOne
 from equipoise.studies.outcomes import Outcome
+from equipoise.studies.study import COMMANDS as NAMES
 from equipoise.studies.study import Command, Output, Sampling, Study
 from support.chosen import EXHAUSTIVE, few
 from support.refusals import refused
@@ -554,3 +555,11 @@ def test_what_an_analysis_has_beside_outputs_is_declared() -> None:
     for key, one in FOUR_BAR.items():
         found = dimension_of(analysis.machine, "analyze", f"summary.four_bar.{key}")
         assert found == one.dimension, key
+
+
+def test_every_command_of_a_study_is_declared() -> None:
+    """`analyze` stands apart, for its crank angles."""
+    assert {"analyze", *COMMANDS} == {*NAMES}
+    for declare in COMMANDS.values():
+        outputs = declare()
+        assert callable(outputs.compute) and all(outputs.declared)
