@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import pi
+from typing import Any
 
 import equipoise as eq
 from equipoise.mechanism.parts.balance import (
@@ -31,6 +32,8 @@ SHAFTS = BalanceShafts(2, ((0.0, -0.06), (0.04, -0.06)), ROOM)
 SPRING = SpringChoice("rocker", "C", "A", 5000.0, (0.02, 0.12))
 
 
-def refused(where: str, words: str, balance: Balance, machine: eq.Machine = FOUR) -> None:
-    """Check that a machine with this table is refused at a place, in these words."""
-    build.refused(where, words, lambda: replace(machine, balance=balance))
+def refused(
+    where: str, expected: dict[str, Any], balance: Balance, machine: eq.Machine = FOUR
+) -> None:
+    """Check that a machine with this table is refused at a place, with these values."""
+    build.refused(where, expected, lambda: replace(machine, balance=balance))
