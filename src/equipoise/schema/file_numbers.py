@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import field
 from numbers import Real
 from string import Formatter
 from typing import Any
@@ -56,6 +57,7 @@ class NumberLocation:
 
     place : of the number itself, or of the vector or pair of planes whose `part` it is.
     rest : path inside of the linkage whose file is named there; then `number` is not known here.
+    defaults : lists that the file leaves out and of which the number is one, by their places.
     """
 
     place: KeyPath
@@ -63,6 +65,7 @@ class NumberLocation:
     whole: Vector | PlanePair | None = None
     part: str = ""
     rest: str = ""
+    defaults: Mapping[KeyPath, Any] = field(default_factory=dict)
 
 
 def find(content: Content, kind: Kind, path: str) -> NumberLocation:
@@ -75,6 +78,7 @@ def find(content: Content, kind: Kind, path: str) -> NumberLocation:
     steps = KeyPath.parse(path)
     place = KeyPath()
     here: Any = content
+    defaults: dict[KeyPath, Any] = {}
     for count, step in enumerate(steps):
         group = _group(here, step, kind, place) if count == len(steps) - 1 else None
         if group is not None:
@@ -82,12 +86,15 @@ def find(content: Content, kind: Kind, path: str) -> NumberLocation:
             return NumberLocation(place, group.numbers[part], group, part)
         if kind == "tool" and place[-1:] == ("linkage",) and isinstance(here, str):
             return NumberLocation(place, rest=str(KeyPath(steps[count:])))
-        here = _below(content, kind, path, place / step, here)
+        below = _below(content, kind, path, place / step, here)
         place = place / step
+        if isinstance(here, dict) and step not in here and isinstance(below, list):
+            defaults[place] = below
+        here = below
     number = read_number(here, isinstance(here, int) and is_whole(kind, place))
     if number is None:
         raise ModelError(path, _no_number(path, here))
-    return NumberLocation(place, number)
+    return NumberLocation(place, number, defaults=defaults)
 
 
 def all_numbers(content: Content, kind: Kind) -> dict[str, FileNumber]:
@@ -236,11 +243,13 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
     ModelError : a value is none, or two paths mean the same number; `where` is the path.
     """
     changes: dict[KeyPath, Any] = {}
+    defaults: dict[KeyPath, Any] = {}
     parts: dict[KeyPath, dict[str, float]] = {}
     wholes: dict[KeyPath, Vector | PlanePair] = {}
     for path, result, value in given:
         if isinstance(value, bool) or not isinstance(value, Real):
             raise ModelError(path, Note("got {value!r}; give a number", value=value))
+        defaults |= result.defaults
         siblings = parts.setdefault(result.place, {})
         _check_company(path, result, siblings, result.place in changes)
         if result.whole is not None:
@@ -249,7 +258,7 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
         elif result.number is not None:
             changes[result.place] = result.number.written(value)
     changes |= {place: whole.changed(parts[place]) for place, whole in wholes.items()}
-    return with_values(content, changes)
+    return with_values(with_values(content, defaults), changes)
 
 
 def _check_company(

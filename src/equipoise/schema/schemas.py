@@ -78,8 +78,13 @@ def _defined(name: str, schema: Callable[[], Schema], definitions: Definitions) 
 
 
 def _quantity(kind: keys.Quantity, definitions: Definitions) -> Schema:
-    name = "".join(word.capitalize() for word in kind.dimension.split())
+    name = f"{_capitals(kind.dimension)}Quantity"  # a part may be called like one: a resistance
     return _defined(name, lambda: {**_described(kind.dimension), **_text_of(kind)}, definitions)
+
+
+def _capitals(dimension: Dimension) -> str:
+    """The name of a dimension as one word: ``AngularSpeed``."""
+    return "".join(word.capitalize() for word in dimension.split())
 
 
 def _text_of(kind: keys.Quantity) -> Schema:
@@ -179,8 +184,8 @@ def _planes(kind: keys.Planes, definitions: Definitions) -> Schema:
         )
     item = kind.item
     text = _described(item.dimension, "; or a table")["description"]
-    name = "".join(word.capitalize() for word in item.dimension.split())
-    return _defined(f"{name}InPlanes", lambda: _in_planes(_text_of(item), text), definitions)
+    name = f"{_capitals(item.dimension)}InPlanes"
+    return _defined(name, lambda: _in_planes(_text_of(item), text), definitions)
 
 
 def _in_planes(text: Schema, description: str) -> Schema:

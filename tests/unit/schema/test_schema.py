@@ -12,8 +12,10 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
+from equipoise.keys import Tables, all_keys
 from equipoise.mechanism.parts.bodies import MATERIALS
 from equipoise.schema import dumps, examples, json_schema, load, loads
+from equipoise.schema.open_files import FileKind, document_of
 from equipoise.schema.studies import load_study
 from unit.schema.samples import EVERYTHING, FOUR_BAR, VALIDATOR, survives
 
@@ -61,6 +63,16 @@ def test_good_documents(text: str) -> None:
 @pytest.mark.parametrize("name", examples("linkage"))
 def test_examples(name: str) -> None:
     VALIDATOR.validate(tomllib.loads(dumps(load(name))))
+
+
+@pytest.mark.parametrize("kind", ["linkage", "study", "tool"])
+def test_items_of_lists_of_tables_are_tables(kind: FileKind) -> None:
+    """Whatever else is called alike, such as a resistance of a winding and one against a motion."""
+    schema = json_schema(kind)
+    for name, key in all_keys(document_of(kind)).items():
+        if isinstance(key.kind, Tables):
+            reference = schema["properties"][name]["items"]["$ref"]
+            assert schema["$defs"][reference.rpartition("/")[2]]["type"] == "object", name
 
 
 def test_tables_are_valid() -> None:
