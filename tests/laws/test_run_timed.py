@@ -11,6 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.mechanism import JointProperties, Load, Motor, Row, TimedLoad
+from support.refusals import refused
 from unit.schema.samples import survives
 
 INERTIA, TORQUE = 2.0, 3.0
@@ -158,24 +159,27 @@ def test_analyses_leave_it_out_and_files_keep_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("given", "expected"),
     [
-        ({}, "timed_loads[1]: give exactly one of force and torque"),
-        ({"torque": 1.0, "force": (1.0, 0.0)}, "timed_loads[1]: give exactly one of force and"),
-        ({"force": (1.0, 0.0)}, "timed_loads[1].point: missing; a force acts at a point"),
-        ({"torque": 1.0, "on": "rod"}, "timed_loads[1].on: 'rod' cannot push itself"),
-        ({"torque": 1.0, "point": "C"}, "timed_loads[1].point: a torque acts on a link"),
-        ({"torque": 1.0, "axes": "link"}, "timed_loads[1].axes: goes with a force"),
+        ({}, {"place": "timed_loads[1]"}),
+        ({"torque": 1.0, "force": (1.0, 0.0)}, {"place": "timed_loads[1]"}),
+        ({"force": (1.0, 0.0)}, {"place": "timed_loads[1].point"}),
+        ({"torque": 1.0, "on": "rod"}, {"place": "timed_loads[1].on", "link": "rod"}),
+        ({"torque": 1.0, "point": "C"}, {"place": "timed_loads[1].point"}),
+        ({"torque": 1.0, "axes": "link"}, {"place": "timed_loads[1].axes"}),
         (
             {"torque": 1.0, "times": (1.0,)},
-            "timed_loads[1].times: got 1 value in times and 2 in factors",
+            {
+                "place": "timed_loads[1].times",
+                "others": 2,
+                "count": 1,
+            },
         ),
-        ({"torque": 1.0, "times": (1.0, 1.0)}, "timed_loads[1].times: the times must rise"),
-        ({"torque": 1.0, "times": (-1.0, 1.0)}, "timed_loads[1].times: a run begins at 0 s"),
+        ({"torque": 1.0, "times": (1.0, 1.0)}, {"place": "timed_loads[1].times", "what": "times"}),
+        ({"torque": 1.0, "times": (-1.0, 1.0)}, {"place": "timed_loads[1].times"}),
     ],
 )
-def test_what_is_wrong_is_said(given: dict[str, Any], said: str) -> None:
+def test_what_is_wrong_is_said(given: dict[str, Any], expected: dict[str, Any]) -> None:
     load = TimedLoad("rod", **{"times": (0.0, 1.0), "factors": (0.0, 1.0)} | given)
-    with pytest.raises(ModelError) as caught:
+    with refused(ModelError, **expected):
         replace(ENGINE, timed_loads=(load,))
-    assert str(caught.value).startswith(said)

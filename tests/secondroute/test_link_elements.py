@@ -264,18 +264,17 @@ def test_as_a_table(tmp_path: Path) -> None:
 
 
 REFUSED: list[tuple[dict[str, Any], dict[str, Any], str]] = [
-    ({}, {"link": "rodd"}, "no link is called 'rodd'; did you mean 'rod'"),
-    ({}, {"link": "crank"}, "links.crank.section: missing; loads along a link need it"),
-    ({"elastic_modulus": None}, {}, "links.rod.section.elastic_modulus: missing; finite elem"),
-    ({}, {"angles": 3, "crank_angle": 0.1}, "crank_angle and angles were given; give one of them"),
+    ({}, {"link": "rodd"}, {"given": "rodd", "name": "rod"}),
+    ({}, {"link": "crank"}, {"place": "links.crank.section"}),
+    ({"elastic_modulus": None}, {}, {"place": "links.rod.section.elastic_modulus"}),
+    ({}, {"angles": 3, "crank_angle": 0.1}, {"by": "write_file"}),
 ]
 
 
-@pytest.mark.parametrize(("section", "options", "said"), REFUSED)
-def test_refused(section: Any, options: Any, said: str, tmp_path: Path) -> None:
-    with pytest.raises(eq.EquipoiseError) as caught:
+@pytest.mark.parametrize(("section", "options", "expected"), REFUSED)
+def test_refused(section: Any, options: Any, expected: dict[str, Any], tmp_path: Path) -> None:
+    with refused(eq.EquipoiseError, **expected):
         eq.export(engine(**section), tmp_path / "x.inp", **options)
-    assert str(caught.value).startswith(said)
     assert not (tmp_path / "x.inp").exists()
 
 

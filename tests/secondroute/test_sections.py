@@ -26,6 +26,7 @@ from equipoise.schema.files import to_csv
 from equipoise.studies.commands import dimension_of
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
+from support.refusals import refused
 from unit.schema.samples import survives
 
 Array = np.ndarray[Any, Any]
@@ -277,31 +278,36 @@ def test_they_are_reported_everywhere() -> None:
 
 
 WRONG: list[tuple[dict[str, Any], str]] = [
-    ({"height": "1 mm"}, "links.rod.section: give either height and width, or diameter"),
-    ({"diameter": "1 mm", "wall": "0.5 mm"}, "links.rod.section.wall: got a wall that leaves no"),
-    ({"diameter": "1 mm", "between": ("B", "X")}, "links.rod.section.between: no point of rod"),
-    ({"diameter": "1 mm", "tensile_strength": 1e6}, "links.rod.section.tensile_strength: goes"),
-    ({"height": "9 mm", "width": "5 mm", "web": "1 mm"}, "links.rod.section.flange: missing"),
-    ({"diameter": "9 mm", "web": "1 mm", "flange": "1 mm"}, "links.rod.section: give web and"),
+    ({"height": "1 mm"}, {"place": "links.rod.section"}),
+    ({"diameter": "1 mm", "wall": "0.5 mm"}, {"place": "links.rod.section.wall"}),
+    (
+        {"diameter": "1 mm", "between": ("B", "X")},
+        {"place": "links.rod.section.between", "body": "rod"},
+    ),
+    (
+        {"diameter": "1 mm", "tensile_strength": 1e6},
+        {"place": "links.rod.section.tensile_strength"},
+    ),
+    ({"height": "9 mm", "width": "5 mm", "web": "1 mm"}, {"place": "links.rod.section.flange"}),
+    ({"diameter": "9 mm", "web": "1 mm", "flange": "1 mm"}, {"place": "links.rod.section"}),
     (
         {"height": "9 mm", "width": "5 mm", "web": "5 mm", "flange": "1 mm"},
-        "links.rod.section.web: got a web that is not between",
+        {"place": "links.rod.section.web"},
     ),
     (
         {"height": "9 mm", "width": "5 mm", "web": "1 mm", "flange": "4.5 mm"},
-        "links.rod.section.flange: got a flange that is not between",
+        {"place": "links.rod.section.flange"},
     ),
-    ({"diameter": "0 mm"}, "links.rod.section.diameter: got 0 m; give more than 0"),
+    ({"diameter": "0 mm"}, {"place": "links.rod.section.diameter", "text": "0 m"}),
 ]
 
 
-@pytest.mark.parametrize(("given", "sentence"), WRONG)
-def test_what_is_no_section_is_refused(given: dict[str, Any], sentence: str) -> None:
+@pytest.mark.parametrize(("given", "expected"), WRONG)
+def test_what_is_no_section_is_refused(given: dict[str, Any], expected: dict[str, Any]) -> None:
     machine = eq.load("slider-crank-engine")
     rod = replace(machine.links["rod"], section=LinkSection(**given))
-    with pytest.raises(ModelError) as caught:
+    with refused(ModelError, **expected):
         replace(machine, links={**machine.links, "rod": rod})
-    assert str(caught.value).startswith(sentence)
 
 
 def test_an_i_is_that_of_its_area_strip_by_strip() -> None:

@@ -176,24 +176,23 @@ def test_roll_counts_for_the_linkage_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("limit", "sentence"),
+    ("limit", "expected"),
     [
-        (Limit(LIFT, at_most=1.0), "no phases keep the rms of shaking_force.y within its limit; "),
+        (Limit(LIFT, at_most=1.0), {"name": "rms of shaking_force.y"}),
         (
             Limit(Objective("roll_moment"), ratio=0.5),
-            "the rms of roll_moment is 0 before, of which",
+            {"name": "rms of roll_moment"},
         ),
         (
             Limit(Objective("joints.A"), ratio=1.0),
-            "no phase changes a force inside of a row;",
+            {"by": "balance_rows"},
         ),
     ],
 )
-def test_what_is_refused(limit: Limit, sentence: str) -> None:
+def test_what_is_refused(limit: Limit, expected: dict[str, Any]) -> None:
     plan = Balance(phases=COARSE, objectives=(LIFT,), limits=(limit,))
-    with pytest.raises(UsageError) as caught:
+    with refused(UsageError, **expected):
         eq.balance(TRANSPLANTER, plan)
-    assert sentence in str(caught.value)
 
 
 def test_torque_of_each_of_several_drives() -> None:

@@ -217,25 +217,32 @@ def test_check_prints_them(tmp_path: Any) -> None:
 
 RATED = "joints[1].bearing"
 WRONG: list[tuple[dict[str, Any], str]] = [
-    ({"joint": "joints.B", "width": 0.02}, "joints[1].radius: missing; a width goes with"),
-    ({"joint": "joints.piston on frame", "bearing": CATALOGUE}, f"{RATED}: 'joints.piston on"),
-    ({"joint": "joints.B", "bearing": RollingBearing(0.0)}, f"{RATED}.dynamic_rating: got 0 N"),
+    ({"joint": "joints.B", "width": 0.02}, {"place": "joints[1].radius"}),
+    (
+        {"joint": "joints.piston on frame", "bearing": CATALOGUE},
+        {"place": "joints[1].bearing", "joint": "joints.piston on frame"},
+    ),
+    (
+        {"joint": "joints.B", "bearing": RollingBearing(0.0)},
+        {"place": "joints[1].bearing.dynamic_rating", "text": "0 N"},
+    ),
     (
         {"joint": "joints.B", "bearing": RollingBearing(1.0, reliability=1.0)},
-        f"{RATED}.reliability: got 1; give less than 1",
+        {"place": "joints[1].bearing.reliability", "text": 1},
     ),
     (
         {"joint": "joints.B", "bearing": RollingBearing(1.0, kind="needle")},  # type: ignore[arg-type]
-        f"{RATED}.kind: got 'needle'; give 'ball' or 'roller'",
+        {"place": "joints[1].bearing.kind", "leaf": "needle"},
     ),
 ]
 
 
-@pytest.mark.parametrize(("given", "sentence"), WRONG)
-def test_what_is_no_such_bearing_is_refused(given: dict[str, Any], sentence: str) -> None:
-    with pytest.raises(ModelError) as caught:
+@pytest.mark.parametrize(("given", "expected"), WRONG)
+def test_what_is_no_such_bearing_is_refused(
+    given: dict[str, Any], expected: dict[str, Any]
+) -> None:
+    with refused(ModelError, **expected):
         eq.mechanism.assemble(replace(engine(), joints=(JointProperties(**given),)))
-    assert str(caught.value).startswith(sentence)
 
 
 def test_a_pin_in_a_slot_has_none() -> None:

@@ -178,17 +178,16 @@ def test_mujoco_has_them(tmp_path: Path) -> None:
 
 WRONG: list[tuple[Load, str]] = [
     (replace(IN_LEVER, link="lever", point="E"),
-     "loads[1].axes: 'lever' does not slide on any body; give axes = \"link\", or leave it out"),
-    (Load("lever", torque=2.0, axes="link"), "loads[1].axes: goes with a force; leave it out"),
-    (replace(IN_LEVER, axes="guide"), "loads[1].axes: got 'guide'"),
+     {"place": "loads[1].axes", "link": "lever"}),
+    (Load("lever", torque=2.0, axes="link"), {"place": "loads[1].axes"}),
+    (replace(IN_LEVER, axes="guide"), {"place": "loads[1].axes", "leaf": "guide"}),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("load", "sentence"), WRONG)
-def test_what_is_wrong_is_said(load: Any, sentence: str) -> None:
-    with pytest.raises(ModelError) as caught:
+@pytest.mark.parametrize(("load", "expected"), WRONG)
+def test_what_is_wrong_is_said(load: Any, expected: dict[str, Any]) -> None:
+    with refused(ModelError, **expected):
         shaper(load)
-    assert str(caught.value).startswith(sentence)
 
 
 def test_a_link_in_two_guides_needs_the_point_of_one() -> None:

@@ -475,18 +475,17 @@ def test_teeth_share_by_their_stiffness() -> None:
 
 
 @pytest.mark.parametrize(
-    ("joint", "given", "words"),
+    ("joint", "given", "expected"),
     [
-        ("joints.Q", guided(), "joints[1].joint: no joint is called 'joints.Q'"),
-        ("B", guided(), "joints[1].joint: got 'B'; give a joint as joints.B"),
-        ("gears.B", guided(), "joints[1].joint: no joint is called 'gears.B'"),
-        ("joints.B1", parallel(), "joints[1].stiffness: the joint forces of this linkage"),
+        ("joints.Q", guided(), {"place": "joints[1].joint", "given": "joints.Q"}),
+        ("B", guided(), {"place": "joints[1].joint", "name": "joints.B", "joint": "B"}),
+        ("gears.B", guided(), {"place": "joints[1].joint", "given": "gears.B"}),
+        ("joints.B1", parallel(), {"place": "joints[1].stiffness"}),
     ],
 )
-def test_stiffness_of_no_use(joint: str, given: eq.Machine, words: str) -> None:
-    with pytest.raises(ModelError) as caught:
+def test_stiffness_of_no_use(joint: str, given: eq.Machine, expected: dict[str, Any]) -> None:
+    with refused(ModelError, **expected):
         eq.analyze(replace(given, joints=(JointProperties(joint, stiffness=1e6),)))
-    assert str(caught.value).startswith(words)
 
 
 def test_a_brace_locks_a_four_bar() -> None:

@@ -130,23 +130,25 @@ def test_a_table_is_read_and_written() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "sentence"),
+    ("changes", "expected"),
     [
-        ({"torque": 2}, "torque: got the bare number 2; give number and unit in quotes, such as"),
-        ({"torque": "2 kg"}, "torque: got '2 kg'; kg is the unit of a mass; a torque is wanted: "),
-        ({"torque": "0 N m"}, "torque: got 0 N m; give more than 0"),
-        ({"drag": "-1 N m"}, "drag: got -1 N m; give 0 or more"),
-        ({"share": "1"}, "share: got '1'; give a plain number without unit and quotes"),
-        ({"share": 2}, "share: got 2; give less than 1.5"),
-        ({"lining": "wood"}, "lining: got 'wood'; give 'organic' or 'sintered'"),
-        ({"link": 3}, "link: got the number 3; give text in quotes"),
-        ({"torqe": "2 N m"}, "torqe: no key is called 'torqe'; did you mean 'torque'?"),
+        ({"torque": 2}, {"place": "brake.torque"}),
+        ({"torque": "2 kg"}, {"place": "brake.torque", "given": "'2 kg'"}),
+        ({"torque": "0 N m"}, {"place": "brake.torque", "text": "0 N m"}),
+        ({"drag": "-1 N m"}, {"place": "brake.drag", "text": "-1 N m"}),
+        ({"share": "1"}, {"place": "brake.share", "given": "'1'"}),
+        ({"share": 2}, {"place": "brake.share", "text": 2}),
+        (
+            {"lining": "wood"},
+            {"place": "brake.lining", "given": "'wood'", "last": "'sintered'", "most": "'organic'"},
+        ),
+        ({"link": 3}, {"place": "brake.link"}),
+        ({"torqe": "2 N m"}, {"place": "brake.torqe", "given": "torqe", "name": "torque"}),
     ],
 )
-def test_what_is_wrong_is_refused(changes: dict[str, Any], sentence: str) -> None:
-    with pytest.raises(ModelError) as caught:
+def test_what_is_wrong_is_refused(changes: dict[str, Any], expected: dict[str, Any]) -> None:
+    with refused(ModelError, **expected):
         read({**BRAKE, **changes})
-    assert str(caught.value).startswith(f"brake.{sentence}")
 
 
 def test_what_is_missing_is_told_with_an_example() -> None:
@@ -204,18 +206,17 @@ def test_a_new_key_is_read_and_written() -> None:
 
 @pytest.mark.usefixtures("lossy")
 @pytest.mark.parametrize(
-    ("line", "sentence"),
+    ("line", "expected"),
     [
-        ('loss = "3 N"', "loss: got '3 N'; N is the unit of a force"),
-        ("loss = 3", "loss: got the bare number 3; give number and unit in quotes"),
-        ('loss = "-3 N s/m"', "loss: got -3 N s/m; give 0 or more"),
-        ('los = "3 N s/m"', "los: no key is called 'los'; did you mean 'loss'?"),
+        ('loss = "3 N"', {"place": "springs[1].loss", "given": "'3 N'"}),
+        ("loss = 3", {"place": "springs[1].loss"}),
+        ('loss = "-3 N s/m"', {"place": "springs[1].loss", "text": "-3 N s/m"}),
+        ('los = "3 N s/m"', {"place": "springs[1].los", "given": "los", "name": "loss"}),
     ],
 )
-def test_a_new_key_is_refused_when_wrong(line: str, sentence: str) -> None:
-    with pytest.raises(ModelError) as caught:
+def test_a_new_key_is_refused_when_wrong(line: str, expected: dict[str, Any]) -> None:
+    with refused(ModelError, **expected):
         loads(FOUR_BAR + SPRING + line)
-    assert f"springs[1].{sentence}" in str(caught.value)
 
 
 @pytest.mark.usefixtures("lossy")

@@ -73,28 +73,29 @@ def test_right_angles_are_exact() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "expected"),
     [
-        ('mass = "199 g"', 'mass = "1 g"\nmass = "2 g"', "line 16, column 13: cannot overwrite"),
+        ('mass = "199 g"', 'mass = "1 g"\nmass = "2 g"', {"by": "key_value_rule"}),
         (
             "[assembly]",
             "[assembly",
-            "line 27, column 10: put the name of a table in brackets: [assembly]",
+            {"text": "[assembly]"},
         ),
-        ("[assembly]", "x = " + "[" * 10**5, "nested too deeply"),
-        ("[assembly]", "x = " + "9" * 5000, "thousands of digits"),
+        ("[assembly]", "x = " + "[" * 10**5, {"by": "parse_array"}),
+        ("[assembly]", "x = " + "9" * 5000, {"by": "match_to_number"}),
         (
             "[assembly]",
             f'[[gears]]\nbetween = ["crank", "rocker"]\nteeth = [1, 0x{"f" * 5000}]\n[assembly]',
-            "gears[1].teeth[2]: got the number of thousands of digits",
+            {"place": "gears[1].teeth[2]"},
         ),
-        ("[assembly]", "a." * 40_000 + "a = 1", "line 27: a key has more than 50 parts"),
+        ("[assembly]", "a." * 40_000 + "a = 1", {"line": 27}),
     ],
 )
-def test_what_is_no_toml_is_told_with_its_line(old: str, new: str, said: str) -> None:
-    with pytest.raises(ModelError) as caught:
+def test_what_is_no_toml_is_told_with_its_line(
+    old: str, new: str, expected: dict[str, Any]
+) -> None:
+    with refused(ModelError, **expected) as caught:
         loads(FOUR_BAR.replace(old, new, 1), "model.toml")
-    assert said in str(caught.value)
     assert str(caught.value).startswith("model.toml: ")
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 400

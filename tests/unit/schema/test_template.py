@@ -106,7 +106,7 @@ PUT: dict[str, tuple[str, str, str | None, Callable[[Any], float]]] = {
     "default slider": ("slider-crank-engine", "sliders[1].angle", "angle",
                        lambda m: m.sliders[0].angle),
     "row": ("four-row-transplanter", "rows[4].lateral", "length", lambda m: m.rows[3].lateral),
-    "row's default": ("four-row-transplanter", "rows[4].offset.y", "length",
+    "row's default": ("four-row-transplanter", "rows[4].offset[2]", "length",
                       lambda m: m.rows[3].offset[1]),
     "mount": ("yamashita-rig", "support.mass", "mass", lambda m: m.support.mass),
     "depth": ("kim-chung-a", "planting.depth", "length", lambda m: m.planting.depth),
@@ -233,67 +233,65 @@ def test_a_whole_number_may_stand_for_another() -> None:
 REFUSED = {
     # example, path, what is said
     "misspelt": ("yamashita-1", "links.cranck.mass",
-                 "no number of the model is called 'links.cranck.mass'; did you mean "
-                 "'links.crank.mass'?"),
+                 {"place": "links.cranck.mass", "given": "links.cranck.mass",
+                  "name": "links.crank.mass"}),
     "not there": ("yamashita-1", "links.crank.points.Q.x",
-                  "no number of the model is called 'links.crank.points.Q.x'; did you mean"),
+                  {"place": "links.crank.points.Q.x", "given": "links.crank.points.Q.x"}),
     "not written": ("yamashita-1", "planting.depth",
-                    "planting is not written in the model; add it there to vary it"),
+                    {"place": "planting.depth", "missing": "planting"}),
     "key not written": ("yamashita-rig", "support.inertia",
-                        "support.inertia is not written in the model; add it there to vary it"),
-    "text": ("yamashita-1", "drive.link", "drive.link is 'crank'; give the path of one number"),
-    "table": ("yamashita-1", "links.crank", "links.crank is a table; give the path of one number"),
-    "list": ("four-row-transplanter", "rows", "rows is a list of 4; give the path of one number"),
+                        {"place": "support.inertia", "missing": "support.inertia"}),
+    "text": ("yamashita-1", "drive.link", {"place": "drive.link", "what": "'crank'"}),
+    "table": ("yamashita-1", "links.crank", {"place": "links.crank"}),
+    "list": ("four-row-transplanter", "rows", {"place": "rows", "count": 4}),
     "point": ("yamashita-1", "links.crank.points.B",
-              "links.crank.points.B is more than one number; give links.crank.points.B.x, "
-              "links.crank.points.B.y, links.crank.points.B.distance or "
-              "links.crank.points.B.direction"),
-    "gravity": ("yamashita-1", "gravity", "gravity is more than one number; give gravity.x or gra"),
-    "entry": ("four-row-transplanter", "rows[5].lateral", "did you mean 'rows[4].lateral'?"),
-    "from 0": ("four-row-transplanter", "rows[0].lateral", "numbers in lists from 1 in brackets"),
-    "nothing": ("yamashita-1", "", "got ''; give keys with points between"),
-    "odd": ("yamashita-1", "links..mass", "got 'links..mass'; give keys with points between"),
-    "open": ("yamashita-1", 'links."crank.mass', "give keys with points between"),
-    "below a number": ("yamashita-1", "links.crank.mass.x", "did you mean 'links.crank.mass'?"),
-    "z": ("yamashita-1", "links.crank.points.B.z", "did you mean 'links.crank.points.B.y'?"),
+              {"place": "links.crank.points.B"}),
+    "gravity": ("yamashita-1", "gravity", {"place": "gravity"}),
+    "entry": ("four-row-transplanter", "rows[5].lateral",
+              {"place": "rows[5].lateral", "name": "rows[4].lateral"}),
+    "from 0": ("four-row-transplanter", "rows[0].lateral", {"place": "rows[0].lateral"}),
+    "nothing": ("yamashita-1", "", {"by": "KeyPath.parse"}),
+    "odd": ("yamashita-1", "links..mass", {"place": "links..mass", "given": "links..mass"}),
+    "open": ("yamashita-1", 'links."crank.mass', {"place": "links.\"crank.mass"}),
+    "below a number": ("yamashita-1", "links.crank.mass.x",
+                       {"place": "links.crank.mass.x", "name": "links.crank.mass"}),
+    "z": ("yamashita-1", "links.crank.points.B.z",
+          {"place": "links.crank.points.B.z", "name": "links.crank.points.B.y"}),
     "inside": ("brush-cutter", "excitations[1].linkage.links.cranck.mass",
-               "no number of the model is called 'links.cranck.mass'; did you mean"),
+               {"given": "links.cranck.mass"}),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "path", "said"), REFUSED.values(), ids=REFUSED)
-def test_paths_that_lead_nowhere(name: str, path: str, said: str) -> None:
+@pytest.mark.parametrize(("name", "path", "expected"), REFUSED.values(), ids=REFUSED)
+def test_paths_that_lead_nowhere(name: str, path: str, expected: dict[str, Any]) -> None:
     for ask in (example(name).number, lambda path: example(name).machine({path: 1.0})):
-        with pytest.raises(ModelError) as caught:
+        with refused(ModelError, **expected) as caught:
             ask(path)
-        assert said in caught.value.what
         assert "\n" not in str(caught.value)
 
 
 VALUES = {
     # values, what is said
-    "negative": ({"links.crank.mass": -1}, "links.crank.mass: got -1 kg; a mass cannot be nega"),
-    "nan": ({"links.crank.mass": nan}, "links.crank.mass: got 'nan kg'; give a finite number"),
-    "infinite": ({"drive.speed": inf}, "drive.speed: got 'inf rad/s'; give a finite number"),
-    "huge": ({"drive.speed": 1e31}, "drive.speed: got '1e+31 rad/s', which no machine can have"),
-    "text": ({"drive.speed": "12 rpm"}, "drive.speed: got '12 rpm'; give a number"),
-    "true": ({"drive.speed": True}, "drive.speed: got True; give a number"),
+    "negative": ({"links.crank.mass": -1}, {"place": "links.crank.mass", "text": "-1 kg"}),
+    "nan": ({"links.crank.mass": nan}, {"place": "links.crank.mass", "given": "'nan kg'"}),
+    "infinite": ({"drive.speed": inf}, {"place": "drive.speed", "given": "'inf rad/s'"}),
+    "huge": ({"drive.speed": 1e31}, {"place": "drive.speed", "text": "'1e+31 rad/s'"}),
+    "text": ({"drive.speed": "12 rpm"}, {"place": "drive.speed", "value": "12 rpm"}),
+    "true": ({"drive.speed": True}, {"place": "drive.speed"}),
     "two forms": ({"frame.points.D.x": 0, "frame.points.D.direction": 0},
-                  "frame.points.D.direction: frame.points.D.direction cannot vary beside "
-                  "frame.points.D.x; let either x and y or distance and direction of a point vary"),
+                  {"place": "frame.points.D.direction", "other": "frame.points.D.x"}),
     "two names": ({"frame.points.A.x": 0, "frame.points.A[1]": 0},
-                  "frame.points.A[1] is a number that varies already; leave one of them out"),
+                  {"place": "frame.points.A[1]"}),
     "quoted": ({"links.crank.mass": 0, 'links."crank".mass': 0},
-               'links."crank".mass is a number that varies already; leave one of them out'),
+               {"place": "links.\"crank\".mass"}),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("values", "said"), VALUES.values(), ids=VALUES)
-def test_values_that_cannot_be(values: dict[str, Any], said: str) -> None:
-    with pytest.raises(ModelError) as caught:
+@pytest.mark.parametrize(("values", "expected"), VALUES.values(), ids=VALUES)
+def test_values_that_cannot_be(values: dict[str, Any], expected: dict[str, Any]) -> None:
+    with refused(ModelError, **expected) as caught:
         example("yamashita-1").machine(values)
     assert str(caught.value).startswith("yamashita-1.toml: ")
-    assert said in str(caught.value)
 
 
 def test_planes_and_both() -> None:

@@ -299,21 +299,20 @@ def test_a_linkage_beside_goes_before_an_example(tmp_path: Path) -> None:
 
 
 LINKAGES: dict[str, tuple[dict[str, Any], str]] = {
-    "missing": ({}, "engine.toml: there is no such file; "),
-    "broken": ({"engine_toml": "schema = 2"}, "engine.toml: schema: got the number 2"),
-    "no masses": ({"engine_toml": FOUR_BAR}, "engine.toml: forces need mass, center_of_mass and"),
-    "itself": ({"engine_toml": TOOL}, "engine.toml: this is the file of a tool, with a table"),
+    "missing": ({}, {"place": "excitations[1].linkage"}),
+    "broken": ({"engine_toml": "schema = 2"}, {"place": "excitations[1].linkage"}),
+    "no masses": ({"engine_toml": FOUR_BAR}, {"place": "excitations[1].linkage"}),
+    "itself": ({"engine_toml": TOOL}, {"place": "excitations[1].linkage"}),
     "rocking": (
         {"engine_toml": engine('["25 mm", "0 mm"]', '["95 mm", "0 mm"]')},
-        "engine.toml: the crank cannot turn fully",
+        {"place": "excitations[1].linkage"},
     ),
 }
 
 
-@pytest.mark.parametrize(("files", "said"), LINKAGES.values(), ids=LINKAGES)
-def test_bad_linkages(files: dict[str, Any], said: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("files", "expected"), LINKAGES.values(), ids=LINKAGES)
+def test_bad_linkages(files: dict[str, Any], expected: dict[str, Any], tmp_path: Path) -> None:
     path = beside(tmp_path, FORCE, 'linkage = "engine.toml"', **files)
-    with pytest.raises(ModelError) as caught:
+    with refused(ModelError, **expected) as caught:
         load_tool(path)
-    assert str(caught.value).startswith(f"{path}: excitations[1].linkage: {said}")
     assert "\n" not in str(caught.value)

@@ -15,6 +15,7 @@ from equipoise.errors import ModelError
 from equipoise.schema.studies import restore
 from equipoise.schema.template import Template
 from equipoise.studies.study import Correlation, Output, Sampling, Study
+from support.refusals import refused
 from unit.studies.samples import LENGTH, MASS, SPEED, correlated, study, template
 
 GRID = {"method": "grid", "designs": None}
@@ -92,142 +93,140 @@ def test_from_python() -> None:
 ONE = Variable(MASS, Range(0.1, 0.2))
 REFUSED: dict[str, tuple[dict[str, Any], str, str]] = {
     # what is given, where, what is said
-    "nothing varies": ({"vary": ()}, "vary", "there is none; give at least one [[vary]]"),
+    "nothing varies": ({"vary": ()}, "vary", {}),
     "twice": (
-        {"vary": (ONE, ONE)}, "vary[2].path", f"{MASS} varies in vary[1] already"
+        {"vary": (ONE, ONE)}, "vary[2].path", {"path": "links.crank.mass", "places": "vary[1]"}
     ),
     "no such number": (
         {"vary": (ONE, Variable("links.crank.mas", Range(0, 1)))}, "vary[2].path",
-        f"no number of the model is called 'links.crank.mas'; did you mean '{MASS}'?",
+        {"given": "links.crank.mas", "name": "links.crank.mass"},
     ),
     "both forms": (
         {"vary": (Variable("frame.points.D.x", Range(0, 1)),
                   Variable("frame.points.D.distance", Range(0, 1)))}, "vary[2].path",
-        "frame.points.D.distance cannot vary beside frame.points.D.x; let either x and y or "
-        "distance and direction of a point vary",
+        {"path": "frame.points.D.distance", "other": "frame.points.D.x"},
     ),
     "teeth by tolerance": (
         {"model": template("planetary-planting-arm"), "vary": (Variable(TEETH, MASSES),)},
-        "vary[1].normal", f"{TEETH} is a whole number; give a range or a list",
+        "vary[1].normal", {"path": "gears[1].teeth[2]"},
     ),
     "parts of teeth": (
         {"model": template("planetary-planting-arm"), "vary": (Variable(TEETH, Choices((1.5,))),)},
-        "vary[1].list", f"{TEETH} is a whole number; give whole numbers",
+        "vary[1].list", {"path": "gears[1].teeth[2]"},
     ),
     "method": (
         {"sampling": Sampling("sobel", 8)}, "sampling.method",  # type: ignore[arg-type]
-        "no method is called 'sobel'; did you mean 'sobol'?",
+        {"given": "sobel", "name": "sobol"},
     ),
-    "no designs": ({"sampling": Sampling("sobol")}, "sampling.designs", "missing; give how many"),
-    "too few": ({"sampling": Sampling("sobol", 0)}, "sampling.designs", "got 0; give 1 to"),
+    "no designs": ({"sampling": Sampling("sobol")}, "sampling.designs", {}),
+    "too few": ({"sampling": Sampling("sobol", 0)}, "sampling.designs", {"given": 0}),
     "too many": (
-        {"sampling": Sampling("monte-carlo", 10**9 + 1)}, "sampling.designs", "give 1 to 1000000000"
+        {"sampling": Sampling("monte-carlo", 10**9 + 1)}, "sampling.designs", {}
     ),
-    "seed": ({"sampling": Sampling("sobol", 8, -1)}, "sampling.seed", "got -1; give 0 to"),
-    "grid without steps": ({"sampling": Sampling("grid")}, "vary[1].steps", "missing; a grid"),
+    "seed": ({"sampling": Sampling("sobol", 8, -1)}, "sampling.seed", {"given": -1}),
+    "grid without steps": ({"sampling": Sampling("grid")}, "vary[1].steps", {}),
     "steps without grid": (
         {"vary": (Variable(MASS, Range(0, 1, 5)),)}, "vary[1].steps",
-        "goes with a grid, not with sobol; leave it out",
+        {"method": "sobol"},
     ),
     "grid of tolerances": (
         {"vary": (Variable(MASS, MASSES),), "sampling": Sampling("grid")}, "vary[1].normal",
-        "a normal spread has no grid; give a range or a list",
+        {},
     ),
     "grid with designs": (
         {"vary": (Variable(MASS, Range(0, 1, 5)),), "sampling": Sampling("grid", 5)},
-        "sampling.designs", "a grid has as many as its steps make, here 5; leave it out",
+        "sampling.designs", {"size": 5},
     ),
     "large grid": (
         {"vary": (Variable(MASS, Range(0, 1, 10**5)), Variable(LENGTH, Range(0, 1, 10**5))),
          "sampling": Sampling("grid")},
-        "sampling.method", "the grid has 1e+10 designs; at most 1e+09 are computed",
+        "sampling.method", {},
     ),
     "correlated grid": (
         {"vary": (Variable(MASS, Range(0, 1, 5)), Variable(LENGTH, Range(0, 1, 5))),
          "sampling": Sampling("grid"), "correlations": (Correlation(MASS, LENGTH, 0.5),)},
-        "correlations[1]", "a grid has no correlations",
+        "correlations[1]", {},
     ),
     "correlated with what stays": (
         {"correlations": (Correlation(MASS, "links.crank.mas", 0.5),)},
-        "correlations[1].between[2]", "no [[vary]] is called 'links.crank.mas'; did you mean",
+        "correlations[1].between[2]", {"given": "links.crank.mas"},
     ),
     "correlated list": (
         {"vary": (ONE, Variable(LENGTH, Choices((0.07, 0.08)))),
          "correlations": (Correlation(MASS, LENGTH, 0.5),)},
-        "correlations[1].between[2]", f"{LENGTH} is chosen from a list, which cannot be correlated",
+        "correlations[1].between[2]", {"path": "links.coupler.points.C.x"},
     ),
     "correlated with itself": (
         {"correlations": (Correlation(MASS, MASS, 0.5),)}, "correlations[1].between",
-        "got one number twice; give two different ones",
+        {},
     ),
     "certain": (
         {
             "vary": (ONE, Variable(LENGTH, MASSES)),
             "correlations": (Correlation(MASS, LENGTH, 1.0),),
         },
-        "correlations[1].coefficient", "got 1; give a number between -1 and 1",
+        "correlations[1].coefficient", {"coefficient": 1.0},
     ),
     "correlated twice": (
         {"vary": (ONE, Variable(LENGTH, MASSES)),
          "correlations": (Correlation(MASS, LENGTH, 0.5), Correlation(LENGTH, MASS, 0.4))},
-        "correlations[2].between", "is given in correlations[1] already; leave one out",
+        "correlations[2].between", {"given": 1},
     ),
     "impossible": (
         {"vary": (ONE, Variable(LENGTH, MASSES), Variable(SPEED, MASSES)),
          "correlations": (Correlation(MASS, LENGTH, 0.9), Correlation(LENGTH, SPEED, 0.9),
                           Correlation(MASS, SPEED, -0.9))},
-        "correlations", "the coefficients contradict each other",
+        "correlations", {},
     ),
-    "no outputs": ({"outputs": ()}, "outputs", "there is none; give at least one [[outputs]]"),
+    "no outputs": ({"outputs": ()}, "outputs", {}),
     "named twice": (
         {"outputs": (Output("a"), Output("a", value="b"))}, "outputs[2].name",
-        "got 'a', which is the name of outputs[1]; give another name",
+        {"name": "a"},
     ),
     "named like a number": (
         {"outputs": (Output(MASS),)}, "outputs[1].name",
-        f"got '{MASS}', which is the path of vary[1]; give another name",
+        {"name": "links.crank.mass"},
     ),
     "named like a column": (
         {"outputs": (Output("reason"),)}, "outputs[1].name",
-        "got 'reason', which is what every store of designs has",
+        {"name": "reason"},
     ),
     "name with a stroke": (
-        {"outputs": (Output("joints.C/rocker.rms"),)}, "outputs[1].name", "give a name without /"
+        {"outputs": (Output("joints.C/rocker.rms"),)}, "outputs[1].name", {}
     ),
-    "no name": ({"outputs": (Output("", value="x"),)}, "outputs[1].name", "got ''; give a name"),
+    "no name": ({"outputs": (Output("", value="x"),)}, "outputs[1].name", {}),
     "command": (
         {"outputs": (Output("a", "analyse"),)}, "outputs[1].of",  # type: ignore[arg-type]
-        "no command is called 'analyse'; did you mean 'analyze'?",
+        {"given": "analyse", "name": "analyze"},
     ),
     "of a tool": (
         {"outputs": (Output("a", "tool"),)}, "outputs[1].of",
-        "got 'tool', but the model is a linkage; give analyze, plant, respond or balance",
+        {"of": "tool"},
     ),
     "of a linkage": (
         {"model": template("brush-cutter"), "vary": (Variable("shaft.length", Range(1, 2)),)},
-        "outputs[1].of", "got 'analyze', but the model is a tool; give tool",
+        "outputs[1].of", {"of": "analyze", "right": "tool"},
     ),
     "make": (
         {"outputs": (Output("a", make="best"),)}, "outputs[1].make",  # type: ignore[arg-type]
-        "got 'best'; give smallest or largest",
+        {"given": "'best'"},
     ),
     "limits": (
         {"outputs": (Output("a", at_least=2.0, at_most=1.0),)}, "outputs[1]",
-        "at_least is above at_most",
+        {},
     ),
     "endless limit": (
-        {"outputs": (Output("a", at_least=float("-inf")),)}, "outputs[1].at_least", "got -inf; give"
+        {"outputs": (Output("a", at_least=float("-inf")),)}, "outputs[1].at_least",
+                     {"given": "-inf"}
     ),
-    "angles": ({"angles": 3}, "accuracy.angles", "got 3; give 8 to 65536"),
-    "tolerance": ({"tolerance": 0.0}, "accuracy.tolerance", "got 0; give 1e-12 to 0.1"),
-    "chunk": ({"chunk": -1}, "chunk", "got -1; give 1 to"),
-    "title": ({"title": "a\nb"}, "title", "give printable characters"),
+    "angles": ({"angles": 3}, "accuracy.angles", {"given": 3}),
+    "tolerance": ({"tolerance": 0.0}, "accuracy.tolerance", {"given": 0}),
+    "chunk": ({"chunk": -1}, "chunk", {"given": -1}),
+    "title": ({"title": "a\nb"}, "title", {}),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("given", "where", "said"), REFUSED.values(), ids=REFUSED)
-def test_refused(given: dict[str, Any], where: str, said: str) -> None:
-    with pytest.raises(ModelError) as caught:
+@pytest.mark.parametrize(("given", "where", "expected"), REFUSED.values(), ids=REFUSED)
+def test_refused(given: dict[str, Any], where: str, expected: dict[str, Any]) -> None:
+    with refused(ModelError, where, **expected):
         study(**given)
-    assert caught.value.where == where
-    assert said in caught.value.what
