@@ -78,7 +78,7 @@ def draw_narrow(pages: Iterable[str], into: Path) -> None:
             continue
         findings = found(name)
         with in_own_words(findings.owner):
-            chart = next(one for one in each(findings) if one.name == more[0]).draw()
+            chart = next(one for one in each(findings) if one.name == more[0]).chart
             if not is_wide(chart):
                 file = into / f"{path.removesuffix('.svg')}{NARROW}".lstrip("/")
                 file.write_text(svg_of(lay_out(chart, HALF)), encoding="utf-8")

@@ -145,7 +145,7 @@ class Balanced(Result):
     """
 
     blocks_in = "balancing.blocks.balanced_blocks"
-    pictures_in = "figures.pictures.balance_pictures"
+    pictures_in = "figures.balancing.balance_charts"
     headline_in = "balancing.blocks.balanced_headline"
 
     machine: Machine

@@ -48,7 +48,7 @@ class Front(Result):
     """
 
     blocks_in = "balancing.pareto.front_blocks"
-    pictures_in = "figures.pictures.front_pictures"
+    pictures_in = "figures.balancing.front_charts"
     records: ClassVar[str] = "points"
 
     original: Machine

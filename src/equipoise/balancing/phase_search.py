@@ -321,7 +321,7 @@ class Phasing(Result):
     notes: tuple[Note, ...] = ()
 
     blocks_in = "balancing.blocks.phasing_blocks"
-    pictures_in = "figures.pictures.phasing_pictures"
+    pictures_in = "figures.balancing.phasing_charts"
 
     def to_dict(self) -> dict[str, Any]:
         """The machine-readable output, in SI units and rad."""

@@ -208,7 +208,7 @@ class Asked:
         pictures_by_name: dict[str, Picture] = {}
         if "modes" in names:
             highest = float(self.modes.planes[0].parameter[-1])
-            pictures_by_name |= tool_side.mode_pictures(self.modes)
+            pictures_by_name |= tool_side.side_mode_charts(self.modes)
             chart = determinant_chart(self.tool, 1.1 * highest)
             pictures_by_name |= tool_charts.determinant_charts(chart, self.modes)
         if "respond" in names and self.respond.transmissions is not None:

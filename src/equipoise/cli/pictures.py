@@ -36,7 +36,7 @@ from equipoise.mechanism.checks import unknown
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.present.pictures import LazyPicture
+    from equipoise.present.pictures import ReportPicture
     from equipoise.studies.study import Model
 
 app = App(name="plot")
@@ -104,8 +104,8 @@ def plot(
         chosen = _outputs(result, output) if output else _chosen(each(result, at), only)
         for picture in chosen:
             name = f"{picture.name}.{kind}"
-            write_all(folder, {name: render(picture.draw(), kind)})
-            written.append(f"{os.path.join(folder, name)}  {picture.caption}")
+            write_all(folder, {name: render(picture.chart, kind)})
+            written.append(f"{os.path.join(folder, name)}  {picture.chart.caption}")
     swings = getattr(result, "swings", None)
     notes = [] if swings is None else [say("note: {note}", note=localized(swings))]
     notes += [
@@ -118,32 +118,27 @@ def plot(
     )
 
 
-def _outputs(result: Any, names: Sequence[str]) -> list[LazyPicture]:
+def _outputs(result: Any, names: Sequence[str]) -> list[ReportPicture]:
     """Outputs over crank angle, in one picture."""
-    from functools import partial
-
     from equipoise.figures.motion import outputs_chart
-    from equipoise.present.pictures import LazyPicture
+    from equipoise.present.pictures import ReportPicture
 
-    names = list(dict.fromkeys(names))
     with error_in_option("--output"):
-        caption = ", ".join(item.label() for item in result.analysis.outputs.chosen(names))
-    return [
-        LazyPicture("outputs", "motion", caption, partial(outputs_chart, result.analysis, names))
-    ]
+        chart = outputs_chart(result.analysis, list(dict.fromkeys(names)))
+    return [ReportPicture(chart, "motion")]
 
 
-def _chosen(pictures: Iterable[LazyPicture], only: Sequence[str] | None) -> list[LazyPicture]:
+def _chosen(pictures: Iterable[ReportPicture], only: Sequence[str] | None) -> list[ReportPicture]:
     """Those that are wanted; what comes after the last of them is not computed."""
     if only is None:
         return list(pictures)
-    lazy_pictures: dict[str, LazyPicture] = {}
+    by_name: dict[str, ReportPicture] = {}
     for picture in pictures:
-        lazy_pictures[picture.name] = picture
-        if lazy_pictures.keys() >= {*only}:
-            return [lazy_pictures[name] for name in dict.fromkeys(only)]
-    missing = next(name for name in only if name not in lazy_pictures)
-    raise UsageError(at_place("--only", unknown(missing, lazy_pictures, "picture")))
+        by_name[picture.name] = picture
+        if by_name.keys() >= {*only}:
+            return [by_name[name] for name in dict.fromkeys(only)]
+    missing = next(name for name in only if name not in by_name)
+    raise UsageError(at_place("--only", unknown(missing, by_name, "picture")))
 
 
 @app.command(name="map")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from equipoise.errors import UsageError
@@ -15,7 +16,7 @@ Kind = Literal["svg", "png", "pdf"]
 Picture = Chart
 """What can be drawn."""
 
-__all__ = ["Kind", "Picture", "drawn", "plot", "render", "unwritten"]
+__all__ = ["Kind", "Picture", "pictures_of", "plot", "render", "unwritten"]
 
 
 def render(picture: Chart, kind: Kind = "svg") -> bytes:
@@ -95,6 +96,23 @@ def standalone_svg(picture: Chart, by_rows: bool = False) -> StandaloneSvg:
     return StandaloneSvg(svg_of(sheet), wide, rows if len(rows) > 1 else (), narrow)
 
 
+def pictures_of(result: Any) -> Mapping[str, Chart]:
+    """Every picture of a result by name, which also does for a file.
+
+    Raises
+    ------
+    UsageError : there are none of such a result.
+    """
+    from equipoise.i18n import Note
+    from equipoise.results.result import Result
+
+    if not isinstance(result, Result):
+        raise UsageError(
+            Note("there are no pictures of {kind}; give a result", kind=type(result).__name__)
+        )
+    return result.charts()
+
+
 def plot(result: Any, name: str = "", ax: Axes | None = None) -> Figure:
     """A picture of a result as a figure of Matplotlib, which a notebook shows.
 
@@ -107,7 +125,6 @@ def plot(result: Any, name: str = "", ax: Axes | None = None) -> Figure:
     """
     from equipoise.figures.layout import lay_out
     from equipoise.figures.paint import figure_of, paint_in
-    from equipoise.figures.pictures import pictures_of
     from equipoise.mechanism.checks import unknown
 
     charts = pictures_of(result)

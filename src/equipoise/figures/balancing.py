@@ -15,7 +15,7 @@ from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.objectives import LinearizationPoint, measured, signals_of, unit_of
 from equipoise.balancing.problem import Problem
 from equipoise.dataclass import dataclass
-from equipoise.figures.changes import grams
+from equipoise.figures.changes import changes, grams
 from equipoise.figures.chart_parts import (
     GAUGES,
     about,
@@ -58,6 +58,7 @@ from equipoise.signals import Periodic, figures
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
+    from equipoise.balancing.phase_search import Phasing
     from equipoise.mechanism.parts.machine import Drive, Machine
 
 
@@ -255,7 +256,15 @@ def aims(balanced: Balanced) -> Iterator[Chart]:
             text += "; " + say("orders of forces: both components together")
         panels = [panel for aim in some for panel in aim.panels(last, len(speeds) > 1)]
         legend = keys(*(aim.pair for aim in some))
-        yield Chart(f"aims{suffix}", balanced.original.title, text, tuple(panels), 2, keys=legend)
+        yield Chart(
+            f"aims{suffix}",
+            balanced.original.title,
+            text,
+            tuple(panels),
+            2,
+            keys=legend,
+            caption=AIMED,
+        )
 
 
 SIGNALS = {
@@ -263,12 +272,26 @@ SIGNALS = {
         "shaking_moment",
         to_say("Shaking moment about {point}"),
         to_say("shaking moment"),
+        to_say("Shaking moment, before and after."),
     ),
-    "torque": ("drive_torque", to_say("Drive torque"), to_say("drive torque")),
+    "torque": (
+        "drive_torque",
+        to_say("Drive torque"),
+        to_say("drive torque"),
+        to_say("Drive torque, before and after."),
+    ),
 }
-"""Picture -> column, title, and label of the axis."""
-PUSHED = "torque", ("drive_force", to_say("Drive force"), to_say("drive force"))
+"""Picture -> column, title, label of the axis, and caption."""
+PUSHED = {
+    "torque": (
+        "drive_force",
+        to_say("Drive force"),
+        to_say("drive force"),
+        to_say("Drive force, before and after."),
+    )
+}
 """What stands in the place of the torque where a force drives."""
+AIMED = to_say("Objectives and limited outputs, before and after, by crank angle and order.")
 SAMPLES, SAMPLES_OF_ROWS = 360, 720
 """Crank angles in a turn by which rounding is recognized, for one row and for several together."""
 LABEL_DISTANCE = 0.015
@@ -279,18 +302,28 @@ IN_LINE = 6
 """Dials side by side."""
 
 
-def charts(balanced: Balanced) -> dict[str, Chart]:
+def balance_charts(balanced: Balanced) -> dict[str, Chart]:
     """Charts of a balanced machine by name, which also does for a file.
 
     ``aims``, what was made small or limited, with ``aims-2`` and so on where that is much;
-    ``force``, ``polar``, ``moment``, ``torque`` where the linkage is changed; ``phases`` and
-    ``rows`` where phases of rows are chosen.  What did not change is left out.
+    ``force``, ``polar``, ``moment``, ``torque`` and ``changes`` where the linkage is changed;
+    ``phases`` and ``rows`` where phases of rows are chosen.  What did not change is left out.
     """
     of_linkage = any(change.kind != "phases" for change in balanced.changes)
     result = by_name(aims(balanced)) | (signals(balanced) if of_linkage else {})
     if balanced.phasing is not None:
         result |= row_charts(balanced.original, balanced.machine)
-    return result
+    return result | by_name([changes(balanced)] if of_linkage else [])
+
+
+def phasing_charts(phasing: Phasing) -> dict[str, Chart]:
+    """``phases`` and ``rows`` of rows whose phases are chosen."""
+    return row_charts(None, phasing.machine)
+
+
+def front_charts(result: Front) -> dict[str, Chart]:
+    """``front``, the chart of a trade-off."""
+    return by_name([front(result)])
 
 
 def row_charts(original: Machine | None, machine: Machine) -> dict[str, Chart]:
@@ -321,21 +354,28 @@ def signals(balanced: Balanced) -> dict[str, Chart]:
     if moved:
         panels = _along(drive, angles, moved)
         what = f"{say('Shaking force')}, {when}"
-        result["force"] = Chart("force", title, what, panels, keys=keys(*moved.values()))
+        caption = to_say("Shaking force, before and after.")
+        legend = keys(*moved.values())
+        result["force"] = Chart("force", title, what, panels, keys=legend, caption=caption)
         result["polar"] = polar(balanced, angles, force)
     aimed = (
         {objective.output for objective in balanced.plan.objectives}
         if len(balanced.original.rows) < 2
         else ()
     )
-    signals = SIGNALS | dict([PUSHED] if drive.pushes else [])
-    for name, (output, text, label) in signals.items():
+    signals = SIGNALS | (PUSHED if drive.pushes else {})
+    for name, (output, text, label, caption) in signals.items():
         kind = drive.effort_in if output == drive.effort else "torque"
         pair = pair_of(output, least_force if kind == "force" else least_moment)
         if changed(pair) and output not in aimed:
             panel = compare(drive, angles, pair, say(label), kind)
             result[name] = Chart(
-                name, title, f"{say(text, point=point)}, {when}", (panel,), keys=keys(pair)
+                name,
+                title,
+                f"{say(text, point=point)}, {when}",
+                (panel,),
+                keys=keys(pair),
+                caption=caption,
             )
     return result
 
@@ -366,7 +406,9 @@ def polar(balanced: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart
     message = "" if np.any(every) else say("zero at every crank angle")
     panel = Panel(x, y, tuple(curves), tuple(marks), message=message, equal=True)
     what = f"{say('Shaking force')}, {_caption(balanced)}; {say('numbers: crank angle, deg')}"
-    return Chart("polar", balanced.original.title, what, (panel,), keys=keys(ends))
+    caption = to_say("Shaking force as a polar diagram, before and after.")
+    title = balanced.original.title
+    return Chart("polar", title, what, (panel,), keys=keys(ends), caption=caption)
 
 
 def _dot(role: str, values: Array, axis: Axis) -> Mark:
@@ -389,7 +431,16 @@ def phases(original: Machine | None, machine: Machine) -> Chart:
     what = say("Direction of {link} in each row at one instant", link=short(machine.drive.link))
     foot = say("from left to right, looking forward, with lateral positions")
     keyed = tuple((role, say(WHEN[role])) for role in hands)
-    return Chart("phases", machine.title, what, panels, columns=IN_LINE, keys=keyed, foot=foot)
+    return Chart(
+        "phases",
+        machine.title,
+        what,
+        panels,
+        columns=IN_LINE,
+        keys=keyed,
+        foot=foot,
+        caption=to_say("Phases of the rows."),
+    )
 
 
 def _dial(hands: Mapping[str, Machine], machine: Machine, k: int) -> Panel:
@@ -432,7 +483,9 @@ def combined(original: Machine | None, machine: Machine) -> Chart:
         if original is not None:
             pairs[axis] = paired(summed(original, axis)[1], after, least)
     panels = _along(machine.drive, angles, pairs)
-    return Chart("rows", machine.title, what, panels, keys=keys(*pairs.values()))
+    caption = to_say("Shaking force of all rows together, before and after.")
+    legend = keys(*pairs.values())
+    return Chart("rows", machine.title, what, panels, keys=legend, caption=caption)
 
 
 def _along(drive: Drive, angles: Array, pairs: Mapping[str, Pair]) -> tuple[Panel, ...]:

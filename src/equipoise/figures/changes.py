@@ -133,7 +133,8 @@ def changes(balanced: Balanced) -> Chart:
     panel = _panel(scene, posed.number, new)
     keys = [("added", say(NAMES["spring"]))] if any(item.kind == "spring" for item in new) else []
     keys += keys_of(replace(scene, planned=()))
-    return Chart("changes", original.title, what, (panel,), keys=tuple(keys))
+    caption = to_say("What to change, to scale.")
+    return Chart("changes", original.title, what, (panel,), keys=tuple(keys), caption=caption)
 
 
 def _without_new(scene: Scene, old: Scene, changes: tuple[Change, ...]) -> Scene:

@@ -37,7 +37,7 @@ from equipoise.figures.chart_parts import (
     without_empty,
 )
 from equipoise.figures.style import short
-from equipoise.i18n import say
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
 from equipoise.mechanism.outputs.declared import body_named, joint_named
 from equipoise.quantities import Dimension
@@ -74,6 +74,7 @@ def over_crank(
     what: str,
     panels: Sequence[Signals],
     output: str = "",
+    caption: str = "",
 ) -> Chart:
     """Signals over crank angle, below each other.
 
@@ -96,7 +97,8 @@ def over_crank(
         )
         for label, dimension, signals in panels
     ]
-    return Chart(name, analysis.machine.title, what, tuple(result), keys=row_keys(analysis))
+    keys = row_keys(analysis)
+    return Chart(name, analysis.machine.title, what, tuple(result), keys=keys, caption=caption)
 
 
 def _unit(analysis: Analysis, output: str) -> str | None:
@@ -119,9 +121,9 @@ def force(analysis: Analysis) -> Chart:
         (label, "force", {role: part(values) for role, values in result.items()})
         for label, part in parts.items()
     ]
-    return over_crank(
-        analysis, "force", title(analysis, say("Shaking force")), panels, "shaking_force"
-    )
+    what = title(analysis, say("Shaking force"))
+    caption = to_say("Shaking force over crank angle.")
+    return over_crank(analysis, "force", what, panels, "shaking_force", caption)
 
 
 def moment(analysis: Analysis) -> Chart:
@@ -141,7 +143,8 @@ def moment(analysis: Analysis) -> Chart:
             (output_named(name), "torque", {role: settled(values, least)})
             for name, values in parts.items()
         ]
-    return over_crank(analysis, "moment", what, panels, "shaking_moment")
+    caption = to_say("Shaking moment over crank angle.")
+    return over_crank(analysis, "moment", what, panels, "shaking_moment", caption)
 
 
 def torques(analysis: Analysis) -> Iterator[Chart]:
@@ -170,7 +173,10 @@ def torque(analysis: Analysis, number: int = 1) -> Chart:
     if analysis.motion.whole_cycle:
         whole = with_mean(whole, signals[ALL], analysis.motion)
     causes = _causes(analysis, output, drive.effort_in)
-    return Chart(name, chart.title, what, (whole, causes), keys=chart.keys)
+    caption = to_say("Drive torque over crank angle, and what it is for.")
+    if drive.pushes:
+        caption = to_say("Drive force over crank angle, and what it is for.")
+    return replace(chart, panels=(whole, causes), caption=caption)
 
 
 def with_mean(panel: Panel, values: Array, motion: Motion) -> Panel:
@@ -233,7 +239,9 @@ def polar(analysis: Analysis) -> Chart:
         rings=True,
     )
     what = title(analysis, say("Shaking force"), say("numbers: crank angle, deg"))
-    return Chart("polar", analysis.machine.title, what, (panel,), keys=row_keys(analysis))
+    caption = to_say("Shaking force as a polar diagram: the end of its arrow over the cycle.")
+    keys = row_keys(analysis)
+    return Chart("polar", analysis.machine.title, what, (panel,), keys=keys, caption=caption)
 
 
 def _size_marks(
@@ -302,7 +310,14 @@ def spectrum(analysis: Analysis) -> Chart:
     )
     what = title(analysis, say("Amplitude of each order"))
     keys = tuple((BAR_ROLES[role], name) for role, name in row_keys(analysis))
-    return Chart("spectrum", analysis.machine.title, what, panels, keys=keys, words=notes)
+    caption = to_say("Shaking force, shaking moment and drive torque by orders of the crank angle.")
+    if drive.pushes:
+        caption = to_say(
+            "Shaking force, shaking moment and drive force by orders of the crank angle."
+        )
+    return Chart(
+        "spectrum", analysis.machine.title, what, panels, keys=keys, words=notes, caption=caption
+    )
 
 
 BAR_ROLES = {SINGLE: "bar before", ALL: "bar after"}
@@ -444,7 +459,8 @@ def joints(analysis: Analysis) -> Iterator[Chart]:
             _over_angle(analysis, result[name], result.values()) for name in names
         )
         own = f"joints{suffix}"
-        yield Chart(own, analysis.machine.title, what, panels, columns=2, words=words)
+        caption = to_say("Forces in the joints over crank angle.")
+        yield Chart(own, analysis.machine.title, what, panels, 2, words=words, caption=caption)
 
 
 def _over_angle(analysis: Analysis, joint: JointCurve, every: Iterable[JointCurve]) -> Panel:
@@ -481,7 +497,8 @@ def joint_polars(analysis: Analysis) -> Iterator[Chart]:
         text = title(analysis, what, remark, of_one=True)
         panels = tuple(_square(analysis, by_name[name], axis) for name in names)
         own = f"joint-polars{suffix}"
-        yield Chart(own, analysis.machine.title, text, panels, in_line, stacked=False)
+        caption = to_say("Forces in the joints as polar diagrams: the ends of their arrows.")
+        yield Chart(own, analysis.machine.title, text, panels, in_line, False, caption=caption)
 
 
 def _square(analysis: Analysis, joint: JointCurve, axis: Axis) -> Panel:

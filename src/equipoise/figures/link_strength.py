@@ -43,6 +43,13 @@ ALONG = (
     to_say("stress"),
 )
 """What is drawn along a link, a panel each."""
+CAPTIONS = {
+    "stress": to_say(
+        "Loads along the link and its stress, at the crank angle at which that is largest."
+    ),
+    "haigh": to_say("Haigh diagram: mean and amplitude of cycles of stress, and their limits."),
+}
+"""Kind of chart -> what it is."""
 HEIGHT = 74.0
 """Points of each of the panels below each other."""
 ASIDE = 30.0
@@ -53,19 +60,14 @@ LEAST = 1e-6
 """Over the largest force on a link, below which a load is none beside it."""
 
 
-def link_charts(analysis: Analysis) -> Iterator[tuple[Chart, str]]:
+def link_charts(analysis: Analysis) -> Iterator[Chart]:
     """``stress-LINK`` of every link with a section, and ``haigh-LINK`` of those with a fatigue
-    limit, each with its caption; none where the crank is not turned evenly, or the crank angles are
-    no whole cycle.
+    limit; none where the crank is not turned evenly, or the crank angles are no whole cycle.
     """
-    of_loads = to_say(
-        "Loads along the link and its stress, at the crank angle at which that is largest."
-    )
-    of_cycles = to_say("Haigh diagram: mean and amplitude of cycles of stress, and their limits.")
     for name in analysis.sections:
-        yield along_link(analysis, name), of_loads
+        yield along_link(analysis, name)
         if has_limit(analysis, name):
-            yield haigh_diagram(analysis, name), of_cycles
+            yield haigh_diagram(analysis, name)
 
 
 def has_limit(analysis: Analysis, name: str) -> bool:
@@ -81,7 +83,7 @@ def _section(analysis: Analysis, name: str) -> LinkSection:
 
 def _chart(analysis: Analysis, kind: str, name: str, what: str, panels: Sequence[Panel]) -> Chart:
     own = f"{kind}-{name.translate(FORBIDDEN)}"
-    return Chart(own, analysis.machine.title, what, tuple(panels))
+    return Chart(own, analysis.machine.title, what, tuple(panels), caption=CAPTIONS[kind])
 
 
 # -- along a link ----------------------------------------------------------------------------------

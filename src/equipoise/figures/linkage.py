@@ -13,7 +13,7 @@ from equipoise.errors import UsageError
 from equipoise.figures.motion import moving
 from equipoise.figures.stage import beyond, beyond_text, row_legend, rows_named
 from equipoise.figures.style import short
-from equipoise.i18n import Note, say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import instant_center, pairs, pinned
@@ -86,7 +86,17 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
         what = say("Linkage, to scale; angle of {link} in the frame: {angle}", **text)
     keys = tuple(keys_of(scene))
     words = (*row_legend(scene), *beyond(scene), *_reversal_texts(scene))
-    return Chart("linkage", analysis.machine.title, what, panels, columns, keys=keys, words=words)
+    caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
+    return Chart(
+        "linkage",
+        analysis.machine.title,
+        what,
+        panels,
+        columns,
+        keys=keys,
+        words=words,
+        caption=caption,
+    )
 
 
 def _reversal_texts(scene: Scene) -> Iterator[str]:
@@ -386,7 +396,8 @@ def centrodes(analysis: Analysis, links: Sequence[str]) -> Chart:
     words += [*beyond_text(far), *still]
     columns = 1 if len(panels) == 1 else 2
     title, notes = analysis.machine.title, tuple(words)
-    return Chart("centrodes", title, what, tuple(panels), columns, words=notes)
+    caption = to_say("Centrodes: paths of instant centres in the frame and in the link.")
+    return Chart("centrodes", title, what, tuple(panels), columns, words=notes, caption=caption)
 
 
 def keys_of(scene: Scene) -> Iterator[tuple[str, str]]:

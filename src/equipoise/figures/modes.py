@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.figures.chart_parts import by_name
 from equipoise.figures.curves import UNIT
 from equipoise.figures.linkage import support_keys
 from equipoise.figures.style import short
@@ -161,6 +162,11 @@ def projected(points: Any, view: View) -> Array:
     return np.asarray(points[..., sight.right] + 1j * sight.sense * points[..., sight.up])
 
 
+def mode_charts(free: FreeVibration) -> dict[str, Chart]:
+    """Every mode by name: ``mode-1``, ``mode-2`` and so on."""
+    return by_name(mode_chart(free, number) for number in range(1, len(free.modes) + 1))
+
+
 def mode_chart(free: FreeVibration, number: int) -> Chart:
     """One mode, counted from 1."""
     mode = free.modes[number - 1]
@@ -179,6 +185,7 @@ def mode_chart(free: FreeVibration, number: int) -> Chart:
         stacked=False,
         keys=tuple(_keys(shape)),
         words=(text,),
+        caption=to_say("Shape of a natural vibration of the machine on its support."),
     )
 
 

@@ -25,7 +25,7 @@ from equipoise.figures.chart_parts import (
     with_figures,
 )
 from equipoise.figures.style import short
-from equipoise.i18n import say
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.outputs.declared import guided, joint_named, pinned
 from equipoise.quantities import Dimension
@@ -154,6 +154,7 @@ def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
         columns=len(panels),
         stacked=False,
         keys=(("faint", say("other points")),) if others else (),
+        caption=to_say("Paths of the points of the moving links, with marks at equal times."),
     )
 
 
@@ -326,7 +327,8 @@ def hodograph(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
     )
     shown_here = say("Hodographs of velocity and acceleration")
     what = title(analysis, shown_here, say("numbers: crank angle, deg"), of_one=True)
-    return Chart("hodograph", analysis.machine.title, what, panels, columns=2, stacked=False)
+    caption = to_say("Velocity and acceleration of these points: the ends of their arrows.")
+    return Chart("hodograph", analysis.machine.title, what, panels, 2, False, caption=caption)
 
 
 def _ends(
@@ -358,6 +360,7 @@ STEADY = 1e-6
 """Swing of a motion over its largest value, below which it is rounding: an angle from its cosine
 near a right angle is known to the root of the digits of a number, 2e-8.
 """
+KINEMATICS = to_say("Motion over crank angle: position, velocity and acceleration.")
 MOST_LINKS = 3
 """Links whose motion stands in a report."""
 FORBIDDEN = str.maketrans(dict.fromkeys(' /\\:*?"<>|', "-"))
@@ -365,11 +368,15 @@ FORBIDDEN = str.maketrans(dict.fromkeys(' /\\:*?"<>|', "-"))
 
 
 def outputs_chart(
-    analysis: Analysis, names: Sequence[str], name: str = "outputs", what: str = ""
+    analysis: Analysis,
+    names: Sequence[str],
+    name: str = "outputs",
+    what: str = "",
+    caption: str = "",
 ) -> Chart:
     """Outputs over crank angle, below each other, with their extremes.
 
-    what : that is shown; the labels of the outputs where not given.
+    what : that is shown; the labels of the outputs where not given, as for the caption.
 
     Raises
     ------
@@ -388,8 +395,10 @@ def outputs_chart(
         lines = {ALL: (theta, values, analysis.motion.figures(entry.values_to_draw))}
         panel = compared(x, "", entry.dimension, lines, extent=same_dimension)
         panels.append(replace(panel, title=replace(panel.y, label=entry.label()).text))
-    text = what or say(", ").join(item.label() for item in ones)
-    return Chart(name, analysis.machine.title, title(analysis, text), tuple(panels))
+    labels = [item.label() for item in ones]
+    text = title(analysis, what or say(", ").join(labels))
+    caption = caption or ", ".join(labels)
+    return Chart(name, analysis.machine.title, text, tuple(panels), caption=caption)
 
 
 def _steady(values: Array) -> Array:
@@ -410,7 +419,7 @@ def kinematics(analysis: Analysis) -> Iterator[Chart]:
     angles = [output.name for output in analysis.outputs if output.group == "transmission"]
     if angles:
         what = say("Transmission angles")
-        yield outputs_chart(analysis, angles, kinematics_named("transmission"), what)
+        yield outputs_chart(analysis, angles, kinematics_named("transmission"), what, KINEMATICS)
     yield from _each(analysis, "links")
     yield from _each(analysis, "points")
 
@@ -431,7 +440,8 @@ def _each(analysis: Analysis, group: str) -> Iterator[Chart]:
             members.setdefault(output.item, []).append(output)
     for item, ones in members.items():
         what = say("Motion of {name}", name=short(joint_named(item), 24))
-        yield outputs_chart(analysis, [item.name for item in ones], kinematics_named(item), what)
+        names = [output.name for output in ones]
+        yield outputs_chart(analysis, names, kinematics_named(item), what, KINEMATICS)
 
 
 def kinematics_named(item: str) -> str:
@@ -459,7 +469,10 @@ def coupling_ratios(analysis: Analysis) -> Iterator[Chart]:
             panel = compared(angle_axis(analysis), label, None, signal)
             what = say("Speed ratio relative to the carrier")
             name = f"{item.list_name}-{item.driven.translate(FORBIDDEN)}"
-            yield Chart(name, analysis.machine.title, title(analysis, what), (panel,))
+            caption = to_say("Speed ratio over crank angle.")
+            yield Chart(
+                name, analysis.machine.title, title(analysis, what), (panel,), caption=caption
+            )
 
 
 def _rate(analysis: Analysis, coupling: Coupling, link: str) -> np.ndarray:
@@ -471,13 +484,11 @@ def _rate(analysis: Analysis, coupling: Coupling, link: str) -> np.ndarray:
     return np.asarray(link_rate - carrier + 0.0 * analysis.crank_angle)
 
 
-def coupling_curves(analysis: Analysis) -> Iterator[tuple[Chart, str]]:
-    """Outputs of couplings that have a picture, with its caption, such as both strands of a belt:
-    ``belt-DRIVEN``.
-    """
+def coupling_curves(analysis: Analysis) -> Iterator[Chart]:
+    """Outputs of couplings that have a picture, such as both strands of a belt: ``belt-DRIVEN``."""
     for item in analysis.machine.couplings:
         if item.curves is not None:
             outputs, what, caption = item.curves
             names = [f"{item.list_name}.{item.name}.{output}" for output in outputs]
             name = f"{item.noun.replace(' ', '-')}-{item.driven.translate(FORBIDDEN)}"
-            yield outputs_chart(analysis, names, name, say(what)), caption
+            yield outputs_chart(analysis, names, name, say(what), caption)

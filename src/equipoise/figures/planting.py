@@ -78,14 +78,14 @@ PARTS = {
 }
 
 
-def charts(figures: PlantingFigures) -> dict[str, Chart]:
+def planting_charts(figures: PlantingFigures) -> dict[str, Chart]:
     """Every chart of a planting machine by name.
 
-    ``ratio-LINK`` for each link but the drive; ``velocity``, ``velocity-x``, ``velocity-y`` and the
-    same of ``acceleration``, for a further arm such as ``velocity-x-Q``; ``torque`` and ``joints``
-    where there are forces in the soil.
+    ``path``; ``ratio-LINK`` for each link but the drive; ``velocity``, ``velocity-x``,
+    ``velocity-y`` and the same of ``acceleration``, for a further arm such as ``velocity-x-Q``;
+    ``torque`` and ``joints`` where there are forces in the soil.
     """
-    result: dict[str, Chart] = {}
+    result = {"path": path(figures)}
     for link in figures.machine.links:
         if link != figures.machine.drive.link:
             name = free_name(f"ratio-{link}", result)
@@ -141,14 +141,21 @@ def _flags(figures: PlantingFigures) -> tuple[PlaceLabel, ...]:
 
 
 def _chart(
-    figures: PlantingFigures, name: str, what: str, y: Axis, values: Array, places: Extremes
+    figures: PlantingFigures,
+    name: str,
+    what: str,
+    y: Axis,
+    values: Array,
+    places: Extremes,
+    caption: str,
 ) -> Chart:
     """One signal (N,) of the curve's crank angles."""
     curve = figures.curve
     line = Curve(*closed(curve.theta, values, curve.period))
     marks = extremes(y, values, places, "main")
     panel = stay_panel(figures, y, [line], marks, flags=_flags(figures))
-    return Chart(name, figures.machine.title, f"{what}; {say(SHADED)}", (panel,))
+    what = f"{what}; {say(SHADED)}"
+    return Chart(name, figures.machine.title, what, (panel,), caption=caption)
 
 
 def ratio(figures: PlantingFigures, link: str) -> Chart:
@@ -163,11 +170,13 @@ def ratio(figures: PlantingFigures, link: str) -> Chart:
     names, brief = ({k: short(item, most) for k, item in both.items()} for most in (24, 14))
     what = say("Angular velocity of {link} over that of {drive}", **names)
     label = say("angular velocity ratio, {link} / {drive}", **brief)
-    return _chart(figures, f"ratio-{link}", what, Axis(label, room=ROOM), rates, places)
+    caption = to_say("Angular velocity of a link over that of the crank.")
+    return _chart(figures, f"ratio-{link}", what, Axis(label, room=ROOM), rates, places, caption)
 
 
 def tips(figures: PlantingFigures) -> Iterator[Chart]:
     """Velocity and acceleration of each tip relative to the machine, and their parts."""
+    caption = to_say("Velocity and acceleration of the finger's tip relative to the machine.")
     for number, arm in enumerate(figures.arms):
         of = f"-{arm.tip.translate(FORBIDDEN)}" if number else ""
         for name, (title, label, dimension, _) in QUANTITIES.items():
@@ -177,7 +186,7 @@ def tips(figures: PlantingFigures) -> Iterator[Chart]:
                 what += f", {say(text)}" if text else ""
                 y = Axis.of(f"{say(label)}{suffix}", dimension, values, room=ROOM)
                 places = [*_extremes(arm, name, part)]
-                yield _chart(arm, name + part + of, what, y, values, places)
+                yield _chart(arm, name + part + of, what, y, values, places, caption)
 
 
 def tip_values(figures: PlantingFigures, name: str, part: str = "") -> Array:
@@ -234,7 +243,8 @@ def torque(figures: PlantingFigures) -> Chart:
     panel = _air_and_soil(figures, y, pair, both=True, flags=_flags(figures))
     drive = short(figures.machine.drive.link)
     what = f"{say('Torque of the drive on {link}', link=drive)}; {say(SHADED)}"
-    return Chart("torque", figures.machine.title, what, (panel,))
+    caption = to_say("Drive torque with and without the forces of the soil.")
+    return Chart("torque", figures.machine.title, what, (panel,), caption=caption)
 
 
 def joints(figures: PlantingFigures) -> Chart:
@@ -253,7 +263,9 @@ def joints(figures: PlantingFigures) -> Chart:
             )
         )
     what = f"{say('Force in each joint')}; {say(SHADED)}"
-    return Chart("joints", figures.machine.title, what, tuple(panels), columns=min(2, len(panels)))
+    caption = to_say("Forces in the joints with and without the forces of the soil.")
+    columns = min(2, len(panels))
+    return Chart("joints", figures.machine.title, what, tuple(panels), columns, caption=caption)
 
 
 def _air_and_soil(
@@ -450,7 +462,8 @@ def path(figures: PlantingFigures) -> Chart:
     panels = tuple(
         item(paths, corners) for item, corners in zip(draw, _corners(paths), strict=False)
     )
-    return Chart("path", figures.machine.title, what, panels, stacked=False)
+    caption = to_say("Path of the planting finger relative to the machine and over the ground.")
+    return Chart("path", figures.machine.title, what, panels, stacked=False, caption=caption)
 
 
 def _corners(paths: Paths) -> list[tuple[complex, complex]]:

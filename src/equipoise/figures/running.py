@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
@@ -26,7 +26,7 @@ def run_charts(run: Run) -> dict[str, Chart]:
     panels = [_panel(run, say("crank speed"), "angular speed", run.crank_speed, "rpm")]
     if varies(run.drive_torque):
         panels.append(_panel(run, say("drive torque"), "torque", run.drive_torque))
-    return {"speed": Chart("speed", run.machine.title, verdict(run), tuple(panels))}
+    return {"speed": _chart(run, verdict(run), panels)}
 
 
 EFFORTS: Final[Mapping[Literal["torque", "force"], str]] = {
@@ -57,11 +57,16 @@ def drives_charts(run: DrivesRun) -> dict[str, Chart]:
             panels.append(_curves(time, say(label), effort, curves))
     charts = {}
     if panels:
-        charts["speed"] = Chart("speed", run.machine.title, drives_verdict(run), tuple(panels))
+        charts["speed"] = _chart(run, drives_verdict(run), panels)
     if run.support is None:
         return charts
     lasting = say("run of {time} s", time=four_digits(float(time[-1])))
     return charts | support_charts(run.support, time, lasting)
+
+
+def _chart(run: Run | DrivesRun, what: str, panels: Iterable[Panel]) -> Chart:
+    caption = to_say("Speed and torque over the time of the run.")
+    return Chart("speed", run.machine.title, what, tuple(panels), caption=caption)
 
 
 def _panel(

@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.figures.linkage import crank_angle_text
 from equipoise.figures.style import short
-from equipoise.i18n import say
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.out_of_plane import contacts, pushing
 from equipoise.mechanism.kinematics.motion import move
@@ -46,7 +46,10 @@ def side(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     keys = [("solid", say("bodies"))] if view.solids else []
     keys += [("mass", say("centre of mass"))] if view.loose else []
     keys += [("room", say("room for mass to be found"))] if view.rooms else []
-    return Chart("side", analysis.machine.title, what, (view.panel(),), keys=tuple(keys))
+    caption = to_say("The planes of links, masses and bearings, from the side and to scale.")
+    return Chart(
+        "side", analysis.machine.title, what, (view.panel(),), keys=tuple(keys), caption=caption
+    )
 
 
 class _View:

@@ -233,6 +233,11 @@ def named(landscape: Landscape, path: str) -> str:
     return words.localized() if isinstance(words, Note) else words
 
 
+def landscape_charts(result: Landscape) -> dict[str, Chart]:
+    """``landscape``, the map of a measure over two numbers."""
+    return by_name([landscape(result)])
+
+
 def landscape(result: Landscape) -> Chart:
     """Lines of equal value with their values, the least of all, and the model as it is."""
     units = _units(result)

@@ -163,7 +163,8 @@ def gauges(sweep: Sweep, quantity: str) -> Chart:
             label = say("peak to peak") if quantity == "displacement" else say("RMS")
             named = f"{say('rotation')}, {label}" if rotation else label
             panels.append(_panel(sweep, named, quantity, rotation, ordered(read)))
-    return _chart(sweep, quantity, say(what), panels)
+    caption = to_say("Vibration at the gauges against speed.")
+    return _chart(sweep, quantity, say(what), panels, caption)
 
 
 def mounts(sweep: Sweep) -> Chart:
@@ -190,7 +191,8 @@ def mounts(sweep: Sweep) -> Chart:
         panels.append(_panel(sweep, say("transmissibility"), "", False, speed_curves))
         what += "; " + say("transmissibility: its RMS over the shaking force's")
     crowded = any(len({c.label for c in panel.curves}) > MOST_IN_HALF for panel in panels)
-    return replace(_chart(sweep, "mounts", what, panels), across=crowded)
+    caption = to_say("Forces in the mounts against speed.")
+    return replace(_chart(sweep, "mounts", what, panels, caption), across=crowded)
 
 
 def _panel(
@@ -223,7 +225,7 @@ def flags(resonances: Sequence[Resonance]) -> tuple[PlaceLabel, ...]:
     )
 
 
-def _chart(sweep: Sweep, name: str, what: str, panels: list[Panel]) -> Chart:
+def _chart(sweep: Sweep, name: str, what: str, panels: list[Panel], caption: str) -> Chart:
     """Panels below each other, the first under names of resonances."""
     words = (say("order"), say("mode")) if sweep.resonances else ()
     first = replace(panels[0], flags=flags(sweep.resonances), flag_words=words)
@@ -232,7 +234,7 @@ def _chart(sweep: Sweep, name: str, what: str, panels: list[Panel]) -> Chart:
         keys.append(("not stable", say("not stable")))
     what = f"{what}; {say('{model} model', model=sweep.model)}"
     whole = (first, *panels[1:])
-    return Chart(name, sweep.machine.title, what, whole, keys=tuple(keys))
+    return Chart(name, sweep.machine.title, what, whole, keys=tuple(keys), caption=caption)
 
 
 def _keys(sweep: Sweep, meeting: str) -> list[tuple[str, str]]:
@@ -285,7 +287,9 @@ def resonance_map(sweep: Sweep) -> Chart:
     what = say(
         "Orders of the crank speed and natural frequencies; larger circle: stronger resonance"
     )
-    return Chart("resonance-map", sweep.machine.title, what, (panel,), keys=tuple(keys))
+    caption = to_say("Where orders of the crank meet natural frequencies.")
+    keyed = tuple(keys)
+    return Chart("resonance-map", sweep.machine.title, what, (panel,), keys=keyed, caption=caption)
 
 
 def meeting(share: float) -> str:

@@ -154,7 +154,9 @@ def shapes(modes: ToolModes, plane: int) -> Iterator[Chart]:
         panels = [_shape(modes, modes.planes[plane], k) for k in numbers]
         panels[0] = replace(panels[0], flags=station_flags(modes.tool))
         what = label + continued(numbers, every)
-        yield Chart(name + suffix, modes.tool.title, what, tuple(panels), keys=keys)
+        caption = to_say("Shapes of the natural vibrations of the shaft.")
+        own = name + suffix
+        yield Chart(own, modes.tool.title, what, tuple(panels), keys=keys, caption=caption)
 
 
 def _shape(modes: ToolModes, result: PlaneModes, number: int) -> Panel:
@@ -228,7 +230,8 @@ def moment(response: ToolResponse, speed: float | None) -> Chart:
     what = say("RMS of the bending moment, and shape of each order when it is largest")
     text = f"{what}; {rpm_text(speed)} rpm"
     panels = _moments(tool, places, line, loudest), _shapes_of_orders(tool, places, displaced)
-    return Chart("moment", tool.title, text, panels, keys=tuple(keys))
+    caption = to_say("Bending moment and displacement along the shaft.")
+    return Chart("moment", tool.title, text, panels, keys=tuple(keys), caption=caption)
 
 
 def speed_shown(response: ToolResponse) -> float:
@@ -402,7 +405,14 @@ def transmission(transmissions: Transmissions, plane: int, modes: ToolModes | No
     )
     what = f"{text}, {plane_named(plane, transmissions.tool.alike)}"
     name = "transmission-lateral" if plane else "transmission"
-    return Chart(name, transmissions.tool.title, what, (size, phases), keys=tuple(keys))
+    return Chart(
+        name,
+        transmissions.tool.title,
+        what,
+        (size, phases),
+        keys=tuple(keys),
+        caption=to_say("Share of a shaking force that comes to what holds the tool."),
+    )
 
 
 def _quiet(
@@ -442,7 +452,8 @@ def acceleration(exposure: ToolExposure) -> Chart:
     what = say(
         "Acceleration, not weighted; dotted: action and limit value if all of it is of order 1"
     )
-    return _of_hands(exposure, "acceleration", read, allowed, what, say("RMS"))
+    caption = to_say("Acceleration of the hands against speed of the engine.")
+    return _of_hands(exposure, "acceleration", read, allowed, what, say("RMS"), caption)
 
 
 def weighted(exposure: ToolExposure) -> Chart:
@@ -452,7 +463,8 @@ def weighted(exposure: ToolExposure) -> Chart:
         role: np.full(len(exposure.speed), level) for role, level in levels(exposure).items()
     }
     what = say("Weighted acceleration; dotted: action and limit value")
-    chart = _of_hands(exposure, "exposure", read, allowed, what, say(TOTAL_VALUE))
+    caption = to_say("Daily exposure of the hands, with what is allowed.")
+    chart = _of_hands(exposure, "exposure", read, allowed, what, say(TOTAL_VALUE), caption)
     over = say(VERDICTS["above the limit value"])
     beyond = (np.where(item > allowed["limit"], item, np.nan) for item in read.values())
     stretches = tuple(
@@ -490,6 +502,7 @@ def _of_hands(
     allowed: Mapping[str, Array],
     what: str,
     label: str,
+    caption: str,
 ) -> Chart:
     """Curves of hands over speed, and a shade above what must not be."""
     tool, speed = exposure.response.tool, exposure.speed
@@ -506,7 +519,7 @@ def _of_hands(
     content = (*curves_of(speed, curves), *limits)
     panel = Panel(x, y, content, marks, lines=work, areas=(above,), height=245.0)
     hours = say("{hours} h a day", hours=four_digits(duration_of(exposure) / 3600))
-    return Chart(name, tool.title, f"{what}, {hours}", (panel,))
+    return Chart(name, tool.title, f"{what}, {hours}", (panel,), caption=caption)
 
 
 def hand_peaks(tool: Tool, speed: Array, curves: Sequence[SpeedCurve], y: Axis) -> Iterator[Mark]:
@@ -734,7 +747,8 @@ def design(result: ToolDesign) -> Chart:
     values = " → ".join(map(four_digits, (figure.before, figure.after)))
     what = f"{capital(name)}: {values} m/s²"
     keys = (("dashed ink", say("before")), ("ink", say("after")))
-    return Chart("design", result.tool.title, what, (panel,), keys=keys)
+    caption = to_say("Vibration of the worst hand over the band of speeds, before and after.")
+    return Chart("design", result.tool.title, what, (panel,), keys=keys, caption=caption)
 
 
 def change_texts(design: ToolDesign) -> list[str]:

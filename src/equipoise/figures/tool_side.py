@@ -23,7 +23,7 @@ from equipoise.figures.tool_charts import (
 )
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.side import side_of
-from equipoise.i18n import Note, say
+from equipoise.i18n import Note, say, to_say
 from equipoise.results.charts import (
     Arrow,
     Axis,
@@ -57,7 +57,8 @@ def side(tool: Tool) -> Chart:
     panels = [_panel(side_of(tool), _named(tool))]
     panels += _at_work(tool)
     what = say("The tool from the side, shaft to scale; bodies as cubes of the density of water")
-    return Chart("side", tool.title, what, tuple(panels))
+    caption = to_say("The tool from the side, at rest and as it is deflected at work.")
+    return Chart("side", tool.title, what, tuple(panels), caption=caption)
 
 
 def side_modes(modes: ToolModes) -> Chart:
@@ -94,7 +95,8 @@ def in_mode(modes: ToolModes, number: int, count: int) -> list[Chart]:
 def _modes_chart(modes: ToolModes, panels: Sequence[Panel]) -> Chart:
     drawn_as = quantity(SWING * modes.tool.shaft.length, "length")
     what = say("Modes from the side; largest displacement drawn as {length}", length=drawn_as)
-    return Chart("side-modes", modes.tool.title, what, tuple(panels))
+    caption = to_say("The tool from the side in its lowest natural vibrations.")
+    return Chart("side-modes", modes.tool.title, what, tuple(panels), caption=caption)
 
 
 def _swinging(modes: ToolModes, k: int, phases: Array) -> list[Panel]:
@@ -119,9 +121,10 @@ def side_design(design: ToolDesign) -> Chart:
     before = _panel(old, _named(design.tool), say("before"))
     after = _panel(side_of(design.better), _named(design.better), say("after"), moved)
     what = say("The tool from the side before and after; arrows: what is moved along the shaft")
-    return Chart(
-        "side-design", design.tool.title, what, (before, after), words=tuple(change_texts(design))
-    )
+    words = tuple(change_texts(design))
+    caption = to_say("The tool from the side before and after what is changed.")
+    both = (before, after)
+    return Chart("side-design", design.tool.title, what, both, words=words, caption=caption)
 
 
 def _named(tool: Tool) -> tuple[PlaceLabel, ...]:
@@ -197,11 +200,11 @@ def _panel(
     )
 
 
-def mode_pictures(modes: ToolModes) -> dict[str, Chart]:
+def side_mode_charts(modes: ToolModes) -> dict[str, Chart]:
     """``side-modes``, then ``modes`` and ``modes-lateral``."""
     return by_name([side_modes(modes)]) | mode_charts(modes)
 
 
-def design_pictures(result: ToolDesign) -> dict[str, Chart]:
+def design_charts(result: ToolDesign) -> dict[str, Chart]:
     """``side-design`` and ``design``."""
     return by_name([side_design(result), design(result)])

@@ -124,7 +124,8 @@ def gauge(response: Response, name: str) -> Chart:
         panels.append(Panel(phase_axis(response), y, (Curve(theta, values),), marks))
     what = say("Rotation at {gauge}") if read.rotation else say("Motion at {gauge}")
     what = f"{what.format(gauge=short(name))}, {period_text(response)}"
-    return Chart(f"gauge-{name}", response.machine.title, what, tuple(panels))
+    caption = to_say("Vibration at a gauge of the support over a cycle.")
+    return Chart(f"gauge-{name}", response.machine.title, what, tuple(panels), caption=caption)
 
 
 def drive(response: Response) -> Chart:
@@ -140,7 +141,8 @@ def drive(response: Response) -> Chart:
     rows = len(response.machine.rows)
     what += ", " + say("{rows} rows together", rows=rows) if rows > 1 else ""
     what += f", {period_text(response)}"
-    return Chart("drive", response.machine.title, what, tuple(panels))
+    caption = to_say("Torque and speed of the drive on the moving support.")
+    return Chart("drive", response.machine.title, what, tuple(panels), caption=caption)
 
 
 def _with_mean(
@@ -170,7 +172,9 @@ def spectra(response: Response) -> Iterator[Chart]:
         what += ", " + say("at {speed}; {model} model", **values)
         last = max(_last_order(response.gauges[name]) for name in names)
         panels = tuple(_bars(response.gauges[name], name, last) for name in names)
-        yield Chart(f"spectrum{suffix}", response.machine.title, what, panels, min(2, len(panels)))
+        own, columns = f"spectrum{suffix}", min(2, len(panels))
+        caption = to_say("Vibration at the gauges by orders of the crank angle.")
+        yield Chart(own, response.machine.title, what, panels, columns, caption=caption)
 
 
 def _last_order(signals: GaugeSignals) -> float:
@@ -214,7 +218,8 @@ def mounts(response: Response) -> Iterator[Chart]:
         what = f"{what}, {period_text(response)}"
         panels = tuple(_mount(response, name, at_rest[name], largest) for name in names)
         keys, columns = (("main", say("force")), ("mean", say("at rest"))), min(2, len(panels))
-        yield Chart(f"mounts{suffix}", response.machine.title, what, panels, columns, keys=keys)
+        own, caption = f"mounts{suffix}", to_say("Forces in the mounts over a cycle.")
+        yield Chart(own, response.machine.title, what, panels, columns, keys=keys, caption=caption)
 
 
 def _at_rest(response: Response) -> dict[str, float]:
@@ -299,21 +304,32 @@ def transient_charts(transient: Transient) -> dict[str, Chart]:
     return charts
 
 
-def support_charts(motion: SupportMotion, time: Array, caption: str) -> dict[str, Chart]:
+def support_charts(motion: SupportMotion, time: Array, below: str) -> dict[str, Chart]:
     """``gauges`` and ``mounts`` against time (M,), s, where there are any.
 
-    caption : what stands below them, after what they show.
+    below : what stands below them, after what they show.
     """
     charts: dict[str, Chart] = {}
     machine = motion.body.machine
-    for key, what, quantity in (
-        ("gauges", say("Displacement at the gauges"), "displacement"),
-        ("mounts", say("Force in the mounts on the support"), "force"),
+    for key, what, quantity, over_time in (
+        (
+            "gauges",
+            say("Displacement at the gauges"),
+            "displacement",
+            to_say("Displacement at the gauges over the time of the run."),
+        ),
+        (
+            "mounts",
+            say("Force in the mounts on the support"),
+            "force",
+            to_say("Forces in the mounts over the time of the run."),
+        ),
     ):
         read, turning = getattr(motion, key), members_of(key)(machine)
         for name, whole, panels in _in_time(time, what, quantity, read, turning):
             own = key + name
-            charts[own] = Chart(own, machine.title, f"{whole}, {caption}", panels)
+            text = f"{whole}, {below}"
+            charts[own] = Chart(own, machine.title, text, panels, caption=over_time)
     return charts
 
 

@@ -270,7 +270,7 @@ class ToolDesign(Result):
     proved: bool = False
 
     blocks_in = "handheld.hand_blocks.design_blocks"
-    pictures_in = "figures.tool_side.design_pictures"
+    pictures_in = "figures.tool_side.design_charts"
 
     @cached_property
     def days(self) -> tuple[Exposure, Exposure] | None:

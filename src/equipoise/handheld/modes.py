@@ -132,7 +132,7 @@ class ToolModes(Result):
     """
 
     blocks_in = "handheld.blocks.modes_blocks"
-    pictures_in = "figures.tool_side.mode_pictures"
+    pictures_in = "figures.tool_side.side_mode_charts"
     headline_in = "handheld.headline.modes_headline"
 
     tool: Tool

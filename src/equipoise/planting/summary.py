@@ -203,7 +203,7 @@ class PlantingFigures(Result):
         return nested((n, x) for n, x in self.figures.items() if n not in SHARED)
 
     blocks_in = "planting.blocks.planting_blocks"
-    pictures_in = "figures.pictures.planting_pictures"
+    pictures_in = "figures.planting.planting_charts"
     declared: ClassVar[Declarations] = {
         "title": TITLE,
         **OF_ARM,

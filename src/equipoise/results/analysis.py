@@ -72,7 +72,7 @@ class Analysis(Result):
     """
 
     blocks_in = "results.analysis_blocks.shown_blocks"
-    pictures_in = "figures.pictures.analysis_pictures"
+    pictures_in = "figures.analysis.analysis_charts"
     headline_in: ClassVar[str] = "vibration.headline.analysis_headline"
 
     motion: Motion

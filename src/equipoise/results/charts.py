@@ -320,6 +320,7 @@ class Chart:
     keys : roles and names for the legend, before those of what is drawn.
     foot : one label for the x axes of all panels.  words : lines below the heading.
     across : whether a report has it across the page though its panels stand in one column.
+    caption : an English sentence on what it is, to be said below it; of those that a report has.
     """
 
     name: str
@@ -332,6 +333,7 @@ class Chart:
     foot: str = ""
     words: tuple[str, ...] = ()
     across: bool = False
+    caption: str = ""
 
     def named(self, name: str) -> Chart:
         """Copy of the chart by another name."""

@@ -333,7 +333,7 @@ class Landscape(Result):
     before: float
 
     blocks_in = "studies.blocks.landscape_blocks"
-    pictures_in = "figures.pictures.landscape_pictures"
+    pictures_in = "figures.studies.landscape_charts"
 
     @property
     def at_edge(self) -> list[str]:

@@ -56,7 +56,7 @@ class FreeVibration(Result):
     """
 
     blocks_in = "vibration.blocks.free_blocks"
-    pictures_in = "figures.pictures.mode_pictures"
+    pictures_in = "figures.modes.mode_charts"
     records: ClassVar[str] = "modes"
 
     linear: Linear

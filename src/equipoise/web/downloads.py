@@ -63,13 +63,13 @@ def chart_of(computed: Computed, name: str, choice: str) -> Chart:
     if name.startswith(("stress-", "haigh-")):
         from equipoise.figures.link_strength import link_charts
 
-        return _named({chart.name: chart for chart, _ in link_charts(analysis)}, name)
+        return _named({chart.name: chart for chart in link_charts(analysis)}, name)
     if name.startswith("run."):
         return _named(_charts_of_run(computed), name)
     if name in SAME:
-        from equipoise.figures.pictures import analysis_pictures
+        from equipoise.figures.analysis import analysis_charts
 
-        return _named(analysis_pictures(analysis), SAME[name])
+        return _named(analysis_charts(analysis), SAME[name])
     return _over_crank(computed, choice)
 
 

@@ -10,7 +10,7 @@ import equipoise as eq
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.pareto import Front, trade_off
 from equipoise.balancing.phase_search import Phasing, choose_phases
-from equipoise.figures.pictures import pictures_of
+from equipoise.figures import pictures_of
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
 from equipoise.results.charts import Chart

@@ -52,4 +52,4 @@ def analysis_of(kind: str) -> Analysis:
 
 @cache
 def pictures(kind: str) -> Mapping[str, Chart]:
-    return {chart.name: chart for chart, _ in link_charts(analysis_of(kind))}
+    return {chart.name: chart for chart in link_charts(analysis_of(kind))}

@@ -7,7 +7,7 @@ from functools import cache
 
 import equipoise as eq
 from equipoise.figures.layout import lay_out
-from equipoise.figures.planting import charts
+from equipoise.figures.planting import planting_charts
 from equipoise.mechanism.parts.field import Soil
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.summary import PlantingFigures, plant
@@ -76,7 +76,7 @@ def read_off(name: str) -> PlantingFigures:
 
 @cache
 def drawn(name: str) -> dict[str, Chart]:
-    return charts(read_off(name))
+    return planting_charts(read_off(name))
 
 
 def words(chart: Chart) -> str:

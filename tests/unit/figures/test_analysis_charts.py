@@ -15,9 +15,9 @@ from equipoise.errors import UsageError
 from equipoise.figures import chart_parts as view
 from equipoise.figures import forces, planting
 from equipoise.figures import motion as of_motion
+from equipoise.figures.analysis import analysis_charts
 from equipoise.figures.chart_parts import angle_step, continued, groups
 from equipoise.figures.linkage import cut_at
-from equipoise.figures.pictures import analysis_pictures, planting_pictures
 from equipoise.figures.style import look_of
 from equipoise.mechanism.dynamics.shares import CAUSES
 from equipoise.mechanism.parts.balance import Objective
@@ -34,7 +34,7 @@ from unit.figures.samples import BUNDLED, drawn, long_cycle, one_link, read_off,
 MOTION = ["linkage", "curves", "hodograph", "centrodes"]
 FORCES = ["polar", "force", "moment", "torque"]
 JOINTS = ["joints", "joint-polars"]
-DRY = ["ratio-coupler", "ratio-rocker"]
+DRY = ["path", "ratio-coupler", "ratio-rocker"]
 DRY += [f"{name}{part}" for name in ("velocity", "acceleration") for part in ("", "-x", "-y")]
 
 
@@ -45,7 +45,7 @@ def analysis_of(name: str) -> Analysis:
 
 @cache
 def charts_of(name: str) -> dict[str, Chart]:
-    return analysis_pictures(analysis_of(name))
+    return analysis_charts(analysis_of(name))
 
 
 def rotor() -> Machine:
@@ -76,12 +76,12 @@ def has(found: list[np.ndarray], wanted: np.ndarray) -> bool:
 def test_names() -> None:
     assert list(charts_of("yamashita-1")) == [*MOTION, *FORCES, "spectrum", *JOINTS]
     machine = eq.load("yamashita-1")
-    assert list(analysis_pictures(eq.analyze(machine, 60))) == [*MOTION, *FORCES, *JOINTS]
-    assert list(analysis_pictures(eq.analyze(machine, [0.3]))) == ["linkage"]
-    assert list(analysis_pictures(eq.analyze(rotor(), 360)))[:2] == ["linkage", "polar"]
+    assert list(analysis_charts(eq.analyze(machine, 60))) == [*MOTION, *FORCES, *JOINTS]
+    assert list(analysis_charts(eq.analyze(machine, [0.3]))) == ["linkage"]
+    assert list(analysis_charts(eq.analyze(rotor(), 360)))[:2] == ["linkage", "polar"]
     free = eq.Link(machine.links["crank"].points)
     massless = replace(machine, links={**machine.links, "crank": free})
-    assert list(analysis_pictures(eq.analyze(massless, 90))) == MOTION
+    assert list(analysis_charts(eq.analyze(massless, 90))) == MOTION
 
 
 def test_planes_from_the_side() -> None:
@@ -103,7 +103,7 @@ def test_planes_from_the_side() -> None:
     through = [s for s in panel.signs if s.role == "edge" and np.any(s.offsets)]
     ends = {complex(p): o.real for s in through for p, o in zip(s.places, s.offsets, strict=True)}
     assert ends[-0.04 + 0.025j] < 0 < ends[0.04 - 0.025j]
-    loose = analysis_pictures(eq.analyze(replace(twin, bearings={}), [0.0]), at=[0.0])["side"]
+    loose = analysis_charts(eq.analyze(replace(twin, bearings={}), [0.0]), at=[0.0])["side"]
     assert [s.places[0] for s in loose.panels[0].signs if s.role == "stand"] == [0j]
 
 
@@ -111,7 +111,7 @@ def test_a_cylinder_from_the_side() -> None:
     """It lies in the plane of its point of the boom, from there to its point of the frame."""
     machine = eq.load("hydraulic-loader").with_link("boom", planes={"B": 0.3})
     analysis = eq.analyze(machine, [0.0])
-    (panel,) = analysis_pictures(analysis, at=[0.0])["side"].panels
+    (panel,) = analysis_charts(analysis, at=[0.0])["side"].panels
     found = {one.role: one.places for one in panel.signs if one.role in ("piston", "barrel")}
     ends = [found["barrel"][0], found["piston"][0]]
     heights = [machine.frame["A"][0], analysis.motion.points["B"].x[0]]
@@ -344,7 +344,7 @@ def test_crank_angles_that_are_no_cycle() -> None:
 def test_a_cycle_of_several_turns_is_drawn_whole() -> None:
     figures = plant(long_cycle())
     assert figures.curve.turns == 3
-    panel = planting.charts(figures)["velocity"].panels[0]
+    panel = planting.planting_charts(figures)["velocity"].panels[0]
     assert (panel.x.low, panel.x.high) == pytest.approx((0, 3 * tau))
     assert [angle_step(turns) for turns in (1, 2, 3, 100)] == [30, 60, 90, 3600]
 
@@ -353,21 +353,20 @@ def test_a_cycle_of_several_turns_is_drawn_whole() -> None:
 
 
 def test_names_of_planting() -> None:
-    assert list(planting.charts(plant(eq.load("kim-chung-a")))) == DRY
+    assert list(planting.planting_charts(plant(eq.load("kim-chung-a")))) == DRY
     assert list(drawn("kim-chung-a")) == [*DRY, "torque", "joints"]
-    assert next(iter(planting_pictures(plant(eq.load("kim-chung-a"))))) == "path"
 
 
 def test_names_do_for_files() -> None:
     base = eq.load("kim-chung-a")
     names = {"crank": "crank", "coupler": 'a/b:"*', "rocker": "A_b_?" + "x" * 90}
     links = {names[name]: link for name, link in base.links.items()}
-    found = list(planting.charts(plant(replace(base, links=links))))
-    assert found[0] == "ratio-a_b___" and len(found[1]) == 60
+    found = list(planting.planting_charts(plant(replace(base, links=links))))
+    assert found[1] == "ratio-a_b___" and len(found[2]) == 60
     twins = {"crank": "crank", "coupler": "a/b", "rocker": "A|b"}
     links = {twins[name]: link for name, link in base.links.items()}
-    found = list(planting.charts(plant(replace(base, links=links))))
-    assert found[:2] == ["ratio-a_b", "ratio-A_b-2"]
+    found = list(planting.planting_charts(plant(replace(base, links=links))))
+    assert found[1:3] == ["ratio-a_b", "ratio-A_b-2"]
 
 
 @pytest.mark.parametrize("name", BUNDLED)

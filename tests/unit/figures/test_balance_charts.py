@@ -26,7 +26,8 @@ def curve(chart: Chart, role: str, panel: int = 0) -> np.ndarray:
 
 
 def test_names_in_order() -> None:
-    assert list(view.charts(found("sector"))) == ["aims", "force", "polar", "torque"]
+    every = ["aims", "force", "polar", "torque", "changes"]
+    assert list(view.balance_charts(found("sector"))) == every
     assert list(pictures("phases")) == ["phases", "rows"]
     assert {"phases", "rows", "changes"} <= pictures("rows, both").keys()
     assert list(pictures("front")) == ["front"]
@@ -55,7 +56,7 @@ def test_both_components_of_a_force_have_one_unit() -> None:
     moved = Objective("shaking_force", "rms")
     free = AddedMass("crank", "A", Weight("any", radius=0.05))
     plan = Balance(objectives=(moved,), masses=(free,))
-    drawn = view.charts(eq.balance(machine, plan))["force"]
+    drawn = view.balance_charts(eq.balance(machine, plan))["force"]
     assert {panel.y.unit_name for panel in drawn.panels} == {"kN"}
 
 
@@ -159,7 +160,7 @@ def rig() -> Balanced:
 def test_a_gauge_is_drawn_at_each_speed_at_which_it_is_read() -> None:
     """Against the steady state of both machines, and with the joint whose force is limited."""
     result = rig()
-    chart = view.charts(result)["aims"]
+    chart = view.balance_charts(result)["aims"]
     (aim,), (limit,) = result.plan.objectives, result.plan.limits
     for k, speed in enumerate(aim.speeds):
         panel, orders = chart.panels[2 * k : 2 * k + 2]
@@ -181,10 +182,10 @@ def test_a_gauge_is_drawn_at_each_speed_at_which_it_is_read() -> None:
 
 def test_what_did_not_change_is_left_out() -> None:
     """A weight about the crank's pivot leaves the moment about it; one that moves all, nothing."""
-    assert list(view.charts(rig())) == ["aims", "force", "polar", "torque"]
+    assert list(view.balance_charts(rig())) == ["aims", "force", "polar", "torque", "changes"]
     result = found("sector")
     same = replace(result, machine=result.original)
-    assert not view.charts(same)
+    assert list(view.balance_charts(same)) == ["changes"]
     assert "Shaking moment about A, before and after" in words(pictures("moved")["moment"])
 
 

@@ -11,10 +11,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.figures import pictures_of
 from equipoise.figures.animation import laid_out
 from equipoise.figures.linkage import linkage
 from equipoise.figures.modes import SHOWN_SIZE, ModeShape, described
-from equipoise.figures.pictures import pictures_of
 from equipoise.figures.planting import Paths, path
 from equipoise.figures.stage import ForceArrow
 from equipoise.planting.summary import plant

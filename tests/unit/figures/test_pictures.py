@@ -13,7 +13,7 @@ import equipoise as eq
 from equipoise.cli import run
 from equipoise.figures import is_wide, sweep
 from equipoise.figures.layout import HIGH_OF_HALF
-from equipoise.figures.planting import charts as planting_charts
+from equipoise.figures.planting import planting_charts
 from equipoise.figures.sheet import Canvas, CanvasText, Labels, spread
 from equipoise.figures.vector import svg_of
 from equipoise.i18n import speaking
@@ -79,13 +79,15 @@ def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
     """All pictures of a model are kept in the gallery, and in some languages drawn anew."""
     told = found_of(name)
     with in_own_words(told.owner):  # as commands and reports draw them
-        charts = [(picture, picture.draw()) for picture in each(told)]
+        charts = [(picture, picture.chart) for picture in each(told)]
         drawn = [(picture, Laid.of(chart)) for picture, chart in charts]
         small = [(picture, Laid.in_report(chart)) for picture, chart in charts]
         on_telephone = [
             (picture, Laid.on_telephone(chart)) for picture, chart in charts if is_wide(chart)
         ]
-        kept = [Kept(picture.name, picture.caption, svg_of(laid.sheet)) for picture, laid in drawn]
+        kept = [
+            Kept(picture.name, picture.chart.caption, svg_of(laid.sheet)) for picture, laid in drawn
+        ]
     if isinstance(told, Findings):
         moving = tmp_path / "animation.svg"
         assert run(["animate", name, "--out", str(moving)]) == 0
@@ -96,7 +98,7 @@ def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
     for language in ("ja", "ko") if name in TRANSLATED else ():
         with speaking(language), in_own_words(told.owner):
             for picture in each(told):
-                check(picture.draw())
+                check(picture.chart)
 
 
 BUNDLED = {f"vibration: {name}" for name in EXAMPLES}

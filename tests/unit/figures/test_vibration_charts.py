@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.figures import pictures_of
 from equipoise.figures.chart_parts import bounded, ordered
 from equipoise.figures.layout import lay_out
-from equipoise.figures.pictures import pictures_of
 from equipoise.figures.style import LOOKS, look_of
 from equipoise.figures.sweep import fraction, meeting, merged, sweep_charts
 from equipoise.figures.vibration import response_charts, transient_charts

@@ -118,7 +118,7 @@ def drawn_anew(kind: str) -> Drawn:
     """The same, not those drawn before."""
     tool = machine(kind)
     modes = vibrate_tool(tool, 8 if kind == "cutter" else 5)
-    drawn = {"side": tool_side.side(tool), **tool_side.mode_pictures(modes)}
+    drawn = {"side": tool_side.side(tool), **tool_side.side_mode_charts(modes)}
     if kind == "close together":
         return drawn | tool_charts.response_charts(respond_tool(tool, 700.0))
     highest = 1.3 * float(modes.planes[0].parameter[-1])

@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 
 import equipoise as eq
-from equipoise.figures.pictures import pictures_of
+from equipoise.figures import pictures_of
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Gauge, Mount, Row
 from equipoise.results.charts import Chart

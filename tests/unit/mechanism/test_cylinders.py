@@ -189,7 +189,7 @@ def test_everything_is_shown_of_it() -> None:
     """Pictures and page have the force in the place of the torque, and the cylinder."""
     found = Findings(boom(), "", "boom.toml", 120)
     drawn = {one.name: one for one in each(found)}
-    assert "Force of the drive on boom" in render(drawn["torque"].draw()).decode()
+    assert "Force of the drive on boom" in render(drawn["torque"].chart).decode()
     blocks = [getattr(one, "title", "") for one in found.analysis.blocks()]
     assert "Drive force by cause" in blocks
     told = " ".join(str(one) for one in found.analysis.blocks())

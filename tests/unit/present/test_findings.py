@@ -14,7 +14,7 @@ from equipoise.errors import EquipoiseError
 from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.present.composition import build
 from equipoise.present.findings import Findings, ToolFindings, find
-from equipoise.present.pictures import SECTIONS, LazyPicture, each, pictures
+from equipoise.present.pictures import SECTIONS, ReportPicture, each, pictures
 from equipoise.quantities import PER_RPM
 from equipoise.results.blocks import SvgPicture
 from equipoise.running.run_results import Run
@@ -68,7 +68,7 @@ def test_what_cannot_be_found_is_told_and_the_rest_is_there(tmp_path: Path) -> N
 
 
 @cache
-def pictured(name: str) -> list[LazyPicture]:
+def pictured(name: str) -> list[ReportPicture]:
     return pictures(of(name))
 
 
@@ -88,7 +88,7 @@ def test_pictures_have_a_place_a_caption_and_a_name_of_their_own(name: str, some
     places = [SECTIONS.index(picture.section) for picture in every]
     assert places == sorted(places)
     for picture in every:
-        assert picture.caption.endswith(".") and picture.caption[0].isupper()
+        assert picture.chart.caption.endswith(".") and picture.chart.caption[0].isupper()
     names = [picture.name for picture in every]
     assert len(names) == len({*names}) and some <= {*names}
 
@@ -100,7 +100,7 @@ def test_a_run_on_a_support_has_pictures_of_gauges_and_mounts() -> None:
     assert isinstance(found, Findings)
     shown = [*each(found, sections=("run",))]
     assert [picture.name for picture in shown] == ["run", "run-gauges", "run-mounts"]
-    assert len({picture.caption for picture in shown}) == 3
+    assert len({picture.chart.caption for picture in shown}) == 3
     (section,) = [one for one in build(found).sections if one.name == "run"]
     assert section.title == "Run"
 
@@ -127,7 +127,7 @@ def test_a_report_has_the_run_that_the_file_asks_for() -> None:
 def test_what_comes_later_is_not_computed() -> None:
     found = of("yamashita-rig")
     first = next(iter(each(found)))
-    assert first.name == "linkage" and first.draw().name == "linkage"
+    assert first.name == "linkage" and first.chart.name == "linkage"
     assert not {"response", "sweep", "balanced"} & vars(found).keys()
 
 

@@ -18,8 +18,8 @@ from PIL import Image
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.figures import standalone_svg
+from equipoise.figures.analysis import analysis_charts
 from equipoise.figures.paint import font_folder
-from equipoise.figures.pictures import analysis_pictures
 from equipoise.figures.style import SMALL
 from equipoise.i18n.languages import KNOWN
 from equipoise.present import composition
@@ -155,7 +155,7 @@ def test_drives_that_only_swing_have_no_speed_in_rpm() -> None:
     told = findings_of("pick-and-place")
     assert isinstance(told, Findings)
     with in_own_words(told.owner):
-        texts = [picture.draw().what for picture in each(told)]
+        texts = [picture.chart.what for picture in each(told)]
         blocks = told.analysis.headline(alone=True)
         texts += [block.text for block in blocks if isinstance(block, Text)]
     assert not [text for text in texts if "rpm" in text or "rad/s" in text]
@@ -415,7 +415,7 @@ def test_rows_are_drawn_for_a_pdf_alone(monkeypatch: pytest.MonkeyPatch, tmp_pat
     for outs in (["a.html"], ["a.html", "b.pdf"], ["b.pdf"]):
         eq.report("yamashita-1", *(tmp_path / out for out in outs))
     assert asked == [False, True, True]
-    chart = analysis_pictures(eq.analyze(eq.load("twin-engine"), 90))["joints"]
+    chart = analysis_charts(eq.analyze(eq.load("twin-engine"), 90))["joints"]
     assert len(standalone_svg(chart, by_rows=True).rows) > 1
     assert not standalone_svg(chart).rows
 

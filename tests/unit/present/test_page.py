@@ -80,10 +80,10 @@ def test_the_page_needs_nothing_but_itself(html):
 def test_the_page_holds_every_picture_and_the_model(found, html):
     read = Page(html)
     drawn = pictures(found)
-    again = sum(is_wide(one.draw()) for one in drawn)  # for a telephone
+    again = sum(is_wide(one.chart) for one in drawn)  # for a telephone
     assert read.tags.count("svg") == len(drawn) + again + 1  # the moving linkage
     words = " ".join(read.words)
-    for part in (*(one.draw().what for one in drawn), found.machine.description, eq.__version__):
+    for part in (*(one.chart.what for one in drawn), found.machine.description, eq.__version__):
         assert part in words
     assert {one.caption for one in drawn} <= set(read.instead)
     assert found.text.strip() in words

@@ -14,7 +14,7 @@ import pytest
 from matplotlib.text import Text
 
 import equipoise as eq
-from equipoise.figures.pictures import pictures_of
+from equipoise.figures import pictures_of
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.blocks import Block
 from equipoise.results.blocks import Text as Sentence
