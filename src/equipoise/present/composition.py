@@ -18,11 +18,10 @@ from equipoise.i18n import LANGUAGES, Note, coordinates, localized, say, speakin
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.findings import Findings, ToolFindings, find
-from equipoise.present.headlines import seen_in
+from equipoise.present.headlines import outstanding, seen_in
 from equipoise.present.pages import ReportDocument, check_pdf, page, pdf
 from equipoise.present.pictures import Drawings, drawings
-from equipoise.present.summary import answers, check_whole_cycle, tiles
-from equipoise.present.tool_summary import outstanding, tool_answers, tool_tiles
+from equipoise.present.summary import answers, check_whole_cycle, tiles, tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number
 from equipoise.results.analysis import Analysis
 from equipoise.results.analysis_blocks import force_blocks, motion_blocks, question_blocks

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from equipoise.dataclass import dataclass
 from equipoise.figures import standalone_svg
 from equipoise.i18n import say
-from equipoise.present import headlines, tool_summary
+from equipoise.present import headlines
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.results.blocks import SvgPicture
 
@@ -114,24 +114,22 @@ def _tool(findings: ToolFindings) -> Iterator[_Picture]:
     if modes is not None:
         yield _Picture(tool_side.side_modes(modes), detail=True)
         for plane in planes:
-            lowest = partial(tool_summary.lowest, modes, plane)
+            lowest = partial(headlines.lowest, modes, plane)
             yield from _pages(tool_charts.shapes(modes, plane), lowest)
     if transmission is not None:
         for plane in planes:
             chart = tool_charts.transmission(transmission, plane, modes)
-            passed = partial(tool_summary.passed, transmission, plane)
+            passed = partial(headlines.passed, transmission, plane)
             yield _Picture(chart, passed, plane > 0)
     if findings.sweep is not None and findings.sweep.response is not None:
         yield _Picture(tool_charts.moment(findings.sweep.response, None), detail=True)
     if findings.exposure is not None:
-        worst, judged = (
-            partial(line, findings) for line in (tool_summary.worst, tool_summary.judged)
-        )
+        worst, judged = (partial(line, findings) for line in (headlines.worst, headlines.judged))
         yield _Picture(tool_charts.acceleration(findings.exposure), worst, detail=True)
         yield _Picture(tool_charts.weighted(findings.exposure), judged)
     if findings.design is not None:
         yield _Picture(tool_side.side_design(findings.design))
-        improved = partial(tool_summary.improved, findings)
+        improved = partial(headlines.improved, findings)
         yield _Picture(tool_charts.design(findings.design), improved)
 
 

@@ -1,26 +1,39 @@
-"""The summary of a linkage in plain words: what shakes, how much, why, and what that does."""
+"""The summary in plain words: of a linkage what shakes, how much, why, and what that does; of a
+hand-held tool what the hands get.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import product
 from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from equipoise.balancing.comparison import WORSE
 from equipoise.balancing.outcome import (
     benefit_sentences,
     deterioration_sentences,
     good_already,
+    larger,
     listed,
 )
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, say, sentence_start, to_say
+from equipoise.exposure.blocks import VERDICTS, clock, limit_broken
+from equipoise.exposure.daily import verdict_of
+from equipoise.handheld.blocks import UNITS
+from equipoise.handheld.hand_blocks import figure_named, varied_named
+from equipoise.handheld.hand_exposure import WORKING, grips
+from equipoise.handheld.response import respond_tool
+from equipoise.i18n import Note, number_list, say, sentence_start, to_say
 from equipoise.mechanism.outputs.declared import joint_named, named
 from equipoise.planting.blocks import LIMITED, is_over
 from equipoise.planting.names import FIGURES
 from equipoise.planting.summary import PlantingFigures
-from equipoise.present.findings import Findings
-from equipoise.present.headlines import Shaking, acting, largest_joint
+from equipoise.present.findings import Findings, ToolFindings
+from equipoise.present.headlines import Shaking, acting, largest_joint, worst_at_work
 from equipoise.present.pages import SummaryAnswer, Tile
 from equipoise.quantities import (
     PER_RPM,
@@ -29,6 +42,7 @@ from equipoise.quantities import (
     angle,
     brief,
     change,
+    display,
     format_quantity,
     percent,
 )
@@ -38,8 +52,16 @@ from equipoise.results.joint_blocks import display_of_joints
 from equipoise.results.machine_blocks import pushed_named
 from equipoise.results.outputs import CAUSES, objective_named, shown_in
 from equipoise.results.scales import scale_of
-from equipoise.signals import Figures
+from equipoise.signals import Figures, highest_at
 from equipoise.vibration.linear import resonance_note, within
+
+if TYPE_CHECKING:
+    from equipoise.handheld.design import ToolDesign
+    from equipoise.handheld.hand_exposure import ToolExposure
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.present.findings import ToolFindings
+
 
 SMALL = 0.005
 """Share of a link or cause below which it is not named."""
@@ -414,3 +436,179 @@ def _hills(planting: PlantingFigures) -> Iterator[str]:
     )
     template = of_several if len(planting.arms) > 1 else of_one
     yield say(template, spacing=spacing, hole=format_quantity(max(holes), "length", digits=3))
+
+
+# -- a hand-held tool ------------------------------------------------------------------------------
+
+DAY = 86400.0
+"""s."""
+RESONANCE_SHARE = 0.1
+"""A natural frequency is listed where its distance from an excitation frequency, over the latter,
+is below this."""
+
+
+def tool_tiles(findings: ToolFindings) -> Iterator[Tile]:
+    """The figures that are seen at once."""
+    tool, exposure = findings.tool, findings.exposure
+    yield Tile(say("mass"), brief(tool.mass), "kg", say("whole tool"))
+    if tool.operation is not None:
+        yield Tile(
+            say("engine speed"), brief(tool.operation.speed / PER_RPM), "rpm", say("working")
+        )
+    if exposure is not None and WORKING in exposure.named:
+        name, value = worst_at_work(exposure)
+        yield Tile(say("vibration of the hand"), brief(value), "m/s²", name)
+    if exposure is not None and exposure.a8 is not None:
+        label, verdict = say("daily exposure A(8)"), VERDICTS[verdict_of(exposure.a8)]
+        stands_out = limit_broken(exposure.a8)
+        later = findings.exposure_after
+        after = "" if later is None or later.a8 is None else brief(later.a8)
+        note = str(exposure.worst) if stands_out else say(verdict)  # the unit says what is broken
+        yield Tile(label, brief(exposure.a8), "m/s²", note, after, stands_out)
+    if findings.design is not None:
+        best = findings.design.figures[0]
+        removesuffix = change(best.before, best.after).removesuffix(" %")
+        yield Tile(say("by the changes below"), removesuffix, "%", say("vibration of the hand"))
+
+
+def tool_answers(findings: ToolFindings) -> Iterator[SummaryAnswer]:
+    """The summary, a question at a time."""
+    if findings.exposure is not None:
+        yield SummaryAnswer(say("What the hands get"), tuple(_felt(findings.exposure)))
+        if why := tuple(_why(findings.tool)):
+            yield SummaryAnswer(say("Why"), why)
+    elif findings.transmission is not None:
+        yield SummaryAnswer(say("What comes to the hands"), tuple(_transmitted(findings)))
+    if findings.modes is not None:
+        yield SummaryAnswer(
+            say("Natural frequencies"), tuple(_near_resonances(findings, findings.modes))
+        )
+    if findings.design is not None:
+        yield SummaryAnswer(say("What helps most"), tuple(_helps(findings.design, findings)))
+
+
+def _felt(exposure: ToolExposure) -> Iterator[str]:
+    """Which hand gets most, and for how long it may; what a day amounts to is the verdict above."""
+    if WORKING in exposure.named:
+        name, value = worst_at_work(exposure)
+        yield say(
+            "At the working speed the hand at {hand} has the largest vibration: a weighted "
+            "acceleration a_hv of {value} m/s².",
+            hand=name,
+            value=brief(value),
+        )
+    if exposure.worst is None:
+        return
+    day = exposure.days[exposure.worst]
+    action, limit = day.times.to_action, day.times.to_limit
+    if limit < DAY:
+        template = to_say(
+            "The action value is reached after {action} of such work a day, the limit value "
+            "after {limit}."
+        )
+    elif action < DAY:
+        template = to_say(
+            "The action value is reached after {action} of such work a day, the limit value "
+            "not in a day."
+        )
+    else:
+        template = to_say("A whole day of such work does not reach the action value.")
+    yield say(template, action=clock(action), limit=clock(limit))
+
+
+def _why(tool: Tool) -> Iterator[str]:
+    """What each excitation would do to the worst hand if it were alone."""
+    if tool.operation is None or len(tool.excitations) < 2:
+        return
+    speed = tool.operation.speed
+    whole = grips(respond_tool(tool, speed))
+    hand = max(whole, key=lambda name: float(whole[name].a_hv[0]))
+    parts = []
+    for excitation in tool.excitations:
+        alone = grips(respond_tool(replace(tool, excitations=(excitation,)), speed))[hand]
+        name = excitation.name or excitation.file or excitation.station
+        value = brief(float(alone.a_hv[0]))
+        parts.append(say("{name} {value} m/s²", name=name, value=value))
+    yield say(
+        "Each source alone would give the hand at {hand}: {parts}.",
+        hand=hand,
+        parts=say(", ").join(parts),
+    )
+
+
+def _transmitted(findings: ToolFindings) -> Iterator[str]:
+    transmission = findings.transmission
+    assert transmission is not None
+    for name, station in transmission.stations.items():
+        size = np.max(station.size, axis=0)
+        k = int(highest_at(size, smooth=False))
+        yield say(
+            "The force on {name} is at most {ratio} times that at {source}, at {speed} rpm.",
+            source=transmission.source,
+            name=name,
+            ratio=brief(float(size[k])),
+            speed=brief(float(transmission.speed[k]) / PER_RPM),
+        )
+
+
+def _near_resonances(findings: ToolFindings, modes: ToolModes) -> Iterator[str]:
+    """The natural frequency nearest to what shakes once a turn."""
+    plane = modes.planes[0]
+    swinging = plane.cycles_per_second[len(plane.rigid) :]
+    text = number_list(brief(float(value)) for value in swinging[:4])
+    if text:
+        yield say("The lowest are {list} Hz.", list=text)
+    operation = findings.tool.operation
+    if operation is None or not len(swinging):
+        return
+    firing = operation.speed / (2 * pi)
+    nearest = float(swinging[int(np.argmin(np.abs(swinging - firing)))])
+    away = nearest / firing - 1
+    if abs(away) < RESONANCE_SHARE:
+        yield say(
+            "One of {frequency} Hz is only {share} % away from once a turn of the engine.",
+            frequency=brief(nearest),
+            share=percent(abs(away)),
+        )
+
+
+def _helps(design: ToolDesign, findings: ToolFindings) -> Iterator[str]:
+    for variable in design.variables:
+        kind: Dimension = variable.dimension  # type: ignore[assignment]
+        unit = display(kind, [variable.before, variable.after], UNITS.get(kind))
+        before, after = unit.text(variable.before), unit.text(variable.after)
+        if before != after:
+            name = varied_named(variable.name)
+            yield say(
+                "{name}: {before} → {after} {unit}.",
+                name=sentence_start(name),
+                before=before,
+                after=after,
+                unit=unit.name,
+            )
+    best = design.figures[0]
+    yield say(
+        "The worst hand then gets {after} instead of {before} m/s² over the band ({change}).",
+        before=brief(best.before),
+        after=brief(best.after),
+        change=change(best.before, best.after),
+    )
+    if (later := findings.exposure_after) is not None and later.worst is not None:
+        day = later.days[later.worst]
+        yield say(
+            "A(8) then amounts to {a8} m/s² at {hand}, {verdict}.",
+            a8=brief(day.a8),
+            hand=later.worst,
+            verdict=say(VERDICTS[day.verdict]),
+        )
+    worse = [
+        larger(figure_named(figure), figure.after / figure.before - 1)
+        for figure in design.figures[1:]
+        if figure.dimension != "mass" and figure.after > (1 + WORSE) * figure.before > 0
+    ]
+    if worse:
+        yield say(
+            "In exchange these become larger, {group}: {figures}.",
+            group=say("hands and holders"),
+            figures=say("; ").join(worse),
+        )

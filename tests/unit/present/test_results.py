@@ -28,8 +28,8 @@ from equipoise.planting.summary import plant
 from equipoise.present import html_of, terminal
 from equipoise.present.cells import grid, printed, printed_grid
 from equipoise.present.pages import ReportDocument, page, pdf
+from equipoise.present.summary import tool_tiles
 from equipoise.present.terminal import plain
-from equipoise.present.tool_summary import tool_tiles
 from equipoise.quantities import showing
 from equipoise.results.analysis import Analysis
 from equipoise.results.blocks import Column, RelativeChange, ReportSection, Span, Table, Text, Value

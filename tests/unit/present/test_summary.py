@@ -28,10 +28,10 @@ from equipoise.present.summary import (
     broken_limits,
     planting_sentences,
     tiles,
+    tool_answers,
     vibration_sentences,
     why_sentences,
 )
-from equipoise.present.tool_summary import tool_answers
 from equipoise.quantities import PER_RPM, brief
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.blocks import Table
