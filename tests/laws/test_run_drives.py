@@ -12,8 +12,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, ResponseError, UsageError
-from equipoise.figures.running import drives_charts
 from equipoise.figures.style import look_of
+from equipoise.figures.time_charts import drives_charts
 from equipoise.mechanism.parts.dc_motors import DcMotor
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties

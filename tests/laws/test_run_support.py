@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, ModelError
-from equipoise.figures.running import drives_charts
+from equipoise.figures.time_charts import drives_charts
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import FurtherDrive
 from equipoise.mechanism.parts.run_plans import RunPlan

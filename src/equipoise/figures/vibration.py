@@ -1,9 +1,8 @@
-"""The charts of a machine on its support at one speed: gauges, mounts, drive, orders; from rest."""
+"""The charts of a machine on its support at one speed: gauges, mounts, drive, orders."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,14 +32,11 @@ from equipoise.results.charts import (
     Panel,
     four_digits,
 )
-from equipoise.vibration.response import members_of
 from equipoise.vibration.simplified import linear_of
 
 if TYPE_CHECKING:
     from equipoise.signals import Figures, Periodic
-    from equipoise.vibration.free import Transient
     from equipoise.vibration.response import GaugeSignals, MountForce, Response
-    from equipoise.vibration.support_motion import SupportMotion
 
 
 QUANTITIES = {
@@ -55,14 +51,8 @@ BELOW = 0.4
 MATTERS, TOUCHES = 1e-4, 1e-3
 """Shares: of the largest amplitude at which the log axis ends, and above which orders are drawn; of
 the largest force below which a one-sided mount counts as off its ground."""
-SMALL, MOST_IN_TIME = 78.0, 6
-"""Points: height of one of many panels.  Panels of the way from rest in one picture."""
-LABELS = {
-    ("displacement", False): to_say("moved"),
-    ("displacement", True): to_say("turned"),
-    ("force", False): to_say("force"),
-    ("force", True): to_say("torque"),
-}
+SMALL = 78.0
+"""Points: height of one of many panels."""
 
 
 def response_charts(response: Response) -> dict[str, Chart]:
@@ -284,80 +274,3 @@ def _lift_off_text(response: Response, mount: MountForce, off: list[tuple[float,
     if response.model == "exact":
         return say("off its ground for {share} %", share=f"{100 * mount.lifts_off:.0f}")
     return say("would have to pull for {share} %", share=f"{100 * share:.0f}")
-
-
-# -- from rest -------------------------------------------------------------------------------------
-
-
-def transient_charts(transient: Transient) -> dict[str, Chart]:
-    """``gauges`` and ``mounts`` where there are any, ``speed`` where the crank's speed varies."""
-    charts: dict[str, Chart] = {}
-    if transient.support is not None:
-        charts |= support_charts(transient.support, transient.time, _from_rest(transient))
-    speed = transient.crank_speed
-    if float(np.ptp(speed)) > VARIES * float(np.max(np.abs(speed))):
-        what = say("Speed of {link}", link=short(transient.machine.drive.link))
-        what += f", {_from_rest(transient)}"
-        axis = Axis.of(say("crank speed"), "angular speed", (), "rpm", room=0.08)
-        panel = _time_panel(transient.time, axis, speed)
-        charts["speed"] = Chart("speed", transient.machine.title, what, (panel,))
-    return charts
-
-
-def support_charts(motion: SupportMotion, time: Array, below: str) -> dict[str, Chart]:
-    """``gauges`` and ``mounts`` against time (M,), s, where there are any.
-
-    below : what stands below them, after what they show.
-    """
-    charts: dict[str, Chart] = {}
-    machine = motion.body.machine
-    for key, what, quantity, over_time in (
-        (
-            "gauges",
-            say("Displacement at the gauges"),
-            "displacement",
-            to_say("Displacement at the gauges over the time of the run."),
-        ),
-        (
-            "mounts",
-            say("Force in the mounts on the support"),
-            "force",
-            to_say("Forces in the mounts over the time of the run."),
-        ),
-    ):
-        read, turning = getattr(motion, key), members_of(key)(machine)
-        for name, whole, panels in _in_time(time, what, quantity, read, turning):
-            own = key + name
-            text = f"{whole}, {below}"
-            charts[own] = Chart(own, machine.title, text, panels, caption=over_time)
-    return charts
-
-
-def _in_time(
-    time: Array,
-    what: str,
-    quantity: str,
-    read: Mapping[str, Array],
-    turning: Mapping[str, bool],
-) -> Iterator[tuple[str, str, tuple[Panel, ...]]]:
-    """Signals below each other against time: a suffix, what they are, and as many as fit."""
-    every = list(read)
-    for suffix, names in groups(every, MOST_IN_TIME):
-        panels = []
-        for item in names:
-            values, which = read[item] + 0.0, (quantity, turning[item])
-            y = read_axis(say(LABELS[which]), *which, values, room=0.08)
-            low, high = float(np.min(values)), float(np.max(values))
-            ends = say("{low} to {high}", low=y.format_value(low), high=y.quantity(high))
-            panels.append(_time_panel(time, y, values, title=f"{short(item, 40)}: {ends}"))
-        yield suffix, f"{what}{continued(names, every)}", tuple(panels)
-
-
-def _time_panel(time: Array, y: Axis, values: Array, **rest: Any) -> Panel:
-    x = Axis.of(say("time"), "time", low=float(time[0]), high=float(time[-1]))
-    return Panel(x, y, (Curve(time, values, "", "thin"),), **rest)
-
-
-def _from_rest(transient: Transient) -> str:
-    turns = abs(float(transient.crank_angle[-1] - transient.crank_angle[0])) / (2 * pi)
-    return say("from rest, {turns} turns of the crank; exact model", turns=four_digits(turns))

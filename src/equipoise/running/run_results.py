@@ -222,7 +222,7 @@ class Run(RunResult):
     begins: tuple[Instant, ...]
     electric: Electric | None
     blocks_in = "running.blocks.run_blocks"
-    pictures_in = "figures.running.run_charts"
+    pictures_in = "figures.time_charts.run_charts"
     headline_in: ClassVar[str] = "running.blocks.run_headline"
 
     @property
@@ -440,7 +440,7 @@ class DrivesRun(RunResult):
     references: Mapping[str, Array]
     support: SupportMotion | None
     blocks_in = "running.blocks.drives_blocks"
-    pictures_in = "figures.running.drives_charts"
+    pictures_in = "figures.time_charts.drives_charts"
     headline_in: ClassVar[str] = "running.blocks.drives_headline"
 
     @property

@@ -193,7 +193,7 @@ class Transient(Result):
         return {} if self.support is None else self.support.mounts
 
     blocks_in = "vibration.blocks.transient_blocks"
-    pictures_in = "figures.vibration.transient_charts"
+    pictures_in = "figures.time_charts.transient_charts"
     declared: ClassVar[Declarations] = {
         "title": TITLE,
         "time": ResultOutput("instants", "time", column="time"),
