@@ -22,7 +22,6 @@ from equipoise.figures.chart_parts import (
     by_name,
     closed,
     compared,
-    continued,
     crank_axis,
     extent,
     groups,
@@ -249,9 +248,9 @@ def aims(balanced: Balanced) -> Iterator[Chart]:
     if speeds == {balanced.original.drive.speed}:
         when = say("before and after, at {speed}", speed=speed_text(balanced.original.drive.speed))
     heading = f"{say('Objectives and limited outputs')}, {when}"
-    for suffix, some in groups(every, MOST_AIMS):
+    for suffix, some, which in groups(every, MOST_AIMS):
         last = max(last_order(aim.read) for aim in some)
-        text = f"{heading}{continued(some, every)}"
+        text = f"{heading}{which}"
         if any(aim.output.is_vector for aim in some):
             text += "; " + say("orders of forces: both components together")
         panels = [panel for aim in some for panel in aim.panels(last, len(speeds) > 1)]

@@ -126,28 +126,28 @@ def degrees_text(angle: float) -> str:
     return decimals(f"{np.degrees(angle):.1f}°").replace("-", "\N{MINUS SIGN}")
 
 
-def continued(names: Sequence[Any], every: Sequence[Any]) -> str:
-    """Which of several pictures it is, in words."""
-    if len(names) == len(every):
-        return ""
-    first = every.index(names[0]) + 1
-    last = first + len(names) - 1
-    if first == last:
-        return " " + say("({first} of {count})", first=first, count=len(every))
-    return " " + say("({first} to {last} of {count})", first=first, last=last, count=len(every))
-
-
 def groups(
     names: Sequence[Item], most: int = MOST_PANELS, columns: int = 1
-) -> Iterator[tuple[str, Sequence[Item]]]:
-    """Names by at most so many for each picture, with what is added to the name of the picture.
+) -> Iterator[tuple[str, Sequence[Item], str]]:
+    """Names by at most so many for each picture, between what is added to the picture's name and to
+    its heading.
 
     Pictures have as many rows of panels each, rather than the last of them a few panels alone.
     """
-    pictures = max(-(-len(names) // most), 1)
-    rows = -(-len(names) // (columns * pictures))
-    for number, start in enumerate(range(0, len(names), max(rows * columns, 1)), 1):
-        yield f"-{number}" if number > 1 else "", names[start : start + rows * columns]
+    count = len(names)
+    pictures = max(-(-count // most), 1)
+    size = columns * -(-count // (columns * pictures))
+    for number, start in enumerate(range(0, count, max(size, 1)), 1):
+        part = names[start : start + size]
+        which = _which(start + 1, start + len(part), count) if len(part) < count else ""
+        yield f"-{number}" if number > 1 else "", part, which
+
+
+def _which(first: int, last: int, count: int) -> str:
+    """Which panels of several pictures one has, in words."""
+    if first == last:
+        return " " + say("({first} of {count})", first=first, count=count)
+    return " " + say("({first} to {last} of {count})", first=first, last=last, count=count)
 
 
 def without_empty(panels: Iterable[Panel]) -> tuple[tuple[Panel, ...], tuple[str, ...]]:

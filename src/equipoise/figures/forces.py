@@ -18,7 +18,6 @@ from equipoise.figures.chart_parts import (
     about,
     angle_axis,
     compared,
-    continued,
     degrees_text,
     each,
     extent,
@@ -453,8 +452,8 @@ def joints(analysis: Analysis) -> Iterator[Chart]:
     analysis = analysis.resolved
     result = joints_of(analysis)
     every = list(result)
-    for suffix, names in groups(every, columns=2):
-        what = title(analysis, say("Force in each joint") + continued(names, every), "", True)
+    for suffix, names, which in groups(every, columns=2):
+        what = title(analysis, say("Force in each joint") + which, "", True)
         panels, words = without_empty(
             _over_angle(analysis, result[name], result.values()) for name in names
         )
@@ -490,9 +489,9 @@ def joint_polars(analysis: Analysis) -> Iterator[Chart]:
     by_name = {name: joint for name, joint in joints_of(analysis).items() if not joint.couple}
     every, unit = list(by_name), display_of_joints(analysis).unit
     in_line = 2 if len(every) == 4 else min(len(every), IN_LINE)
-    for suffix, names in groups(every, MOST_SQUARES, in_line):
+    for suffix, names, which in groups(every, MOST_SQUARES, in_line):
         axis = Axis.of("", "force", np.concatenate([by_name[name].values for name in names]), unit)
-        what = say("Force in each joint along x and y") + continued(names, every)
+        what = say("Force in each joint along x and y") + which
         remark = say("in {unit}; numbers: crank angle, deg", unit=axis.unit_name)
         text = title(analysis, what, remark, of_one=True)
         panels = tuple(_square(analysis, by_name[name], axis) for name in names)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.figures.chart_parts import by_name, continued, groups, speed_text
+from equipoise.figures.chart_parts import by_name, groups, speed_text
 from equipoise.figures.sheet import lines_of
 from equipoise.figures.style import SMALL, short
 from equipoise.i18n import Note, all_of, localized, say
@@ -85,10 +85,8 @@ def scatter(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
     keys = [("machines", say("machines")), ("model", say("the model itself"))]
     if any(_limits(item) for item in tolerances.scatters.values()):
         keys += [("outside", say("outside of limits")), ("bound", say("limit"))]
-    for suffix, names in groups(every):
-        what = say("Scatter over {count} machines", count=tolerances.designs) + continued(
-            names, every
-        )
+    for suffix, names, which in groups(every):
+        what = say("Scatter over {count} machines", count=tolerances.designs) + which
         panels = tuple(
             _histogram(tolerances.scatters[name], unit_in(units, name), tolerances.designs)
             for name in names
@@ -153,7 +151,7 @@ def shares(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
                  for kind, *_ in kinds)  # fmt: skip
     most = max((estimate.high for estimate in estimates), default=1.0)
     x = Axis(say("share of the variance"), PERCENT, low=0.0, high=max(most, 1.0))
-    for suffix, names in groups(every, MOST_SHARES):
+    for suffix, names, which in groups(every, MOST_SHARES):
         panels = []
         for name in names:
             effects = [cause.effects[name] for cause in causes]
@@ -162,7 +160,7 @@ def shares(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
                 for kind, role, offset in kinds
             )
             panels.append(_bars_of(causes, units, bars, x, title=unit_in(units, name).called))
-        what = say("What causes the scatter of each figure") + continued(names, every)
+        what = say("What causes the scatter of each figure") + which
         yield Chart(f"shares{suffix}", tolerances.study.title, what, tuple(panels), keys=keys)
 
 
@@ -423,8 +421,8 @@ def parallel(designs: CloudDesigns) -> Iterator[Chart]:
         counteds.append(say("lines of {count} designs", count=min(some, SOME)))
     if chosen > BEST:
         counteds.append(say("{count} of {all} chosen designs", count=BEST, all=chosen))
-    for suffix, names in groups(others, RULES - 1):
-        what = say("Designs from axis to axis") + continued(names, others)
+    for suffix, names, which in groups(others, RULES - 1):
+        what = say("Designs from axis to axis") + which
         keys = keys_for(designs)
         panel = _rules(designs, [*names, designs.aim])
         words = (say("; ").join(counteds),)
@@ -558,10 +556,10 @@ def over_numbers(designs: CloudDesigns) -> Iterator[Chart]:
     """The first aim over each number that varies."""
     aim = designs.aim
     every = [name for name in designs.numbers if name != aim]
-    for suffix, names in groups(every):
+    for suffix, names, which in groups(every):
         panels = tuple(_against(designs, (name, aim)) for name in names)
         what = say("{aim} over each number that varies", aim=designs.axis(aim).text)
-        what += continued(names, every)
+        what += which
         own, columns = f"designs{suffix}", min(2, len(panels))
         keys = keys_for(designs, [(name, aim) for name in names])
         parts = (counted(designs),)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
-from equipoise.figures.chart_parts import continued, groups, read_axis, varies
+from equipoise.figures.chart_parts import groups, read_axis, varies
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.results.charts import Axis, Chart, Curve, Panel, four_digits
@@ -146,12 +146,11 @@ def support_charts(motion: SupportMotion, time: Array, below: str) -> dict[str, 
     machine = motion.body.machine
     for key, (what, quantity, caption) in SUPPORT.items():
         read, turning = getattr(motion, key), members_of(key)(machine)
-        every = list(read)
-        for suffix, names in groups(every, MOST_PANELS):
+        for suffix, names, which in groups([*read], MOST_PANELS):
             panels = tuple(
                 _reading(time, name, read[name] + 0.0, (quantity, turning[name])) for name in names
             )
-            text = f"{say(what)}{continued(names, every)}, {below}"
+            text = f"{say(what)}{which}, {below}"
             own = key + suffix
             charts[own] = Chart(own, machine.title, text, panels, caption=caption)
     return charts

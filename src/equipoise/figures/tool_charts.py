@@ -18,7 +18,6 @@ from equipoise.exposure.weighting import factor
 from equipoise.figures.chart_parts import (
     SpeedCurve,
     by_name,
-    continued,
     curves_of,
     ends,
     groups,
@@ -150,10 +149,10 @@ def shapes(modes: ToolModes, plane: int) -> Iterator[Chart]:
         ("node", say("node, mm")),
         *((kind, say(text)) for kind, text in SIGNS.items() if kind in kinds),
     )
-    for suffix, numbers in groups(every, MOST_SHAPES):
+    for suffix, numbers, which in groups(every, MOST_SHAPES):
         panels = [_shape(modes, modes.planes[plane], k) for k in numbers]
         panels[0] = replace(panels[0], flags=station_flags(modes.tool))
-        what = label + continued(numbers, every)
+        what = label + which
         caption = to_say("Shapes of the natural vibrations of the shaft.")
         own = name + suffix
         yield Chart(own, modes.tool.title, what, tuple(panels), keys=keys, caption=caption)

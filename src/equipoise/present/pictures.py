@@ -218,7 +218,7 @@ def _run(findings: Findings) -> Iterator[_Picture]:
 
 
 def _vibration(findings: Findings) -> Iterator[_Picture]:
-    from equipoise.figures import sweep, vibration
+    from equipoise.figures import vibration
 
     if (response := findings.response) is not None:
         for number, name in enumerate(response.gauges):
@@ -229,14 +229,16 @@ def _vibration(findings: Findings) -> Iterator[_Picture]:
         yield from _pages(vibration.mounts(response), partial(headlines.mounted, response))
         yield _Picture(vibration.drive(response), partial(headlines.driven, response), detail=True)
     if (over_speed := findings.sweep) is not None:
-        for quantity in sweep.QUANTITIES:
-            chart = sweep.gauges(over_speed, quantity).named(f"response-{quantity}")
+        for quantity in vibration.OVER_SPEED:
+            chart = vibration.gauges_over_speed(over_speed, quantity).named(f"response-{quantity}")
             resonant = partial(headlines.resonant, over_speed, quantity)
             yield _Picture(chart, resonant, detail=quantity != "velocity")
         met = partial(headlines.met, over_speed, findings.machine.drive.speed)
-        yield _Picture(sweep.resonance_map(over_speed), met, detail=True)
+        yield _Picture(vibration.resonance_map(over_speed), met, detail=True)
         if over_speed.mounts:
-            yield _Picture(sweep.mounts(over_speed).named("mounts-speed"), detail=True)
+            yield _Picture(
+                vibration.mounts_over_speed(over_speed).named("mounts-speed"), detail=True
+            )
 
 
 def _modes(findings: Findings) -> Iterator[_Picture]:

@@ -316,8 +316,8 @@ class Result(Displayed):
         return pandas.DataFrame([row])
 
     pictures_in: ClassVar[str] = ""
-    """Module and function that draw its pictures, such as ``figures.modes.mode_charts``: a chart for
-    each name, the first of which `plot` draws unasked.  None where it has no pictures.
+    """Module and function that draw its pictures, such as ``figures.modes.mode_charts``: a chart
+    for each name, the first of which `plot` draws unasked.  None where it has no pictures.
     """
 
     @property

@@ -127,7 +127,7 @@ class Sweep(Result):
     """
 
     blocks_in = "vibration.blocks.sweep_blocks"
-    pictures_in = "figures.sweep.sweep_charts"
+    pictures_in = "figures.vibration.sweep_charts"
     headline_in = "vibration.headline.sweep_headline"
 
     machine: Machine

@@ -54,7 +54,7 @@ def chart_of(computed: Computed, name: str, choice: str) -> Chart:
 
         return _named(response_charts(responded(computed)), f"gauge-{choice}")
     if name == "sweep":
-        from equipoise.figures.sweep import sweep_charts
+        from equipoise.figures.vibration import sweep_charts
         from equipoise.vibration.linear import around
         from equipoise.vibration.sweep import sweep_speed
 

@@ -16,7 +16,7 @@ from equipoise.figures import chart_parts as view
 from equipoise.figures import forces, planting
 from equipoise.figures import motion as of_motion
 from equipoise.figures.analysis import analysis_charts
-from equipoise.figures.chart_parts import angle_step, continued, groups
+from equipoise.figures.chart_parts import angle_step, groups
 from equipoise.figures.linkage import cut_at
 from equipoise.figures.style import look_of
 from equipoise.mechanism.dynamics.shares import CAUSES
@@ -500,12 +500,14 @@ def test_pictures_of_several_have_as_many_rows_and_say_which_joints_they_have() 
     charts = charts_of("squeezing-mechanism")
     assert "(1 to 6 of 10)" in charts["joint-polars"].what
     assert "(7 to 10 of 10)" in charts["joint-polars-2"].what
-    shared = [[len(names) for _, names in groups(range(n), 10, 2)] for n in (0, 1, 10, 11, 15, 21)]
+    shared = [
+        [len(names) for _, names, _ in groups(range(n), 10, 2)] for n in (0, 1, 10, 11, 15, 21)
+    ]
     assert shared == [[], [1], [10], [6, 5], [8, 7], [8, 8, 5]]
 
 
 def test_a_picture_of_one_joint_of_several_says_which() -> None:
-    assert continued(["c"], ["a", "b", "c"]) == " (3 of 3)"
+    assert [which for *_, which in groups("abc", 2)] == [" (1 to 2 of 3)", " (3 of 3)"]
 
 
 def test_an_angle_that_runs_on_has_no_extremes_and_rounding_reads_0() -> None:

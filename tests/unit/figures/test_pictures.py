@@ -11,11 +11,12 @@ import pytest
 
 import equipoise as eq
 from equipoise.cli import run
-from equipoise.figures import is_wide, sweep
+from equipoise.figures import is_wide
 from equipoise.figures.layout import HIGH_OF_HALF
 from equipoise.figures.planting import planting_charts
 from equipoise.figures.sheet import Canvas, CanvasText, Labels, spread
 from equipoise.figures.vector import svg_of
+from equipoise.figures.vibration import mounts_over_speed
 from equipoise.i18n import speaking
 from equipoise.planting.summary import plant
 from equipoise.present.findings import Findings, ToolFindings
@@ -194,7 +195,7 @@ def test_flat_curves_side_by_side_have_low_axes() -> None:
 def test_crowded_panels_run_across_the_page() -> None:
     """Forces of four mounts over speed, and on a telephone each as high as one."""
     over_speed = sweep_speed(eq.load("sieve"), "200 rpm", "600 rpm", "linear", speeds=9)
-    chart = sweep.mounts(over_speed)
+    chart = mounts_over_speed(over_speed)
     assert len(over_speed.mounts) == 4 and is_wide(chart)
     heights = [round(view.y.length) for view, _ in Laid.on_telephone(chart).panels]
     assert min(heights) >= HIGH_OF_HALF[1]

@@ -13,9 +13,8 @@ from equipoise.figures import pictures_of
 from equipoise.figures.chart_parts import bounded, ordered
 from equipoise.figures.layout import lay_out
 from equipoise.figures.style import LOOKS, look_of
-from equipoise.figures.sweep import fraction, meeting, merged, sweep_charts
 from equipoise.figures.time_charts import transient_charts
-from equipoise.figures.vibration import response_charts
+from equipoise.figures.vibration import fraction, meeting, merged, response_charts, sweep_charts
 from equipoise.results.charts import Chart, Curve
 from equipoise.vibration.forced import respond
 from equipoise.vibration.free import simulate
