@@ -359,7 +359,8 @@ class TracedCurve:
     """A `PlaneCurve`, which no design changes, at parameters that are terms."""
 
     def __init__(self, trace: Trace, curve: PlaneCurve) -> None:
-        self.trace, self.curve, self.closed = trace, curve, curve.closed
+        self.trace, self.curve = trace, curve
+        self.closed, self.length = curve.closed, curve.length
 
     def at(self, s: Any) -> tuple[Any, ...]:
         """Place and its first three derivatives by the parameter."""

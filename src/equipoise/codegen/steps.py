@@ -42,7 +42,6 @@ from equipoise.mechanism.assembly.steps import (
     Rotation,
     RunningAngle,
     Step,
-    along,
     demand_names,
     p,
     planar,
@@ -54,9 +53,8 @@ from equipoise.mechanism.dynamics.forces import inertia_moved, massless
 from equipoise.mechanism.dynamics.loads import load_at
 from equipoise.mechanism.dynamics.out_of_plane import contacts, statics
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.formulas.curves import PlaneCurve
 from equipoise.mechanism.kinematics.indicators import loads_of
-from equipoise.mechanism.kinematics.motion import ROUNDING
+from equipoise.mechanism.kinematics.motion import ROUNDING, StateBodies, track_of
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.field import PARTS
@@ -140,7 +138,7 @@ def _of_soil(part: str, linkage: Linkage) -> Any:
 
 
 @dataclass(frozen=True)
-class TracedBodies:
+class TracedBodies(StateBodies):
     """Bodies in terms, for the outputs of an element and what it exerts.
 
     name : of the element.
@@ -148,6 +146,17 @@ class TracedBodies:
 
     trace: Trace
     name: str
+
+    @property
+    def state(self) -> Mapping[str, Any]:
+        return self.trace.state
+
+    @property
+    def speed(self) -> Any:
+        return self.trace.rate("speed")
+
+    def curve(self, joint: str) -> TracedCurve:
+        return TracedCurve(self.trace, track_of(self.trace.linkage, joint))
 
     def point(self, body: str, point: str) -> Any:
         """A point in the frame."""
@@ -158,47 +167,13 @@ class TracedBodies:
         """Velocity of a point in the frame, m/s."""
         if body == FRAME:
             return 0j
-        return self.trace.point(body, point)[1] * self.trace.rate("speed")
+        return self.trace.point(body, point)[1] * self.speed
 
     def angle(self, body: str, on: str, middle: Any) -> Any:
         """Angle of a body from the x axis of another, within half a turn of `middle`."""
-        turn, other = (self.trace.state[u(item)[0]] for item in (body, on))
-        away = turn * other.conjugate() * rotation(middle).conjugate()
+        away = self.away(body, on, middle)
         self.trace.running[f"{self.name}, {body} on {on}"] = away.real + ANGLE_MARGIN
         return middle + angle_of(away)
-
-    def turn(self, body: str) -> Any:
-        """Rotation of a body."""
-        return self.trace.state[u(body)[0]]
-
-    def turned(self, body: str, angle: Any) -> Any:
-        """Unit vector at an angle from the x axis of a body."""
-        return self.turn(body) * rotation(angle)
-
-    def rate(self, body: str) -> Any:
-        """Angular velocity of a body, rad/s."""
-        return self.trace.state[u(body)[1]] * self.trace.rate("speed")
-
-    def along(self, joint: str) -> tuple[Any, Any]:
-        """How far along its track a rider is, m, and its speed along that, m/s."""
-        s, speed = (self.trace.state[name] for name in along(joint))
-        return TracedCurve(self.trace, self._curve(joint)).distance(s), speed * self.trace.rate(
-            "speed"
-        )
-
-    def on_track(self, joint: str, wrong: str) -> None:
-        """Watch how far a rider is from the ends of its track, as of `within`."""
-        if not (curve := self._curve(joint)).closed:
-            self.within(self.along(joint)[0], (0.0, curve.length), wrong)
-
-    def _curve(self, joint: str) -> PlaneCurve:
-        track = self.trace.linkage.joints.riders[joint].track
-        assert track is not None
-        return track.curve
-
-    def bearing(self, vector: Any, middle: Any) -> Any:
-        """Angle of a vector, within half a turn of `middle`."""
-        return middle + angle_of(vector * rotation(middle).conjugate())
 
     def within(self, value: Any, ends: tuple[Any, Any], wrong: str) -> None:
         """Watch a value, so that a design in which it leaves its range is computed by itself."""
@@ -608,7 +583,7 @@ def _drive_torques(trace: Trace) -> Iterable[Any]:
 def trace_joints(trace: Trace) -> None:
     """The pass from demands to the force in every joint."""
     if trace.machine.pushers:
-        trace_pushes(trace, partial(_run_forces, trace))
+        trace_pushes(trace, TracedBodies(trace, "drives"), partial(_run_forces, trace))
     else:
         _run_forces(trace)
     for drive in trace.machine.driven:

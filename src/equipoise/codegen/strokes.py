@@ -22,8 +22,9 @@ from equipoise.mechanism.assembly.steps import demand_names, size_of_bodies, u
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.reactions import PUSH
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.kinematics.cylinders import slider_of
+from equipoise.mechanism.kinematics.cylinders import push_lines, slider_of
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
+from equipoise.mechanism.parts.element_kinds import Placed
 
 Pusher = Drive | FurtherDrive
 Turned = tuple[Any, Any, Any, Any]
@@ -126,7 +127,7 @@ def _length(trace: Trace, pusher: Pusher) -> tuple[Any, Any, Any]:
         slider = slider_of(trace.machine, pusher)
         at, base = trace.point(slider.link, slider.point), trace.point(slider.on, slider.through)
         turn, w, a = (trace.state[name] for name in u(slider.on))
-        values = kernels.travelled(*at, *base, turn, w, a, _direction(trace, pusher))
+        values = kernels.travelled(*at, *base, turn, w, a, rotation(_direction(trace, pusher)))
     else:
         values = kernels.apart(*(b - a for a, b in zip(*_ends(trace, pusher), strict=True)))
     return values
@@ -139,23 +140,24 @@ def _ends(trace: Trace, pusher: Pusher) -> list[tuple[Any, Any, Any]]:
 
 
 def _direction(trace: Trace, pusher: Pusher) -> Any:
-    """Unit vector along a sliding joint that is driven, in the axes of the body that it is on."""
-
-    def direction(linkage: Linkage) -> Any:
-        return np.exp(1j * slider_of(linkage.machine, pusher).direction)
-
-    slider = slider_of(trace.machine, pusher)
-    return trace.slot(f"direction of {slider.name}", direction, vector=True)
+    """Direction of a sliding joint that is driven, in the axes of the body that it is on, rad; 0 of
+    a drive between points.
+    """
+    if not pusher.slider:
+        return 0.0
+    name = f"direction of {pusher.slider}"
+    return trace.slot(name, lambda linkage: slider_of(linkage.machine, pusher).direction)
 
 
 # -- forces ----------------------------------------------------------------------------------------
 
 
-def trace_pushes(trace: Trace, steps: Callable[[], None]) -> None:
+def trace_pushes(trace: Trace, at: Placed, steps: Callable[[], None]) -> None:
     """Add the forces in all joints and ``push(link)`` of each drive that pushes: as large as it
     takes for its link to need no torque.
 
-    steps : runs the steps of the forces, which end at the torque of each drive.
+    at : has the bodies.  steps : runs the steps of the forces, which end at the torque of each
+        drive.
     """
     pushers, before = trace.machine.pushers, trace.state
     links = trace.linkage.joints.bodies[1:]
@@ -170,7 +172,7 @@ def trace_pushes(trace: Trace, steps: Callable[[], None]) -> None:
         return [trace.state[name] for name in torques]
 
     given = {link: tuple(before[name] for name in demand_names(link)) for link in links}
-    units = [_unit(trace, item) for item in pushers]
+    units = [_unit(trace, at, item) for item in pushers]
     columns = [passed(unit) for unit in units]
     rows = [[column[k] for column in columns] for k in range(len(pushers))]
     forces = Minors(rows).solve([-torque for torque in passed(given)])
@@ -184,20 +186,11 @@ def trace_pushes(trace: Trace, steps: Callable[[], None]) -> None:
         trace.state[SPEED.format(item.link)] = _length(trace, item)[1] * trace.rate("speed")
 
 
-def _unit(trace: Trace, pusher: Pusher) -> dict[str, tuple[Any, Any]]:
+def _unit(trace: Trace, at: Placed, pusher: Pusher) -> dict[str, tuple[Any, Any]]:
     """What holds 1 N of a drive against each moving link that it pushes, about its anchor."""
-    if pusher.slider:
-        slider = slider_of(trace.machine, pusher)
-        at = trace.point(slider.link, slider.point)[0]
-        way = trace.state[u(slider.on)[0]] * _direction(trace, pusher)
-        acting = [(slider.link, at, way), (slider.on, at, -way)]
-    else:
-        (a, *_), (b, *_) = _ends(trace, pusher)
-        way = (b - a) * (1 / abs(b - a))
-        first, second = pusher.ends(trace.machine.bodies)
-        acting = [(second, b, way), (first, a, -way)]
+    lines = push_lines(trace.machine, pusher, at, _direction(trace, pusher))
     return {
-        link: kernels.load_demand(trace.body(link)[0], at, way, 0.0)
-        for link, at, way in acting
+        link: kernels.load_demand(trace.body(link)[0], place, way, 0.0)
+        for link, place, way in lines
         if link != FRAME
     }

@@ -28,9 +28,10 @@ from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.reach import reach
 from equipoise.mechanism.assembly.steps import Array, run, u
-from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.swinging import Followed
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
+from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.laws import LengthLaw
 from equipoise.mechanism.parts.machine import Machine, Slider
 from equipoise.quantities import angle, format_exact
@@ -51,15 +52,26 @@ def ends_of(machine: Machine, drive: Drive | FurtherDrive) -> tuple[str, str]:
 
 def pushes(motion: Motion, drive: Drive | FurtherDrive) -> list[tuple[str, Array, Array]]:
     """Bodies that a force of 1 N of a drive acts on, with its place (N,) and direction (N,)."""
-    machine = motion.machine
+    direction = slider_of(motion.machine, drive).direction if drive.slider else 0.0
+    return push_lines(motion.machine, drive, PlacedBodies(motion, ""), direction)
+
+
+def push_lines(
+    machine: Machine, drive: Drive | FurtherDrive, at: Placed, direction: Any
+) -> list[tuple[str, Any, Any]]:
+    """Bodies that a force of 1 N of a drive acts on, with its place and direction, as arrays or
+    terms.
+
+    direction : of a sliding joint that is driven, in the axes of the body that it is on, rad.
+    """
     if drive.slider:
         slider = slider_of(machine, drive)
-        at = motion.points[slider.point].place
-        turn = motion.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
-        return [(slider.link, at, turn + 0 * at), (slider.on, at, -turn + 0 * at)]
-    a, b = (motion.points[name].place for name in drive.between or ())
-    way = (b - a) / np.abs(b - a)
+        place = at.point(slider.link, slider.point)
+        way = at.turned(slider.on, direction) + 0 * place
+        return [(slider.link, place, way), (slider.on, place, -way)]
     ends = drive.ends(machine.bodies)
+    a, b = (at.point(*end) for end in zip(ends, drive.between or (), strict=True))
+    way = (b - a) * (1 / abs(b - a))
     return [(ends[1], b, way), (ends[0], a, -way)]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
@@ -21,7 +22,7 @@ from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Array, State, along, p, plain_angle, running_angle, u
 from equipoise.mechanism.checks import NamedItems, Vector, bodies_at
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.formulas.curves import PlaneCurve
+from equipoise.mechanism.formulas.curves import PlaneCurve, direction
 from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.element_kinds import Element, named_function
@@ -427,8 +428,67 @@ class Motion(Displayed):
         return np.full(self.crank_angle.shape, value, dtype=kind)
 
 
+class StateBodies(ABC):
+    """What a state says of bodies, as arrays (N,) or as terms, by `Placed`."""
+
+    @property
+    @abstractmethod
+    def state(self) -> Mapping[str, Any]:
+        """Values by the names of `mechanism.assembly.steps`."""
+
+    @property
+    @abstractmethod
+    def speed(self) -> Any:
+        """Of the crank, rad/s."""
+
+    @abstractmethod
+    def curve(self, joint: str) -> Any:
+        """The curve of the track of a joint's rider."""
+
+    @abstractmethod
+    def within(self, value: Any, ends: tuple[Any, Any], wrong: str) -> None:
+        """As of `Placed`."""
+
+    def turn(self, body: str) -> Any:
+        """Rotation of a body, complex of size 1."""
+        return self.state[u(body)[0]]
+
+    def turned(self, body: str, angle: Any) -> Any:
+        """Unit vector at an angle, rad, from the x axis of a body, complex."""
+        return self.turn(body) * np.exp(1j * angle)
+
+    def rate(self, body: str) -> Any:
+        """Angular velocity of a body, rad/s."""
+        return self.state[u(body)[1]] * self.speed
+
+    def along(self, joint: str) -> tuple[Any, Any]:
+        """How far along its track a rider is, m, and its speed along that, m/s."""
+        s, speed = (self.state[name] for name in along(joint))
+        return self.curve(joint).distance(s), speed * self.speed
+
+    def on_track(self, joint: str, wrong: str) -> None:
+        """Refuse a motion in which a rider leaves its track; wrong : as of `within`."""
+        if not (curve := self.curve(joint)).closed:
+            self.within(self.along(joint)[0], (0.0, curve.length), wrong)
+
+    def bearing(self, vector: Any, middle: Any) -> Any:
+        """Angle of a vector, rad, within half a turn of `middle`."""
+        return middle + direction(vector * np.conjugate(np.exp(1j * middle)))
+
+    def away(self, body: str, on: str, middle: Any) -> Any:
+        """Rotation of a body from a direction at an angle, rad, from the x axis of another."""
+        return self.turn(body) * np.conjugate(self.turned(on, middle))
+
+
+def track_of(linkage: Linkage, joint: str) -> PlaneCurve:
+    """The curve of the track of a joint's rider."""
+    track = linkage.joints.riders[joint].track
+    assert track is not None
+    return track.curve
+
+
 @dataclass(frozen=True, eq=False)
-class PlacedBodies:
+class PlacedBodies(StateBodies):
     """Bodies where a motion has them (N,), for the outputs of an element and what it exerts.
 
     where : the element's place in the file.
@@ -436,6 +496,17 @@ class PlacedBodies:
 
     motion: Motion
     where: str
+
+    @property
+    def state(self) -> State:
+        return self.motion.state
+
+    @property
+    def speed(self) -> float:
+        return self.motion.speed
+
+    def curve(self, joint: str) -> PlaneCurve:
+        return track_of(self.motion.linkage, joint)
 
     def point(self, body: str, point: str) -> Array:
         """A point in the frame, complex, m."""
@@ -452,9 +523,7 @@ class PlacedBodies:
         ------
         ModelError : it does not stay there.
         """
-        turn, other = (self.motion.state[u(item)[0]] for item in (body, on))
-        away = turn * np.conjugate(other) * np.exp(-1j * middle)
-        angle: Array = middle + np.arctan2(away.imag, away.real)
+        angle: Array = middle + direction(self.away(body, on, middle))
         links = self.motion.links
         running = [0.0 if item == FRAME else links[item].angle for item in (body, on)]
         turns = np.round((running[0] - running[1] - angle) / (2 * pi))
@@ -471,37 +540,6 @@ class PlacedBodies:
                 ),
             )
         return angle
-
-    def turn(self, body: str) -> Array:
-        """Rotation of a body, complex of size 1."""
-        return np.asarray(self.motion.state[u(body)[0]])
-
-    def turned(self, body: str, angle: float) -> Array:
-        """Unit vector at an angle, rad, from the x axis of a body, complex."""
-        return np.asarray(self.turn(body) * np.exp(1j * angle))
-
-    def rate(self, body: str) -> Array:
-        """Angular velocity of a body, rad/s."""
-        return np.asarray(self.motion.state[u(body)[1]] * self.motion.speed)
-
-    def along(self, joint: str) -> tuple[Array, Array]:
-        """How far along its track a rider is, m, and its speed along that, m/s."""
-        s, speed = (self.motion.state[name] for name in along(joint))
-        return self._curve(joint).distance(s), np.asarray(speed * self.motion.speed)
-
-    def on_track(self, joint: str, wrong: str) -> None:
-        """Raise a `ModelError` where a rider leaves its track by more than rounding."""
-        if not (curve := self._curve(joint)).closed:
-            self.within(self.along(joint)[0], (0.0, curve.length), wrong)
-
-    def _curve(self, joint: str) -> PlaneCurve:
-        track = self.motion.linkage.joints.riders[joint].track
-        assert track is not None
-        return track.curve
-
-    def bearing(self, vector: Array, middle: float) -> Array:
-        """Angle of a vector, rad, within half a turn of `middle`."""
-        return np.asarray(middle + np.angle(vector * np.exp(-1j * middle)))
 
     def within(self, value: Array, ends: tuple[float, float], wrong: str) -> None:
         """Raise a `ModelError` where a value leaves its range by more than rounding."""
