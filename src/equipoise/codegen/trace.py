@@ -59,7 +59,7 @@ class AngleFunction:
     formula: Any = None
 
 
-class BaseMotion:
+class PrescribedMotion:
     """The motion of a linkage: its state at crank angles, kept while they stay the same."""
 
     def __init__(self, linkage: Linkage) -> None:
@@ -140,7 +140,7 @@ class Trace:
         self.by_crank, self.loose = _followed(self)
         self.late = {*_begun_elsewhere(self.machine, self.varied)}
         self.rotated: set[str] = set()
-        self.base = BaseMotion(linkage)
+        self.base = PrescribedMotion(linkage)
         self.apart: dict[str, Any] = {}
 
     # -- what is given -----------------------------------------------------------------------------
@@ -256,8 +256,9 @@ def _followed(trace: Trace) -> tuple[set[str], set[str]]:
     varying ratio at angles, or by numbers, that designs change.
     """
     machine = trace.machine
-    shaped = {item.driven for where, item in numbered(machine)
-              if any(path.begin(3) == where / "shape" for path in trace.varied)}  # fmt: skip
+    # numbers of a law stand in a table within that of the coupling
+    of_laws = [path.begin(2) for path in trace.varied if len(path) > 3]
+    shaped = {item.driven for where, item in numbered(machine) if where in of_laws}
     by_crank, loose = {FRAME, *(drive.link for drive in machine.driven)}, set[str]()
     for step in trace.linkage.motion:
         if not isinstance(step, RelationCall) or step.coupling.slides:
