@@ -401,7 +401,9 @@ class _Adviser:
 
     @cached_property
     def mounts(self) -> ResonantMounts | None:
-        """The resonance beside a speed at which the machine runs, and other mounts."""
+        """The resonance beside a speed at which the machine runs, and other mounts; None where
+        the gauges are judged, read little, and the machine keeps away from it: leave it then.
+        """
         aims = self.loud_gauges
         if not aims or (unbalances(self.machine) and not self.requested):
             return None
@@ -412,7 +414,17 @@ class _Adviser:
             pairs = zip(before, Problem.values_of(machine, aims), strict=True)
             return 1 - plan.combined([new / old for old, new in pairs if old]) / len(aims)
 
-        return resonant_mounts_for(self.machine, sorted(speeds, key=abs), gain)
+        mounts = resonant_mounts_for(self.machine, sorted(speeds, key=abs), gain)
+        leaves_it = self.is_quiet and not self.requested
+        return None if mounts is None or (leaves_it and not mounts.is_beside) else mounts
+
+    @cached_property
+    def is_quiet(self) -> bool:
+        """Whether there is a limit or a usual value for each gauge, and it reads less."""
+        judged = [item for item in self.before.headline if item.output.startswith(GAUGES)]
+        names = {item.output for item in judged}
+        aims = {aim.output for aim in gauge_aims(self.machine)}
+        return names >= aims and not any(item.is_large for item in judged)
 
     def keeps_limits(self, balanced: Balanced) -> bool:
         """Whether the limits that the file gives are kept."""

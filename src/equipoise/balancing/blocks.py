@@ -96,11 +96,9 @@ def balanced_headline(
     if balanced.advice is not None and not balanced.helps:
         if alone:
             yield from map(Text, why_nothing(balanced))
-            cure = steadying_sentence(
-                balanced
-            )  # first, since details are left out from the last on
+            cure = steadying_sentence(balanced)  # what to build: first, and not left out
             beyond = sorted(sentences_beyond_masses(balanced), key=lambda line: line != cure)
-            yield from (Text(line, is_detail=True) for line in beyond)
+            yield from (Text(line, is_detail=line != cure) for line in beyond)
             yield Text(driven(balanced.original, balanced.original.drive.speed))
             yield _large(balanced)
             yield from _bending(balanced)

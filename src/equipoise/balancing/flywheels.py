@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import groupby
 from math import ceil, floor, log10, pi
 from typing import ClassVar
 
@@ -189,20 +188,21 @@ def _rounded_up(value: float) -> float:
 
 
 def flywheel_sentences(flywheels: Flywheels, crank: str, links: float) -> Iterator[str]:
-    """What flywheels weigh, what they bring, and what the motor gives then.
+    """What the least flywheel weighs, a steadier one, and what the motor gives then.
 
     links : mass of the moving links, kg.
     """
-    for (ratio, is_assumed), same in groupby(flywheels.choices, key=_shaft):
-        on_crank = to_say("Flywheel on {crank}: {discs}.")
-        on_motor = to_say("Flywheel on the shaft of the motor: {discs}.")
-        assumed = to_say(
-            "Flywheel on a shaft {ratio} times as fast as {crank}, which the file does not give "
-            "and the machine would need: {discs}."
-        )
-        discs = say("; ").join(_disc(item, links) for item in same)
-        template = on_crank if ratio == 1 else assumed if is_assumed else on_motor
-        yield say(template, crank=crank, ratio=f"{ratio:.4g}", discs=discs)
+    *steadier, least = sorted(flywheels.choices, key=lambda choice: choice.fluctuation)
+    on_crank = to_say("Flywheel on {crank}: {disc}.")
+    on_motor = to_say("Flywheel on the shaft of the motor: {disc}.")
+    assumed = to_say(
+        "Flywheel on a shaft {ratio} times as fast as {crank}, which the file does not give and "
+        "the machine would need: {disc}."
+    )
+    template = on_crank if least.ratio == 1 else assumed if least.is_shaft_assumed else on_motor
+    yield say(template, crank=crank, ratio=f"{least.ratio:.4g}", disc=_disc(least, links))
+    for item in steadier:
+        yield say("Steadier: {disc}.", disc=_disc(item, links))
     if _lets_swing(flywheels.choices):
         yield say(
             "A motor that permits this fluctuation then has to give {mean} at {crank} ({power}) "
@@ -212,10 +212,6 @@ def flywheel_sentences(flywheels: Flywheels, crank: str, links: float) -> Iterat
             power=format_quantity(flywheels.power, "power", digits=3),
             most=format_quantity(flywheels.largest_torque, "torque", digits=3),
         )
-
-
-def _shaft(flywheel: RequiredFlywheel) -> tuple[float, bool]:
-    return flywheel.ratio, flywheel.is_shaft_assumed
 
 
 def _lets_swing(choices: Iterable[RequiredFlywheel]) -> bool:

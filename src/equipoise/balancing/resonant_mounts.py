@@ -55,6 +55,12 @@ class ResonantMounts:
     gain: float
     away: float
 
+    @property
+    def is_beside(self) -> bool:
+        """Whether the machine runs at a speed to be kept away from."""
+        low, high = sorted(map(abs, self.avoid))
+        return low <= self.near <= high
+
     declared: ClassVar[Declarations] = {
         "speed": ResultOutput("of the crank at the resonance", "angular speed"),
         "near": ResultOutput("the speed beside it at which the machine runs", "angular speed"),
@@ -227,9 +233,8 @@ def mount_sentences(mounts: ResonantMounts, comes_first: bool) -> Iterator[str]:
     )
     besides = to_say("The resonance at {speed} rpm amplifies the motion at {near} rpm too: move it")
     above, below = to_say("run above {away} rpm"), to_say("run below {away} rpm")
-    is_within = low <= mounts.near <= high
     first = say(
-        advice if is_within else amplifies if comes_first else besides,
+        advice if mounts.is_beside else amplifies if comes_first else besides,
         speed=brief(mounts.speed / PER_RPM),
         low=number(low / PER_RPM),
         high=number(high / PER_RPM),

@@ -77,7 +77,8 @@ SHAKING = ("weight", "span", "bearings", "vibration")
 BY_LOADS, TRIFLE = 0.9, 0.1
 """Shares of the swing of a torque: what loads make of it at least, and what lifts the links at
 most, where its mean, which is the work that the loads take, is its yardstick in any case.  On a
-press the load acts near a dead position, where its lever is a small part of the throw."""
+press the load acts near a dead position, where its lever is a small part of the throw.  A load may
+be a weight that is lifted and comes down again; a resistance takes nothing but work."""
 MEAN = to_say("its mean")
 VIBRATION = 4.5e-3
 """RMS of a velocity, m/s, beyond which a machine should not run for long."""
@@ -446,14 +447,14 @@ class _Scales:
         force, what = self.undriven
         return (drive, Note("the force of the drive")) if drive > force else (force, what)
 
-    @cached_property
-    def load_swings_drive(self) -> bool:
-        """Whether loads make nearly all of the swing of the drive's torque, as on a press."""
+    def swings_drive(self, *causes: str) -> bool:
+        """Whether causes, such as loads, make nearly all of the swing of the drive's torque."""
         forces, effort = self.analysis.resolved.forces, self.machine.drive.effort
-        by_loads = forces.split.by_cause(effort).get("load")
-        if by_loads is None:
+        by_cause = forces.split.by_cause(effort)
+        made = [by_cause[cause] for cause in causes if cause in by_cause]
+        if not made:
             return False
-        swing = forces.motion.figures(by_loads).peak_to_peak
+        swing = forces.motion.figures(np.sum(made, axis=0)).peak_to_peak
         return bool(swing >= BY_LOADS * self.analysis.summary[effort].peak_to_peak)
 
     @cached_property
@@ -570,7 +571,10 @@ def _effort(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
     torque = output.analysis.summary[output.name]
     mean = abs(torque.mean)
     lifted = rows * scales.links_weight * scales.throw
-    if lifted < TRIFLE * torque.peak_to_peak and scales.load_swings_drive:
+    is_trifle = lifted < TRIFLE * torque.peak_to_peak
+    if (is_trifle and scales.swings_drive("load", "resistance")) or scales.swings_drive(
+        "resistance"
+    ):
         lifted = 0.0
     if mean >= max(lifted, LEAST_MEAN * torque.rms):
         uneven = speed_fluctuation(output.analysis)

@@ -156,5 +156,11 @@ def terms() -> Mapping[str, Explained]:
 
 
 def known_topic(topic: str) -> str:
-    """The topic that a command can explain: the same, or the table that a place is in."""
-    return topic if topic in errors() else table_at(topic.split("."))
+    """The topic that a command can explain: the same, or the table that a place is in.
+
+    Tables with names of the user's, such as ``links.NAME``, go by the word before the name too.
+    """
+    if topic in errors():
+        return topic
+    steps = topic.split(".")
+    return table_at(steps) or table_at((*steps, NAME))
