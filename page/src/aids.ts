@@ -1,9 +1,8 @@
 /** Beside the drawing: the underlay that is traced over, and the ruler. */
 
-import { asTyped } from "./decimals";
 import type { Aim } from "./aim";
 import { h, s, set, write } from "./dom";
-import { degrees, length, lengths, metres, plain } from "./format";
+import { asTyped, degrees, length, lengths, metres, plain } from "./format";
 import type { Pair } from "./protocol";
 import type { Stage } from "./stage";
 import { Underlay } from "./underlay";

@@ -1,13 +1,111 @@
-/** A chart as the server declares it: one of its choices, drawn from the arrays of its message. */
+/**
+ * A chart as the server declares it: one of its choices, drawn from the arrays of its message; what it
+ * shows, said on demand.
+ */
 
-import { type Chooser, chooser } from "./chooser";
-import type { ChartData, Choice, Numbers, State, Unit } from "./protocol";
+import { fresh, h, put, set, write } from "./dom";
+import type { Asked, ChartData, Choice, Numbers, State, Unit } from "./protocol";
 import { turning } from "./scale";
-import { Abscissa, type Columns, column, measured } from "./signals";
-import { Strip } from "./strip";
+import { type Curve, Strip } from "./strip";
 import type { Role, Theme } from "./theme";
-import type { Curve } from "./uplot_options";
-import { say } from "./words";
+import { explained, say } from "./words";
+
+/** Values, and those before. */
+export interface Columns {
+  values: Float64Array;
+  before?: Float64Array | undefined;
+}
+
+/** Crank angle from the first sample, degrees, with the first sample again at the end. */
+export class Abscissa {
+  private made = new Map<string, Float64Array>();
+
+  of(count: number, turns: number): Float64Array {
+    const key = `${count}/${turns}`;
+    let x = this.made.get(key);
+    if (!x) {
+      x = Float64Array.from({ length: count + 1 }, (_, k) => (k / count) * 360 * turns);
+      this.made.set(key, x);
+    }
+    return x;
+  }
+}
+
+/** How far an angle may have turned when it is where it was, rad. */
+const TURN = 2 * Math.PI;
+
+/**
+ * Every `stride`th number from the `part`th on; a periodic one ends with its first value again, an
+ * angle that winds as many turns further as it has made.
+ */
+function taken(values: Float32Array, stride: number, part: number, periodic: boolean, winds = false) {
+  const count = values.length / stride;
+  const column = new Float64Array(periodic ? count + 1 : count);
+  for (let k = 0; k < count; k++) column[k] = values[stride * k + part] as number;
+  if (!periodic) return column;
+  const [first, last] = [column[0] as number, column[count - 1] as number];
+  column[count] = first + (winds ? TURN * Math.round((last - first) / TURN) : 0);
+  return column;
+}
+
+/** A signal of a message, and the same before. */
+export function column(
+  { numbers, before }: { numbers: Numbers; before: boolean },
+  name: string,
+  stride = 1,
+  part = 0,
+  periodic = true,
+  winds = false,
+): Columns | null {
+  const now = numbers.get(name);
+  if (!now) return null;
+  const values = taken(now, stride, part, periodic, winds);
+  const was = before ? numbers.get(`before.${name}`) : undefined;
+  return was && was.length === now.length
+    ? { values, before: taken(was, stride, part, periodic, winds) }
+    : { values };
+}
+
+/** What was measured of what a chart's array shows, over the same crank angles; null where nothing was. */
+export function measured(
+  numbers: Numbers,
+  array: string,
+  stride: number,
+  part: number,
+  count: number,
+  winds = false,
+): Float64Array | null {
+  const renamed = array.replace(/^joint\./, "joints.").replace(/^response\./, "gauges.");
+  const name = renamed.replace(/^output\./, "") + (stride > 1 ? [".x", ".y"][part] : "");
+  const found = numbers.get(`measured.${name}`);
+  if (!found || found.length + 1 !== count) return null;
+  return taken(found, 1, 0, true, winds);
+}
+
+interface Chooser {
+  label: HTMLElement;
+  value: string;
+  has(name: string): boolean;
+  offer(options: [name: string, label: string][]): void;
+}
+
+export function chooser(name: string, changed: () => void): Chooser {
+  const select = h("select", { "aria-label": name, onchange: changed });
+  const has = (value: string) => [...select.options].some((option) => option.value === value);
+  return {
+    label: h("span", { class: "heading" }, select),
+    get value() {
+      return select.value;
+    },
+    set value(value: string) {
+      put(select, value);
+    },
+    has,
+    offer(options) {
+      select.replaceChildren(...options.map(([value, label]) => h("option", { value }, label)));
+    },
+  };
+}
 
 /** Highest order whose bars are drawn. */
 const HIGHEST = 10;
@@ -165,4 +263,49 @@ export function times(values: Float64Array, { factor }: Unit): Float64Array {
 
 export function scaled({ values, before }: Columns, unit: Unit): Columns {
   return { values: times(values, unit), before: before && times(before, unit) };
+}
+
+export type Ask = (asked: Asked) => void;
+
+/** Put a "?" at the end of the heading of a chart of that title; `choice` tells what of it is shown. */
+export function explain(figure: HTMLElement, title: string, name: string, ask: Ask, choice: () => string): void {
+  const heading = figure.querySelector("figcaption");
+  if (!heading || heading.querySelector(".why")) return;
+  const id = fresh("why");
+  const keep = (format: "svg" | "png") =>
+    h(
+      "button",
+      {
+        type: "button",
+        class: "keeps",
+        onclick: () => ask({ type: "download", kind: "chart", chart: name, choice: choice(), format }),
+      },
+      format.toUpperCase(),
+    );
+  const shows = h("p", {});
+  const told = h(
+    "div",
+    { class: "explained", id, hidden: true },
+    shows,
+    h("p", { class: "keeping" }, say("Keep this chart as"), " ", keep("svg"), keep("png")),
+  );
+  const button = h(
+    "button",
+    {
+      type: "button",
+      class: "why",
+      "aria-label": say("{chart}: what does it show?", { chart: title }),
+      title: say("What does this chart show?"),
+      "aria-expanded": "false",
+      "aria-controls": id,
+      onclick: () => {
+        told.hidden = !told.hidden;
+        write(shows, explained(name)); // which goes by the machine that is open
+        set(button, { "aria-expanded": String(!told.hidden) });
+      },
+    },
+    "?",
+  );
+  heading.append(button);
+  heading.after(told);
 }

@@ -1,14 +1,12 @@
 /** All charts beside the linkage. */
 
-import { Chart, type Source } from "./chart";
-import { chooser } from "./chooser";
+import { type Ask, Chart, chooser, explain, type Source } from "./chart";
 import { h, show, write } from "./dom";
-import { type Ask, explain } from "./explain";
 import { lengths } from "./format";
+import { Outputs } from "./outputs";
 import { Plane, type Trace } from "./plane";
 import type { ChartData, Numbers, ResponseMessage, State, Strokes } from "./protocol";
 import { capital } from "./readings";
-import { Outputs } from "./outputs";
 import type { Strip } from "./strip";
 import type { Role, Theme } from "./theme";
 import { say } from "./words";

@@ -6,7 +6,7 @@ import { extremes, type Scale, share, wide } from "./scale";
 /** Free at both ends of a scale, over its length. */
 const ROOM = 0.03;
 
-export interface Column {
+interface Column {
   told: ColumnOf;
   /** In the unit that is told; NaN where a design has none. */
   values: Float64Array;

@@ -3,8 +3,7 @@
 import { App } from "./app";
 import { Played } from "./played";
 import type { Wire } from "./protocol";
-import { OfflineFiles } from "./site/offline";
-import { WorkerWire } from "./site/wire";
+import { OfflineFiles, WorkerWire } from "./site/wire";
 import { Socket } from "./socket";
 import { shelf } from "./story";
 import { agree, keep, language, say, wished } from "./words";

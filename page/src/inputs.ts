@@ -1,7 +1,7 @@
 /** How the values of a model file are asked for, each kind in its way. */
 
-import { asTyped, decimals } from "./decimals";
 import { fresh, h, icon, set } from "./dom";
+import { asTyped, decimals } from "./format";
 import type { Asking, Pair, Plain, Values } from "./protocol";
 import { say } from "./words";
 

@@ -38,6 +38,33 @@ export interface Hello {
   numbers: NumberRules;
 }
 
+/** What is asked beside the links of a part before it is added. */
+export interface ToolOptions {
+  word: string;
+  /** What each is called, by its key in the request. */
+  labels: Forms;
+  /** Values with their names; none where numbers are asked. */
+  choices: Forms;
+  /** Of each at first. */
+  value: string;
+}
+
+/** A tool that adds a part which joins two links. */
+export interface PartTool {
+  tool: string;
+  /** By which it is taken. */
+  key: string;
+  name: string;
+  /** What to click first. */
+  first: string;
+  then: string;
+  /** Path of its icon, in a square of 16. */
+  picture: string;
+  /** Whether a click on the block of a slider means its link. */
+  slides: boolean;
+  options: ToolOptions | null;
+}
+
 /** Korean particles by the word before them. */
 export interface Particles {
   /** Both forms, as they stand in texts -> after a consonant, after rieul, after a vowel. */
@@ -61,6 +88,8 @@ export interface Spoken {
   words: Forms;
   /** Chart -> what it shows, and what to look for. */
   explained: Forms;
+  /** As kinds of parts declare them. */
+  part_tools: PartTool[];
   particles: Particles | null;
   /** The sign before the decimals of a number that is shown. */
   decimal: string;

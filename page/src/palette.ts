@@ -1,93 +1,90 @@
 /** The bar of tools above the drawing: what a click there does, and what is missing. */
 
 import { h, icon, set, write } from "./dom";
-import type { Status } from "./protocol";
-import { PART_TOOLS, partTool, RIDERS, RIDING, type PartOptions, type PartToolName, type ToolText } from "./part_tools";
-import { say, toSay } from "./words";
+import type { PartTool, Status } from "./protocol";
+import { partTools, say } from "./words";
 
-export type Tool = "select" | "point" | "link" | "pin" | "separate" | "slider" | PartToolName | "drive" | "delete";
+/** How a tool is offered, and what to do with it first, and then. */
+type Tool = Pick<PartTool, "tool" | "key" | "name" | "first" | "then" | "picture">;
 
-interface Told extends ToolText {
-  tool: Tool;
-}
-
-export const TOOLS: Told[] = [
+/** Every tool; those of parts as their kinds declare them. */
+export const tools = (): Tool[] => [
   {
     tool: "select",
     key: "v",
-    name: toSay("Select"),
-    first: toSay("click a link or a joint to choose it, drag it to move it"),
+    name: say("Select"),
+    first: say("click a link or a joint to choose it, drag it to move it"),
     then: "",
     picture: "M4 2.5v10l2.7-2.600 1.800 3.600 1.600-.8-1.800-3.500h3.600z",
   },
   {
     tool: "point",
     key: "p",
-    name: toSay("Point"),
-    first: toSay("click the sheet for a point of the frame, or a link for a point of that"),
+    name: say("Point"),
+    first: say("click the sheet for a point of the frame, or a link for a point of that"),
     then: "",
     picture: "M8 2.5v4M8 9.500v4M2.500 8h4M9.500 8h4",
   },
   {
     tool: "link",
     key: "l",
-    name: toSay("Link"),
-    first: toSay("click where the link begins: a joint, a link, or a free place"),
-    then: toSay("click where the link ends; Shift keeps it level, upright or in steps of 15°"),
+    name: say("Link"),
+    first: say("click where the link begins: a joint, a link, or a free place"),
+    then: say("click where the link ends; Shift keeps it level, upright or in steps of 15°"),
     picture: "M4.500 11.500l7-7M2.500 13.500a1.600 1.600 0 1 0 2-2 1.600 1.600 0 0 0-2 2M11.500 4.500a1.600 1.600 0 1 0 2-2 1.600 1.600 0 0 0-2 2",
   },
   {
     tool: "pin",
     key: "j",
-    name: toSay("Pin"),
-    first: toSay("click the point that is to be pinned"),
-    then: toSay("click the point that it is pinned to, or itself again for the frame, on or off"),
+    name: say("Pin"),
+    first: say("click the point that is to be pinned"),
+    then: say("click the point that it is pinned to, or itself again for the frame, on or off"),
     picture: "M8 2.500a2.500 2.500 0 1 0 .01 0M8 7.500l-3.500 5h7zM3 13.500h10",
   },
   {
     tool: "separate",
     key: "x",
-    name: toSay("Separate"),
-    first: toSay("click a pin: the last link at it gets a point of its own"),
+    name: say("Separate"),
+    first: say("click a pin: the last link at it gets a point of its own"),
     then: "",
     picture: "M2.500 8h3M10.500 8h3M5.500 8a1 1 0 1 0 .01 0M10.500 8a1 1 0 1 0 .01 0M8 3v10",
   },
   {
     tool: "slider",
     key: "s",
-    name: toSay("Slider"),
-    first: toSay("click where the block is: a joint, or a free place"),
-    then: toSay("click another place of its line: on the sheet, or on the link that guides it"),
+    name: say("Slider"),
+    first: say("click where the block is: a joint, or a free place"),
+    then: say("click another place of its line: on the sheet, or on the link that guides it"),
     picture: "M2.500 12.500h11M4.500 6h7v4h-7zM2.500 3.500h11",
   },
-  ...PART_TOOLS,
+  ...partTools(),
   {
     tool: "drive",
     key: "d",
-    name: toSay("Drive"),
-    first: toSay("click the link that is the crank"),
+    name: say("Drive"),
+    first: say("click the link that is the crank"),
     then: "",
     picture: "M12.500 5.500a5.200 5.200 0 1 0 .7 3.500M13.200 2.500v3.500H9.700",
   },
   {
     tool: "delete",
     key: "Delete",
-    name: toSay("Delete"),
-    first: toSay("click the joint, the link, the slider or the part that is to go"),
+    name: say("Delete"),
+    first: say("click the joint, the link, the slider or the part that is to go"),
     then: "",
     picture: "M3 4.500h10M6.500 4.500v-2h3v2M4.500 4.500l.7 9h5.600l.7-9",
   },
 ];
 
-export interface Palettes {
-  chosen(tool: Tool): void;
+interface Palettes {
+  chosen(tool: string): void;
   made(): void;
   renamed(name: string): void;
 }
 
 export class Palette {
   readonly root: HTMLElement;
-  private readonly buttons = new Map<Tool, HTMLButtonElement>();
+  private readonly buttons = new Map<string, HTMLButtonElement>();
   private readonly status = h("p", { class: "status", role: "status", "aria-live": "polite" });
   private readonly next = h("p", { class: "next", "aria-hidden": "true" });
   private readonly name = h("input", {
@@ -97,51 +94,48 @@ export class Palette {
     autocomplete: "off",
     spellcheck: "false",
   });
-  private readonly teeth: HTMLInputElement[];
-  private readonly meshing: HTMLElement;
-  private readonly rider = h("select", { "aria-label": say(RIDING) });
-  private readonly riding = h("span", { class: "meshing", hidden: true }, say("follower"), this.rider);
+  private readonly tools = tools();
+  /** What is asked of a part before it is added, by the word in front of it. */
+  private readonly asked = new Map<string, HTMLElement>();
 
   constructor(private readonly page: Palettes) {
-    const tools = TOOLS.map((told) => {
-      const title = `${say(told.name)} (${told.key.toUpperCase()}): ${say(told.first)}`;
-      const attributes = { type: "button", title, "aria-label": say(told.name), "aria-pressed": "false" };
-      const name = h("span", { class: "name", "aria-hidden": "true" }, say(told.name));
+    const buttons = this.tools.map((told) => {
+      const title = `${told.name} (${told.key.toUpperCase()}): ${told.first}`;
+      const attributes = { type: "button", title, "aria-label": told.name, "aria-pressed": "false" };
+      const name = h("span", { class: "name", "aria-hidden": "true" }, told.name);
       const button = h("button", { ...attributes, "aria-keyshortcuts": told.key }, icon(told.picture), name);
       button.addEventListener("click", () => page.chosen(told.tool));
       this.buttons.set(told.tool, button);
       return button;
     });
     const make = h("button", { type: "button", onclick: () => page.made() }, say("New"));
-    this.teeth = [say("Teeth of the driver"), say("Teeth of the driven link")].map((name) =>
-      h("input", { type: "text", inputmode: "numeric", class: "teeth", "aria-label": name, value: "20" }),
-    );
-    this.meshing = h("span", { class: "meshing", hidden: true }, say("teeth"), ...this.teeth);
-    this.rider.append(...RIDERS.map(([value, name]) => h("option", { value }, say(name))));
+    for (const { options } of partTools())
+      if (options && !this.asked.has(options.word)) this.asked.set(options.word, inputsOf(options));
     this.name.addEventListener("change", () => this.rename());
     this.root = h(
       "div",
       { class: "making" },
-      h("div", { class: "tools", role: "toolbar", "aria-label": say("Tools") }, make, ...tools),
+      h("div", { class: "tools", role: "toolbar", "aria-label": say("Tools") }, make, ...buttons),
       // A room of its own: sentences that come, go or wrap reach over the sheet, and never move it.
-      h("div", { class: "telling" }, h("div", {}, this.status, this.name, this.next, this.meshing, this.riding)),
+      h("div", { class: "telling" }, h("div", {}, this.status, this.name, this.next, ...this.asked.values())),
     );
   }
 
-  /** What the next part that a tool adds is to have. */
-  get options(): PartOptions {
-    const [teeth, driven_teeth] = this.teeth.map((input) => Math.round(Number(input.value)));
-    return { teeth: teeth ?? NaN, driven_teeth: driven_teeth ?? NaN, rides: this.rider.value };
+  /** What a part that a tool adds is to have beside its links. */
+  optionsOf({ options }: PartTool): Record<string, string | number> {
+    const inputs = this.asked.get(options?.word ?? "")?.querySelectorAll<HTMLInputElement | HTMLSelectElement>("[name]");
+    return Object.fromEntries(
+      [...(inputs ?? [])].map(({ name, value, type }) => [name, type === "text" ? Math.round(Number(value)) : value]),
+    );
   }
 
   /** Which tool is used, and what to do next with it. */
-  show(tool: Tool, pending: boolean): void {
+  show(tool: string, pending: boolean): void {
     for (const [name, button] of this.buttons) set(button, { "aria-pressed": String(name === tool) });
-    const told = TOOLS.find((one) => one.tool === tool);
-    write(this.next, tool === "select" || !told ? "" : say(pending ? told.then : told.first));
-    const asks = partTool(tool)?.asks;
-    this.meshing.hidden = asks !== "teeth";
-    this.riding.hidden = asks !== "rider";
+    const told = this.tools.find((one) => one.tool === tool);
+    write(this.next, tool === "select" || !told ? "" : pending ? told.then : told.first);
+    const word = partTool(tool)?.options?.word;
+    for (const [asked, inputs] of this.asked) inputs.hidden = asked !== word;
   }
 
   tell(status: Status): void {
@@ -159,4 +153,19 @@ export class Palette {
   private rename(): void {
     if (this.name.value.trim()) this.page.renamed(this.name.value.trim());
   }
+}
+
+/** The tool of this name, if it adds a part. */
+export function partTool(name: string): PartTool | undefined {
+  return partTools().find(({ tool }) => tool === name);
+}
+
+function inputsOf({ word, labels, choices, value }: NonNullable<PartTool["options"]>): HTMLElement {
+  const offered = Object.entries(choices);
+  const inputs = Object.entries(labels).map(([name, label]) =>
+    offered.length
+      ? h("select", { name, "aria-label": label }, ...offered.map(([value, text]) => h("option", { value }, text)))
+      : h("input", { name, type: "text", inputmode: "numeric", class: "teeth", "aria-label": label, value }),
+  );
+  return h("span", { class: "meshing", hidden: true }, word, ...inputs);
 }

@@ -3,11 +3,10 @@
 import type { Aim } from "./aim";
 import type { Conversation } from "./conversation";
 import { h } from "./dom";
-import { lengths, round } from "./format";
 import { Form, type Subject } from "./form";
+import { lengths, round } from "./format";
 import type { Picked } from "./inputs";
-import { keyPath, stepsOf } from "./paths";
-import type { TableEntry, Group, Pair, State, Tables, Values } from "./protocol";
+import { type Group, keyPath, type Pair, type State, stepsOf, type TableEntry, type Tables, type Values } from "./protocol";
 import { say } from "./words";
 
 /** What of the page it needs. */

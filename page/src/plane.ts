@@ -1,10 +1,10 @@
 /** A curve in a plane with equal scales: the shaking force's polar diagram, paths of points. */
 
 import { type Attributes, h, s, set, write } from "./dom";
-import type { Unit } from "./protocol";
 import { degrees, multiples, plain, round, shown, signed } from "./format";
+import type { Unit } from "./protocol";
 import { FEWEST, spacing } from "./scale";
-import { curve } from "./shapes";
+import { curve } from "./signs";
 
 export interface Trace {
   /** x and y in turn. */

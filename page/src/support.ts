@@ -1,8 +1,8 @@
 /** How the support is seen: at rest, as it moves at work, or in one of its modes. */
 
 import { h, set, show } from "./dom";
-import type { Swing } from "./overlay";
 import type { Numbers, Pair, ResponseMessage, State } from "./protocol";
+import type { Swing } from "./signs";
 import { say } from "./words";
 
 const REST = "rest";

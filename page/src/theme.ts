@@ -1,6 +1,6 @@
 /** Colours for canvases and pictures, which know no style sheets: read from the sheet's own variables. */
 
-export interface Colours {
+interface Colours {
   quiet: string;
   grid: string;
   axis: string;

@@ -22,7 +22,7 @@ export type Opened = Pick<State, "name" | "undo" | "redo" | "lacking" | "file"> 
   downloads?: FileKind[];
 };
 
-export interface Commands {
+interface Commands {
   example(name: string): void;
   gallery(): void;
   undo(): void;

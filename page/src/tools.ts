@@ -3,10 +3,9 @@
 import type { Conversation } from "./conversation";
 import { s, set } from "./dom";
 import { degrees, length, lengths, signed } from "./format";
-import { Palette, TOOLS, type Tool } from "./palette";
-import { PART_TOOLS, partTool } from "./part_tools";
+import { turnable, type Turning } from "./hands";
+import { Palette, partTool, tools } from "./palette";
 import type { Made, Pair, State } from "./protocol";
-import { turnable, type Turning } from "./rim";
 import { type Hit, meant, type Snapping, step } from "./snap";
 import type { Grip } from "./stage";
 import { say } from "./words";
@@ -21,9 +20,9 @@ const ARROWS: Record<string, Pair> = {
 };
 
 /** Tools that need two clicks. */
-const TWO = new Set<Tool>(["link", "pin", "slider", ...PART_TOOLS.map(({ tool }) => tool)]);
+const TWO = new Set(["link", "pin", "slider"]);
 
-export interface Making extends Turning, Snapping {
+interface Making extends Turning, Snapping {
   talk: Conversation;
   board: HTMLElement;
   sample(): number;
@@ -36,7 +35,7 @@ type Chosen = { what: "point" | "link"; name: string };
 
 export class Tools {
   readonly palette: Palette;
-  private tool: Tool = "select";
+  private tool = "select";
   private pending: Hit | null = null;
   private chosen: Chosen | null = null;
   /** Questions that are not answered yet, and what is done with the tool after them. */
@@ -115,7 +114,7 @@ export class Tools {
     this.choose(grip.kind === "point" ? { what: "point", name: grip.name } : null);
   }
 
-  private take(tool: Tool, focus = false): void {
+  private take(tool: string, focus = false): void {
     const drawing = this.tool !== "select"; // then the crosshair stays where it is
     [this.tool, this.pending] = [tool, null];
     this.page.talk.release();
@@ -294,7 +293,7 @@ export class Tools {
 
   /** One click of the tool. */
   private put(hit: Hit): void {
-    if (TWO.has(this.tool) && !this.pending) {
+    if ((TWO.has(this.tool) || partTool(this.tool)) && !this.pending) {
       if (this.tool === "pin" && !hit.point) return;
       if (partTool(this.tool) && !this.linkOf(hit)) return;
       this.pending = hit;
@@ -313,7 +312,8 @@ export class Tools {
     const part = partTool(this.tool);
     if (part) {
       const driver = first && this.linkOf(first);
-      return driver && link ? part.made(driver, link, spot(hit), this.palette.options) : null;
+      const options = this.palette.optionsOf(part);
+      return driver && link ? { do: part.tool, driver, driven: link, spot: spot(hit), ...options } : null;
     }
     switch (this.tool) {
       case "point":
@@ -382,7 +382,7 @@ function where({ point, place: [x, y] }: Hit): string {
 }
 
 function toolOf(key: string) {
-  return TOOLS.find((one) => one.key.toLowerCase() === key);
+  return tools().find((one) => one.key.toLowerCase() === key);
 }
 
 function spot(hit: Hit): object {

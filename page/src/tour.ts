@@ -6,7 +6,7 @@ import { say, toSay } from "./words";
 const SEEN = "equipoise tour";
 
 /** What somebody does on the page that ends a step. */
-export type Done = "dragged" | "turned" | "balanced" | "decided" | "linked";
+type Done = "dragged" | "turned" | "balanced" | "decided" | "linked";
 
 interface Step {
   /** What of the page it is about. */

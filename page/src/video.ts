@@ -11,7 +11,7 @@ const BITS = 8e6;
 const TYPED = "select, input";
 
 /** What is recorded: elements side by side, each as much of it as is seen. */
-export interface Scenery {
+interface Scenery {
   /** Around them: its classes and those above it are what style sheets ask for. */
   root: HTMLElement;
   areas: HTMLElement[];
@@ -21,7 +21,7 @@ export interface Scenery {
   show(share: number): boolean;
 }
 
-export interface Video {
+interface Video {
   blob: Blob;
   suffix: string;
 }

@@ -1,8 +1,27 @@
-/** The page's texts in the reader's language: English in the code, the rest told by the server. */
+/**
+ * The page's texts in the reader's language: English in the code, the rest told by the server, with
+ * the rules of Korean particles.
+ */
 
-import { decimals, point } from "./decimals";
-import { particles } from "./particles";
-import type { Forms, Spoken, Told, Wire, Wording } from "./protocol";
+import { decimals, point } from "./format";
+import type { Particles } from "./messages";
+import type { Forms, PartTool, Spoken, Told, Wire, Wording } from "./protocol";
+
+/** The function that gives every particle of a text one form. */
+export function particles({ forms, endings, closing, reach }: Particles): (text: string) => string {
+  const escaped = (text: string) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
+  const both = new RegExp(Object.keys(forms).map(escaped).join("|"), "g");
+  const rules = endings.map(([pattern, sound]) => [new RegExp(pattern), sound] as const);
+  return (text) =>
+    text.replace(both, (found, at: number) => {
+      let end = at;
+      const begin = Math.max(at - reach, 0);
+      while (end > begin && closing.includes(text[end - 1] ?? "")) end--;
+      const word = text.slice(begin, end).normalize("NFD");
+      const sound = rules.find(([pattern]) => pattern.test(word))?.[1];
+      return sound === undefined ? found : (forms[found]?.[sound] ?? found);
+    });
+}
 
 /** Where a reader's choice of a language is kept. */
 const KEPT = "equipoise language";
@@ -12,6 +31,7 @@ let told: Omit<Spoken, "type" | "seq"> = {
   languages: { en: "English" },
   words: {},
   explained: {},
+  part_tools: [],
   particles: null,
   decimal: ".",
   forms: {},
@@ -53,6 +73,11 @@ export function language(): string {
 /** Code of each language there is, and its own name. */
 export function languages(): Record<string, string> {
   return told.languages;
+}
+
+/** Tools that add parts, as the kinds of parts declare them. */
+export function partTools(): PartTool[] {
+  return told.part_tools;
 }
 
 /** What a chart shows, and what to look for in it. */

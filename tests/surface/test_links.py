@@ -25,7 +25,7 @@ from equipoise.folders import Folder
 from equipoise.schema.documents import load
 from equipoise.schema.files import write_all
 from equipoise.web import server as served_files
-from equipoise.web.disk import on_disk
+from equipoise.web.files import on_disk
 from equipoise.web.stores import StoreDesk, stores_in
 from support import refusals
 from support.chosen import few, few_together

@@ -31,7 +31,7 @@ from equipoise.planting.figures import SAMPLES_OF_TURN
 from equipoise.schema.files import LARGEST
 from equipoise.studies import outcomes, searching, selection, study, tolerances
 from equipoise.vibration import collocation, coupled, free, steady
-from equipoise.web import stores, variants
+from equipoise.web import stores, view_state
 from surface.running import example_text, read, written
 
 TOP = Path(__file__).parents[2]
@@ -174,7 +174,7 @@ CLAIMS = {
     "decay.md": [f"more than {fits.MOST:,} samples".replace(",", " ")],
     "figures.md": [f"Of more than {selection.MOST} designs"],
     "live-page.md": [
-        f"A, B and so on, up to {variants.MOST}",
+        f"A, B and so on, up to {view_state.MOST}",
         f"Of more than {stores.MOST} designs",
         f"A model file may have {LARGEST // 1_000_000} MB",
     ],

@@ -65,7 +65,7 @@ export interface Measure extends Unit {
 
 export type Corner = string | [guide: string, share: number] | null;
 
-/** What a shape of a sign is tied to: see `following_signs.py`. */
+/** What a shape of a sign is tied to: see `equipoise/web/drawing.py`. */
 export interface Tie {
   corners?: Corner[];
   hull?: boolean;

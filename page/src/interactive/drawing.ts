@@ -1,10 +1,9 @@
 /** The drawing of a machine with other numbers: its signs tied to points, and where these are. */
 
 import type { Drawable, Pair, Rows, Scene, Shape, Sign, Status } from "../protocol";
-import { guideWay, massesMovable, movable } from "./edits";
-import type { Machine, Solution } from "./machine";
 import type { Corner, Tie } from "./data";
-import { dot, minus, mirrored, plus, ratio, scaled, size, times } from "./vectors";
+import { guideWay, massesMovable, movable } from "./edits";
+import { dot, type Machine, minus, mirrored, plus, ratio, scaled, size, type Solution, times } from "./machine";
 
 /** Positions and angles at the equally spaced crank angles, as the drawing wants them. */
 class Poses implements Rows {

@@ -1,12 +1,10 @@
 /** What a drag or a typed number does to the numbers of a machine. */
 
-import { asTyped } from "../decimals";
-import type { Pair } from "../protocol";
-import { keyPath } from "../paths";
+import { asTyped } from "../format";
+import { keyPath, type Pair } from "../protocol";
 import { say } from "../words";
-import type { Machine, Solution } from "./machine";
 import type { Field, Measure } from "./data";
-import { dot, minus, mirrored, plus, scaled, size, times, towards } from "./vectors";
+import { dot, type Machine, minus, mirrored, plus, scaled, size, type Solution, times, towards } from "./machine";
 
 /** Digits of a dragged number over the size of the machine. */
 const DIGITS = 7;

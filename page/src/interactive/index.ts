@@ -3,21 +3,19 @@
 import { h, icon, write } from "../dom";
 import { follow, measure } from "../format";
 import type { Attempts } from "../gesture";
-import { Hands } from "../hands";
-import { Player } from "../player";
+import { Hands, turnable } from "../hands";
+import { Player, TransportBar } from "../player";
 import type { Drawable, Edit } from "../protocol";
-import { turnable } from "../rim";
 import { type Grip, Stage } from "../stage";
-import { TransportBar } from "../transport";
 import { say, speak } from "../words";
 import { changed, toml } from "./changes";
+import type { Extremes, MachineData, States } from "./data";
 import { Drawing } from "./drawing";
 import { massMoved, moved, reaches } from "./edits";
 import { Machine, type Solution } from "./machine";
 import { Inputs, Readout } from "./numbers";
 import { Plots } from "./plot";
 import { Shaking } from "./shaking";
-import type { Extremes, MachineData, States } from "./data";
 
 export { toml } from "./changes";
 export { moved, outside, typed, withLength } from "./edits";

@@ -1,11 +1,10 @@
 /** The shaking force as an arrow at the pivot of the crank. */
 
 import { s, set } from "../dom";
-import type { Overlay } from "../overlay";
 import type { Drawable, Pair } from "../protocol";
+import type { Overlay } from "../signs";
 import type { View } from "../view";
-import type { Solution } from "./machine";
-import { plus, scaled, size } from "./vectors";
+import { plus, scaled, size, type Solution } from "./machine";
 
 /** The longest arrow of the original, over the size of its drawing. */
 const LONGEST = 0.25;

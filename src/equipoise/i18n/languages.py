@@ -7,7 +7,7 @@ that a page without a server can load the texts of a language when it is first s
 
 Catalogues give both forms, as in ``{name}을(를)``; one is chosen when the name is filled in.  The
 rules are the table ``[particles]`` of a catalogue, which the live page follows too
-(`page/src/particles.ts`).
+(`page/src/words.ts`).
 
 A text with a count and a noun has one template in the code, in the plural: ``{count} designs``.
 The English catalogue has its other forms, and names the placeholder on which they depend where that

@@ -1,25 +1,28 @@
-"""What is added to a machine that is made: points, links, sliders, the drive.
+"""What is added to a machine that is made: points, links, sliders, the drive, parts.
 
-Each function takes a sketch to another one, or refuses in a `UsageError`.
+Each function takes a sketch to another one, or refuses in a `UsageError`.  Parts that join two
+links, such as gears, are added as their kinds declare (`PartTool`).
 """
 
 from __future__ import annotations
 
 from cmath import phase
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import field, replace
 from math import pi
 from string import ascii_uppercase
+from typing import Any
 
+from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, all_of
+from equipoise.i18n import Note, all_of, say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.kinematics.machine_draft import LinkPlacement, length_between, pose_between
-from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Slider
+from equipoise.mechanism.parts.element_kinds import PartKind, named_value, part_kinds
+from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Machine, Slider
 from equipoise.quantities import clean
-from equipoise.web.assumed_masses import assumed_bar, assumed_block
-from equipoise.web.messages import Spot
-from equipoise.web.sketch import Sketch
+from equipoise.web.messages import Message, Spot
+from equipoise.web.sketch import Sketch, assumed_bar, assumed_block
 
 USUAL_SPEED = 2 * pi
 """rad/s, of a drive that is chosen."""
@@ -206,3 +209,77 @@ def with_drive(sketch: Sketch, link: str) -> Sketch:
     drive = sketch.drive or Drive(link, USUAL_SPEED)
     drive = Drive(link, drive.speed) if drive.pushes else replace(drive, link=link)
     return replace(sketch, drive=drive)
+
+
+# -- parts that join two links ---------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class ToolOptions:
+    """What a page asks beside the links of a part before it is added.
+
+    word : in front of what is asked.  labels : of each, by its key in the message.
+    choices : values with what they are called; none where whole numbers are asked.
+    value : of each at first.
+    """
+
+    word: str
+    labels: Mapping[str, str]
+    choices: Mapping[str, str] = field(default_factory=dict)
+    value: str = ""
+
+
+@dataclass(frozen=True)
+class PartTool:
+    """How a page adds a part that joins two links to a machine that is made.
+
+    A kind of part names its own (`PartKind.page_tool`); texts are English.
+
+    name : of the operation.  step : what it is called in undo.  add : does it, as a page asks.
+    called : the tool.  key : that takes it.  first, then : what to click first, and then.
+    picture : path of its icon, in a square of 16.
+    options : what else is asked.  slides : whether a click on the block of a slider means its link.
+    """
+
+    name: str
+    step: str
+    add: Callable[[Sketch, Message], Sketch]
+    called: str
+    key: str
+    first: str
+    then: str
+    picture: str
+    options: ToolOptions | None = None
+    slides: bool = False
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """What a page is sent of it, in the language that is spoken."""
+        options = self.options
+        return {
+            "tool": self.name,
+            "key": self.key,
+            "name": say(self.called),
+            "first": say(self.first),
+            "then": say(self.then),
+            "picture": self.picture,
+            "slides": self.slides,
+            "options": options and {
+                "word": say(options.word),
+                "labels": {key: say(label) for key, label in options.labels.items()},
+                "choices": {value: say(name) for value, name in options.choices.items()},
+                "value": options.value,
+            },
+        }  # fmt: skip
+
+
+def part_tools(of: type[Machine] = Machine) -> tuple[PartTool, ...]:
+    """Tools of the kinds of parts that a class of machines has, in the order of the file."""
+    named = (kind.page_tool for kind in part_kinds(of).values() if kind.page_tool)
+    return tuple(named_value(name) for name in named)
+
+
+def with_part(sketch: Sketch, part: PartKind) -> Sketch:
+    """The sketch with one more part in the list of its kind."""
+    others = sketch.rest.get(part.list_name, ())
+    return replace(sketch, rest={**sketch.rest, part.list_name: (*others, part)})

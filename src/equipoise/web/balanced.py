@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import field, replace
 from math import dist, isclose, sqrt
 from re import sub
-from threading import Lock
 from types import MappingProxyType
-from typing import Any, Protocol
+from typing import Any
 
 from equipoise.balancing.advice import advice_against, advise
 from equipoise.balancing.balanced import Balanced
@@ -27,8 +26,7 @@ from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.workshop import SPREAD, sentences
 from equipoise.dataclass import dataclass
-from equipoise.errors import UsageError
-from equipoise.i18n import Note, localized, say
+from equipoise.i18n import localized, say
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from equipoise.mechanism.parts.bodies import Body
@@ -39,9 +37,6 @@ from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
 from equipoise.web.edits import Computed, solved
 from equipoise.web.figures import compared, figures_of
-from equipoise.web.incomplete import Incomplete
-from equipoise.web.messages import Message
-from equipoise.web.replies import Reply
 
 Values = dict[str, Any]
 MAIN = ("rms", "peak")
@@ -328,34 +323,6 @@ def _figure(balanced: Balanced, name: str, before: float, after: float) -> Value
     return {"label": label, "unit": unit.name, "main": main, **values}
 
 
-# -- what a page may ask ---------------------------------------------------------------------------
-
-
-class BalanceSession(Protocol):
-    """What answers need of a session."""
-
-    current_state: Computed | Incomplete | None
-    before: Computed | None
-    lock: Lock
-    language: str
-
-    @property
-    def before_change(self) -> Callable[[], None]:
-        """What is called before the design becomes another one."""
-
-    def current(self) -> Computed:
-        """The design that is."""
-
-    def go_to(self, computed: Computed | Incomplete, label: str) -> None:
-        """Make another design the one that is."""
-
-    def localized(self) -> AbstractContextManager[None]:
-        """Inside, the reader's language is spoken, in the units of the file that is open."""
-
-    def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
-        """Replies on the design that is shown."""
-
-
 @dataclass(frozen=True)
 class Balancing:
     """What came of balancing a design.
@@ -369,46 +336,20 @@ class Balancing:
     content: Values = field(default_factory=dict)
 
 
-def computed(session: BalanceSession, base: Computed, message: Message) -> Balancing:
-    """Balance a design; errors as of `balance`."""
+def balancing_of(
+    base: Computed, hold: bool, localized: Callable[[], AbstractContextManager[None]]
+) -> Balancing:
+    """Balance a design; errors as of `balance`.
+
+    hold : as of `balanced`.  localized : context in the reader's language and units.
+    """
     moved = base.moved
-    result = balanced(moved, message.flag("hold", False))
-    with session.localized():
+    result = balanced(moved, hold)
+    with localized():
         nothing = nothing_gained(result)
     if nothing is not None:
         return Balancing(nothing)
     design = balanced_design(moved, result)
     after = solved(design)
-    with session.localized():
+    with localized():
         return Balancing(design=design, content=balanced_values(base, after, result))
-
-
-def adopted(
-    session: BalanceSession, base: Computed, balancing: Balancing, message: Message
-) -> Iterator[Reply]:
-    """Show a balanced design as the next step.
-
-    Raises
-    ------
-    UsageError : the machine is no longer `base`.
-    """
-    if balancing.design is None:
-        yield from session.state_replies(message.seq, *filter(None, [balancing.nothing]))
-        return
-    after = solved(balancing.design)
-    session.before_change()
-    with session.lock:
-        if session.current_state is not base:
-            raise UsageError(
-                Note("the machine was changed while it was balanced; balance it again")
-            )
-        session.go_to(after, "balance")
-        session.before = base
-    yield Reply({"type": "balanced", "seq": message.seq, **balancing.content})
-    yield from session.state_replies(message.seq)
-
-
-def answered(session: BalanceSession, message: Message) -> Iterator[Reply]:
-    """Balance a session's machine at once, and show what came of it."""
-    base = session.current()
-    yield from adopted(session, base, computed(session, base, message), message)

@@ -20,9 +20,9 @@ from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import figures_by_name
 from equipoise.symbols.scene import Scene
-from equipoise.web.block import FloatBlock
 from equipoise.web.edits import Computed, kept_with_first
 from equipoise.web.figures import chart, gauge_choice, text_of, was_of
+from equipoise.web.replies import FloatBlock
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures

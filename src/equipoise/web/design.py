@@ -1,4 +1,4 @@
-"""What a page edits: a machine, and the counterweights that are tried on it."""
+"""What a page edits: a machine with the counterweights that are tried on it, and its steps."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import field, replace
 from functools import cached_property
 from math import cos, pi, sin
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
@@ -180,3 +180,61 @@ def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
         center_of_mass=center,
         inertia=clean(with_added.inertia),
     )
+
+
+MOST_STEPS = 500
+D = TypeVar("D")
+
+
+@dataclass(frozen=True)
+class HistoryStep(Generic[D]):
+    """What was edited to, and what was done to get there."""
+
+    design: D
+    label: str
+
+
+@dataclass(frozen=True)
+class History(Generic[D]):
+    """Steps for undo and redo, as they were made; `now` stands between `past` and `future`."""
+
+    now: HistoryStep[D]
+    past: tuple[HistoryStep[D], ...] = ()
+    future: tuple[HistoryStep[D], ...] = ()
+
+    @property
+    def first(self) -> D:
+        """The design that was opened, or the oldest that is kept."""
+        return (*self.past, self.now)[0].design
+
+    @property
+    def undo(self) -> str | None:
+        """What would be taken back."""
+        return self.now.label if self.past else None
+
+    @property
+    def redo(self) -> str | None:
+        """What would be done again."""
+        return self.future[0].label if self.future else None
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """What a page shows of it: what undo and redo would do, and how many steps there are."""
+        steps = [len(self.past), len(self.future)]
+        return {"undo": self.undo, "redo": self.redo, "steps": steps}
+
+    def then(self, design: D, label: str) -> History[D]:
+        """One step more; what was taken back is forgotten."""
+        return History(HistoryStep(design, label), (*self.past[1 - MOST_STEPS :], self.now))
+
+    def undone(self) -> History[D]:
+        """One step back, or a `UsageError`."""
+        if not self.past:
+            raise UsageError(Note("there is nothing to undo"))
+        return History(self.past[-1], self.past[:-1], (self.now, *self.future))
+
+    def redone(self) -> History[D]:
+        """One step forth again, or a `UsageError`."""
+        if not self.future:
+            raise UsageError(Note("there is nothing to redo"))
+        return History(self.future[0], (*self.past, self.now), self.future[1:])

@@ -18,13 +18,12 @@ from equipoise.quantities import showing_by_default
 from equipoise.schema.files import printable
 from equipoise.schema.open_files import kind_of_text, opened
 from equipoise.web.design import Design
-from equipoise.web.disk import on_disk
 from equipoise.web.edits import solved
+from equipoise.web.files import on_disk
 from equipoise.web.gallery import opened_file, wants_tool
 from equipoise.web.messages import Message
 from equipoise.web.replies import Reply, refused
-from equipoise.web.session import Session
-from equipoise.web.view_state import NO_STORE
+from equipoise.web.session import NO_STORE, Session
 
 if TYPE_CHECKING:
     from equipoise.web.stores import StoreDesk

@@ -14,6 +14,7 @@ from typing import Any
 from equipoise.errors import UsageError
 from equipoise.i18n import LANGUAGES, Note, catalogue, localized, say, speaking
 from equipoise.i18n.languages import KNOWN, counted, rules
+from equipoise.web.additions import part_tools
 from equipoise.web.edits import Computed
 from equipoise.web.figures import explained
 from equipoise.web.replies import Reply
@@ -143,9 +144,8 @@ def words_of(language: str) -> dict[str, str]:
 def spoken_in(language: str) -> dict[str, Any]:
     """What a page has to know to speak a language."""
     with speaking(language):
-        charts = explained()
-    words = words_of(language)
-    text = {"language": language, "languages": LANGUAGES, "words": words, "explained": charts}
+        text = {"explained": explained(), "part_tools": [tool.content for tool in part_tools()]}
+    text |= {"language": language, "languages": LANGUAGES, "words": words_of(language)}
     return text | speech_of(language)
 
 

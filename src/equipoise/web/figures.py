@@ -25,6 +25,7 @@ from equipoise.results.analysis import Analysis
 from equipoise.signals import Figures
 from equipoise.web.edits import kept_with_first
 from equipoise.web.following import extent_of
+from equipoise.web.replies import Array, Values
 
 CHARTS = {
     "polar": to_say(
@@ -117,9 +118,7 @@ def explained() -> dict[str, str]:
     return {name: say(text) for name, text in CHARTS.items()}
 
 
-Array = np.ndarray[Any, Any]
 Signals = dict[str, Array]
-Values = dict[str, Any]
 
 
 def signals_of(analysis: Analysis) -> Signals:

@@ -20,10 +20,10 @@ from equipoise.schema.files import printable
 from equipoise.schema.models import HeldFiles, load_linkage, loads_linkage, machine_of
 from equipoise.schema.open_files import content_of, examples, in_file, kind_of_text, opened
 from equipoise.symbols.scene import Scene, clear_angle
-from equipoise.web.block import FloatBlock, Values
 from equipoise.web.design import Design
 from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.messages import Message
+from equipoise.web.replies import FloatBlock, Values
 
 BARS = {
     4: to_say("four-bar linkage"),

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -16,25 +17,26 @@ from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.joints import pin_radii
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
-from equipoise.quantities import DIGITS, display
+from equipoise.quantities import DIGITS, clean, display, format_exact
 from equipoise.symbols.constraints import constraint_marks
 from equipoise.symbols.part_signs import Surroundings, in_order, load_line_marks, signs_of
 from equipoise.symbols.scene import DriveSign, GuideSign, Scene, Wheel, bodies_of, wheels_of
 from equipoise.symbols.shapes import BodyMark
-from equipoise.web.block import FloatBlock, Values
-from equipoise.web.completeness import lacking
 from equipoise.web.design import Design
 from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.edits import Computed, edited, settled, solved
 from equipoise.web.fields import Field, Measure, Scale, constrained_place, measures_of
 from equipoise.web.messages import Change, Entry, Setting
-from equipoise.web.sketch import Sketch
+from equipoise.web.replies import FloatBlock, Values
+from equipoise.web.sketch import Sketch, lacking
 from equipoise.web.state import turning
 from equipoise.web.structure_edits import moved, with_constraints_met
 from equipoise.web.tables import entered
 
 EMPTY = (-0.1 - 0.08j, 0.2 + 0.1j)
 """What is in sight of a machine that has no links yet, m."""
+LONGER = 0.1
+"""By how much a stroke is longer at its other end, over what it is."""
 RAIL = 0.35
 """How far a line reaches from its block to either side, over the size of the machine."""
 
@@ -132,6 +134,7 @@ def changed(
 
 def with_entry(base: Computed | Incomplete, entry: Entry) -> Computed | Incomplete:
     """What is shown with another table of its file, unfinished if it moves otherwise."""
+    entry = _with_stroke(sketch_of(base, 0), entry)
     if isinstance(base, Computed):
         design = entered(base.design, entry)
         try:
@@ -140,6 +143,36 @@ def with_entry(base: Computed | Incomplete, entry: Entry) -> Computed | Incomple
             return computed_or_incomplete(sketch_of(base, 0).taking(design.machine))
     own = entered(Design(base.design.name, plain_of(base)), entry).own
     return computed_or_incomplete(base.design.taking(own))
+
+
+def _with_stroke(sketch: Sketch, entry: Entry) -> Entry:
+    """Entry as it is; but a drive that is to push, and has no stroke yet, gets one that begins
+    as it is drawn: neither can be there without the other.
+    """
+    values, place = entry.values, entry.place
+    if values is None or not (place == ("drive",) or place[:1] == ("drives",) == place[:-1]):
+        return entry
+    drives = (sketch.drive,) if len(place) == 1 else sketch.rest.get("drives", ())
+    drive = dict(enumerate(drives)).get(0 if len(place) == 1 else int(place[1]))
+    length = _pushed(sketch, values)
+    if length is None or (drive is not None and drive.pushes):
+        return entry
+    ends = length, length + LONGER * (abs(length) or sketch.extent)
+    texts = [format_exact(clean(end, "length"), "length") for end in ends]
+    items: dict[str, Any] = {**values, "stroke": {"between": texts}}
+    if values.get("link") in sketch.links:
+        angle = clean(sketch.poses[str(values["link"])].angle, "angle")
+        items.setdefault("start", format_exact(angle, "angle"))
+    return replace(entry, values=items)
+
+
+def _pushed(sketch: Sketch, values: Mapping[str, Any]) -> float | None:
+    """Length of the cylinder, or travel of the sliding joint, that is to be driven, as drawn, m."""
+    between, places = values.get("between"), sketch.places
+    if isinstance(between, list) and len(between) == 2 and {*map(str, between)} <= places.keys():
+        return abs(places[between[1]] - places[between[0]])
+    named = (slider for slider in sketch.sliders if slider.name == values.get("slider"))
+    return next((sketch.travel(item) for item in named), None)
 
 
 def plain_of(computed: Computed | Incomplete) -> Machine:

@@ -40,14 +40,13 @@ from equipoise.results.result import words_of
 from equipoise.schema.numbers import POLAR, FileNumber
 from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
-from equipoise.web.block import Array, Values
 from equipoise.web.documents import ALONE, asset, data, document, script, style, wording_of
-from equipoise.web.drawing import stage_of
+from equipoise.web.drawing import stage_of, ties_of
 from equipoise.web.edits import movable
 from equipoise.web.fields import CYCLE_SPEED, SECTIONS, measures_of
 from equipoise.web.figures import listed_signals
 from equipoise.web.following import extent_of
-from equipoise.web.following_signs import ties_of
+from equipoise.web.replies import Array, Values
 
 PER_MINUTE = "1/min"
 """Unit of cycles a minute, where nothing turns that would have a speed in rpm."""

@@ -6,8 +6,8 @@ import anywidget
 import traitlets
 
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.web.answers import answers
 from equipoise.web.documents import assets
+from equipoise.web.replies import answers
 from equipoise.web.session import Session
 
 

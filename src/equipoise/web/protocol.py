@@ -9,10 +9,124 @@ SI.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NotRequired, TypedDict
+from typing import Annotated, Any, Literal, NotRequired, TypedDict
 
-from equipoise.web.requests import Asked, Edit, FileKind, MadeValues, MakeRequest
-from equipoise.web.table_types import Pair, TablesValues
+from equipoise.web.messages import Asked, Edit, FileKind, MadeValues, MakeRequest, Pair
+
+
+class AskingValues(TypedDict):
+    """What is asked for: how, and in which unit."""
+
+    kind: Literal[
+        "quantity", "number", "text", "choice", "flag", "name", "place", "direction", "list",
+        "names", "file", "wording",
+    ]  # fmt: skip
+    unit: NotRequired[str]
+    options: NotRequired[list[str | int]]
+    of: NotRequired[
+        Annotated[Literal["link", "body", "point", "output"], "Of what it is the name."]
+    ]
+    on: NotRequired[
+        Annotated[str | None, "The key of the same table that names the body of a point."]
+    ]
+    named: NotRequired[Annotated[bool, "Of places: or a point's name."]]
+    space: NotRequired[Annotated[bool, "Of places: with z."]]
+    axes: NotRequired[
+        Annotated[str | None, "Of places: the key that names the link whose axes they are in."]
+    ]
+    item: NotRequired[AskingValues]
+    sizes: NotRequired[Annotated[list[int], "How many there can be; none for one and more."]]
+    bare: NotRequired[Annotated[bool, "Whether one stands without brackets."]]
+    by: NotRequired[Annotated[AskingValues, "What names are of."]]
+    listed: NotRequired[Annotated[bool, "Whether names alone may do."]]
+
+
+class ControlValues(AskingValues):
+    """A key of a table."""
+
+    key: str
+    word: str
+    text: str
+    required: bool
+    default: Any | None
+    example: Any | None
+
+
+ConstantValues = TypedDict(
+    "ConstantValues",
+    {
+        "const": NotRequired[Any],
+        "enum": NotRequired[list[Any]],
+        "type": NotRequired[str],
+        "not": NotRequired["ConstantValues"],
+    },
+)
+ConstantValues.__doc__ = "The values that a key has to have where a rule looks at it."
+
+RuleValues = TypedDict(
+    "RuleValues",
+    {
+        "required": NotRequired[list[str]],
+        "properties": NotRequired[dict[str, Literal[False] | ConstantValues]],
+        "allOf": NotRequired[list["RuleValues"]],
+        "anyOf": NotRequired[list["RuleValues"]],
+        "oneOf": NotRequired[list["RuleValues"]],
+        "not": NotRequired["RuleValues"],
+        "if": NotRequired["RuleValues"],
+        "then": NotRequired["RuleValues"],
+        "else": NotRequired["RuleValues"],
+        "dependentRequired": NotRequired[dict[str, list[str]]],
+        "dependentSchemas": NotRequired[dict[str, "RuleValues"]],
+    },
+)
+RuleValues.__doc__ = "The part of a JSON Schema that states which keys go together."
+
+
+class FormValues(TypedDict):
+    """The keys of a table, and which of them go together."""
+
+    controls: list[ControlValues]
+    rule: RuleValues
+
+
+class TableEntryValues(TypedDict):
+    """A table of the file."""
+
+    place: Annotated[str, "Its path in the file; empty of the whole file."]
+    where: Annotated[str, "Its path, as refusals have it."]
+    words: str
+    values: dict[str, Any]
+    below: Annotated[list[str], "Keys of the tables below it."]
+
+
+class GroupValues(TypedDict):
+    """Tables of one sort that a machine has, or can have."""
+
+    place: Annotated[str, "Its path in the file; empty of the whole file."]
+    where: str
+    form: str
+    many: Literal["one", "list", "named"]
+    word: str
+    text: str
+    of: Annotated[str, "The entry that it belongs to."]
+    needs: Annotated[str, "What has to be there first."]
+    required: bool
+    entries: list[TableEntryValues]
+    result: NotRequired[Annotated[str, "What its entries are together."]]
+
+
+class TablesValues(TypedDict):
+    """The tables of the model file, and the forms in which they are asked for."""
+
+    type: Literal["tables"]
+    seq: int
+    groups: list[GroupValues]
+    forms: dict[str, FormValues]
+    bodies: Annotated[
+        dict[str, dict[str, Pair]], "Points of the frame and of links, in their own axes, m."
+    ]
+    outputs: Annotated[dict[str, str], "What outputs that balancing can take are called, by name."]
+
 
 Arrays = dict[str, tuple[int, int]]
 """Name of an array -> its offset and length in the block of floats."""
@@ -331,6 +445,28 @@ Forms = dict[str, str]
 """Category of a count, such as ``one`` -> the text; ``by`` is the placeholder of the count."""
 
 
+class ToolOptionsValues(TypedDict):
+    """What is asked beside the links of a part before it is added."""
+
+    word: str
+    labels: Annotated[dict[str, str], "What each is called, by its key in the request."]
+    choices: Annotated[dict[str, str], "Values with their names; none where numbers are asked."]
+    value: Annotated[str, "Of each at first."]
+
+
+class PartToolValues(TypedDict):
+    """A tool that adds a part which joins two links."""
+
+    tool: str
+    key: Annotated[str, "By which it is taken."]
+    name: str
+    first: Annotated[str, "What to click first."]
+    then: str
+    picture: Annotated[str, "Path of its icon, in a square of 16."]
+    slides: Annotated[bool, "Whether a click on the block of a slider means its link."]
+    options: ToolOptionsValues | None
+
+
 class SpokenValues(TypedDict):
     """The language that is spoken from now on."""
 
@@ -340,6 +476,7 @@ class SpokenValues(TypedDict):
     languages: Annotated[dict[str, str], "Code of each language there is, and its own name."]
     words: Annotated[dict[str, str], "English text of the page -> text in the language."]
     explained: Annotated[dict[str, str], "Chart -> what it shows, and what to look for."]
+    part_tools: Annotated[list[PartToolValues], "As kinds of parts declare them."]
     particles: ParticlesValues | None
     decimal: Annotated[str, "The sign before the decimals of a number that is shown."]
     forms: Annotated[dict[str, Forms], "English text of the page -> its forms by a count."]

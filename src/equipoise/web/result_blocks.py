@@ -14,8 +14,8 @@ from equipoise.i18n import capital
 from equipoise.present.cells import noted, printed, printed_grid, with_omitted
 from equipoise.results.blocks import Block, Facts, Notes, ReportSection, Table, Text
 from equipoise.results.charts import Axis, Chart, Curve, Mark, Panel
-from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.figures import chart
+from equipoise.web.replies import Array, FloatBlock, Values
 
 MOST_POINTS = 20_000
 """Values of a curve that are sent; no screen has more columns of pixels."""

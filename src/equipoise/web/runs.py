@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
+from collections.abc import Callable
 from math import pi
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.results.blocks import Block, Text
 from equipoise.signals import Array
 from equipoise.symbols.scene import Scene
-from equipoise.web.block import FloatBlock, Values
 from equipoise.web.drawing import moves_of
 from equipoise.web.edits import Computed, kept_with_first
-from equipoise.web.incomplete import Incomplete
-from equipoise.web.messages import Message
-from equipoise.web.replies import Reply
+from equipoise.web.replies import FloatBlock, Values
 from equipoise.web.result_blocks import block_messages, panel_charts
 
 if TYPE_CHECKING:
@@ -32,46 +27,6 @@ MOST_FRAMES = 2000
 MOST_INSTANTS = 20_000
 """Instants of a run of one crank whose angles are sent; between them a page interpolates."""
 CHANGED = Note("the machine was changed while it ran; run it again")
-
-
-class RunSession(Protocol):
-    """What a run needs of a session."""
-
-    current_state: Computed | Incomplete | None
-    language: str
-
-    def current(self) -> Computed:
-        """The design that is."""
-
-    def number_of(self, result: Computed) -> int:
-        """By which a page knows that it shows a design."""
-
-    def localized(self) -> AbstractContextManager[None]:
-        """Inside, the reader's language is spoken, in the units of the file that is open."""
-
-
-def answered(session: RunSession, message: Message) -> Iterator[Reply]:
-    """Run a session's machine at once, and show what came of it."""
-    yield computed(session, session.current(), message)
-
-
-def computed(session: RunSession, base: Computed, message: Message) -> Reply:
-    """Run a design as its file has it.
-
-    Raises
-    ------
-    UsageError : the machine is no longer `base`; others as of `run`.
-    """
-
-    def progress(turns: int, most: int) -> None:
-        if session.current_state is not base:
-            raise UsageError(CHANGED)
-
-    result = run_of(base, progress)
-    with session.localized():
-        content, data = run_message(result, base)
-    head = {"type": "run", "seq": message.seq, "design": session.number_of(base)}
-    return Reply({**head, **content}, data)
 
 
 @kept_with_first

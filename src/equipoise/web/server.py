@@ -1,4 +1,4 @@
-"""The local server of the live page, and requests as they come in.
+"""The local server of the live page: requests as they come in, and each page on its WebSocket.
 
 Only the page whose address was printed may talk to it, from this machine.  A page of another site
 can send requests to 127.0.0.1, and a name of another site can be made to point there.  So every
@@ -12,12 +12,17 @@ import asyncio
 import os
 import socket
 import sys
+import traceback
+from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from concurrent.futures import Executor
+from contextlib import contextmanager, suppress
+from functools import partial
 from secrets import compare_digest, token_urlsafe
 from typing import TYPE_CHECKING, Any
 
 import h11
+from starlette.websockets import WebSocketDisconnect
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from equipoise.errors import UsageError
@@ -26,15 +31,17 @@ from equipoise.interrupts import answered
 from equipoise.schema.files import reason
 from equipoise.web.desk import PageBackend
 from equipoise.web.documents import TYPES, assets, document
-from equipoise.web.lanes import Lanes
-from equipoise.web.messages import LARGEST_MESSAGE
-from equipoise.web.page import Page, turn_away
+from equipoise.web.lanes import MOMENT, EndedError, Lanes, PageWork, give_back
+from equipoise.web.messages import LARGEST_MESSAGE, SLOW, Message, makes_way, read
+from equipoise.web.replies import CANCELLED, Reply, busy, completed, packed, refused, unexpected
 
 if TYPE_CHECKING:
     import uvicorn
     from starlette.requests import Request
-    from starlette.types import ASGIApp, Message, Receive, Scope, Send
+    from starlette.types import ASGIApp, Receive, Scope, Send
+    from starlette.types import Message as AsgiMessage
     from starlette.websockets import WebSocket
+
 
 LONGEST = 10.0
 """s in which a request has to come, from the opening of its connection or its first byte on.
@@ -77,13 +84,23 @@ class Incoming(H11Protocol):
 
 
 HOSTS = ("127.0.0.1", "localhost")
+
+
 TOKEN = "this address has no valid token; open the one that `equipoise serve` has printed"
+
+
 ORIGIN = "requests from pages of other sites are refused; open the address that was printed"
+
+
 HOST = "this server answers by the names 127.0.0.1 and localhost only"
+
+
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
+
+
 HEADERS = {
     "content-security-policy": POLICY,
     "x-content-type-options": "nosniff",
@@ -93,6 +110,8 @@ HEADERS = {
     "cache-control": "no-store",
 }
 """Of every response.  Nothing is loaded from elsewhere, and the token is sent to nobody."""
+
+
 _ENCODED = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
 
 
@@ -112,7 +131,7 @@ class Guard:
             await self.app(scope, receive, send)
             return
 
-        async def with_headers(message: Message) -> None:
+        async def with_headers(message: AsgiMessage) -> None:
             if message["type"].endswith("response.start"):
                 message["headers"] = [*message.get("headers", []), *_ENCODED]
             await send(message)
@@ -152,16 +171,30 @@ async def refuse(problem: str, scope: Scope, send: Send) -> None:
 
 
 ADDRESS = "127.0.0.1"
+
+
 USUAL = 8471
 """Port that is tried first, so that a browser finds again what it keeps for an address."""
+
+
 SWITCH = 1e-3
 """s after which a thread that computes makes way for another; five times as often as usual, so
 that a short answer does not wait for long ones.
 """
+
+
 MOST_PAGES = 20
+
+
 FULL = Note("{most_pages} pages are open already; close one of them", most_pages=MOST_PAGES)
+
+
 NOTHING = "equipoise: there is nothing here; open the address that was printed\n"
+
+
 HEAD = '<link rel="stylesheet" href="/equipoise.css?token={token}">'
+
+
 BODY = """<main id="equipoise-live" data-live="/live?token={token}"></main>
 <noscript>This page needs JavaScript.</noscript>
 <script type="module" src="/equipoise.js?token={token}"></script>"""
@@ -288,3 +321,242 @@ def _listening(port: int | None) -> socket.socket:
             )
         ) from error
     return listener
+
+
+# -- a page on its WebSocket -----------------------------------------------------------------------
+
+
+MOST_WAITING, MOST_QUESTIONS = 100, 3
+
+
+PAUSE = 0.2
+"""s without a message, after which deferred replies are sent."""
+
+
+NEXT = 0.1
+"""s within which a drag that goes on sends its next move; else what follows a state is sent too."""
+
+
+SELDOM = 0.2
+"""s after which that is sent even during a drag that never pauses."""
+
+
+MANY_QUESTIONS = Note("questions that take long are still being answered; wait for them")
+
+
+FLOODED = "too many messages at once; load the page again"
+
+
+POLICY_VIOLATION, TRY_LATER = 1008, 1013
+
+
+class Page:
+    """A page that is open.
+
+    lanes : threads that compute; what takes long has its own, so that dragging goes on.
+    question : the work on the last question that takes long, and whether it goes on (`answering`).
+    cancelled : questions that take long and were cancelled, and are to be refused.
+    whole : when all that follows from a message was sent last, s.
+    """
+
+    def __init__(self, socket: WebSocket, desk: PageBackend, lanes: Lanes) -> None:
+        self.socket, self.desk, self.lanes, self.work = socket, desk, lanes, PageWork()
+        self.answering, self.question = False, PageWork()
+        self.cancelled: deque[Message] = deque()
+        self.waiting: deque[Message | UsageError] = deque()
+        self.come = asyncio.Event()
+        self.closed = False
+        self.last: Message | None = None
+        self.answered = self.completed_seq = 0
+        self.whole = 0.0
+        self.questions: asyncio.Queue[Message] = asyncio.Queue(MOST_QUESTIONS)
+        self.deferred_task: asyncio.Task[None] | None = None
+
+    async def run(self) -> None:
+        """Answer until the page is closed."""
+        await self.socket.accept()
+        # What computes has a task of its own each: a page that is closed waits for none of them.
+        tasks = [asyncio.create_task(item) for item in (self._read(), self._work(), self._talk())]
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self.closed = True
+            self.work.end()
+            self.question.end()
+            tasks += [self.deferred_task] if self.deferred_task is not None else []
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _talk(self) -> None:
+        await self._send(self.desk.hello())
+        while (message := await self._next()) is not None:
+            await self._take(message)
+
+    # -- what comes in -----------------------------------------------------------------------------
+
+    async def _read(self) -> None:
+        """Take messages in; an edit that is only tried makes way for a newer one."""
+        while not self.closed:
+            event = await self.socket.receive()
+            if event["type"] != "websocket.receive":
+                break
+            message = _message(event.get("text"))
+            if isinstance(message, Message) and message.kind == "cancel":
+                await self._cancel()  # before what waits for an answer
+                continue
+            if self.waiting and makes_way(self.waiting[-1], message):
+                self.waiting.pop()
+            self.waiting.append(message)
+            self.come.set()
+            if len(self.waiting) > MOST_WAITING:
+                await self.socket.close(POLICY_VIOLATION, FLOODED)
+                break
+        self.closed = True
+        self.come.set()
+
+    async def _next(self) -> Message | UsageError | None:
+        while not self.waiting and not self.closed:
+            self.come.clear()
+            await self.come.wait()
+        return None if self.closed else self.waiting.popleft()
+
+    # -- what goes out -----------------------------------------------------------------------------
+
+    async def _take(self, message: Message | UsageError) -> None:
+        if isinstance(message, UsageError):
+            await self._send(refused(None, message))
+        elif message.kind not in SLOW:
+            self.last = message
+            known = message.kind != "open" and self.work.spent < MOMENT
+            lane = self.lanes.quick if known else self.lanes.heavy
+            await self._answer(self.desk.receive(message), message, lane, timed=True)
+            self._go_on(message)
+        elif self.questions.full():
+            await self._send(refused(message.seq, UsageError(MANY_QUESTIONS)))
+            self._go_on(message)
+        else:
+            self.questions.put_nowait(message)
+            if (begun := busy(message, self.desk.language)) is not None:
+                await self._send(begun)  # also while others' questions are answered
+
+    async def _work(self) -> None:
+        """Answer what takes long, one after the other, beside what does not."""
+        while True:
+            message = await self.questions.get()
+            self.answering, self.question = True, PageWork()
+            self.desk.session.before_change = self.question.commit
+            try:
+                replies, lane = self.desk.receive(message), self.lanes.long
+                await self._answer(replies, message, lane, self.question)
+            except (EndedError, asyncio.CancelledError):
+                if self.closed:
+                    raise
+                self.cancelled.appendleft(message)
+            else:
+                self._go_on(message)
+            self.answering = False
+            await self._refuse_cancelled()
+            await asyncio.get_running_loop().run_in_executor(self.lanes.long, give_back)
+
+    async def _cancel(self) -> None:
+        """Give up the question that is answered, if it has not yet changed anything, and those that
+        wait for it.
+        """
+        self.cancelled += [self.questions.get_nowait() for _ in range(self.questions.qsize())]
+        for message in [*self.waiting]:
+            if isinstance(message, Message) and message.kind in SLOW:
+                self.waiting.remove(message)
+                self.cancelled.append(message)
+        self.question.end()
+        if not self.answering:  # else when that has ended: a page takes the last answer for all
+            await self._refuse_cancelled()
+
+    async def _refuse_cancelled(self) -> None:
+        while self.cancelled:
+            message, language = self.cancelled.popleft(), self.desk.session.language
+            await self._send(refused(message.seq, UsageError(CANCELLED), language))
+            self._go_on(message)
+
+    def _go_on(self, message: Message) -> None:
+        self.answered = max(self.answered, message.seq or 0)
+        if _done(self.deferred_task):
+            self.deferred_task = asyncio.create_task(self._send_deferred())
+
+    async def _send_deferred(self) -> None:
+        """Send deferred replies, then the message that all answers have been sent."""
+        while not self.closed:
+            last = self.last
+            if self.desk.has_more:
+                await asyncio.sleep(PAUSE)
+                if not self.waiting and self.last is last:
+                    await self._answer(self.desk.deferred_replies(), None, self.lanes.long)
+            elif self.completed_seq < self.answered:
+                self.completed_seq = self.answered
+                await self._send(completed(self.completed_seq))
+            else:
+                break
+
+    async def _answer(
+        self,
+        replies: Iterator[Reply],
+        to: Message | None,
+        lane: Executor,
+        work: PageWork | None = None,
+        timed: bool = False,
+    ) -> None:
+        """Send replies as they are computed; a mistake of the program must not end the page."""
+        loop, work = asyncio.get_running_loop(), work or self.work
+        try:
+            while True:
+                step = work.submit(lane, partial(next, replies, None), timed)
+                reply = await asyncio.wrap_future(step)
+                if reply is None:
+                    self.whole = loop.time()
+                    break
+                await self._send(reply)
+                if to is not None and to.preview and await self._overtaken(loop.time()):
+                    break
+        except Exception as error:  # whatever it is, the last good state is still there
+            if not isinstance(error, MemoryError):
+                traceback.print_exception(error, file=sys.stderr)
+            seq = None if to is None else to.seq
+            await self._send(refused(seq, unexpected(error)))
+
+    async def _overtaken(self, now: float) -> bool:
+        """Whether a drag goes on, so that further replies on this move are omitted."""
+        if now - self.whole > SELDOM:
+            return False
+        if not self.waiting:
+            self.come.clear()
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self.come.wait(), NEXT)
+        return bool(self.waiting)
+
+    async def _send(self, reply: Reply) -> None:
+        try:
+            if not self.closed:
+                await self.socket.send_bytes(packed(reply))
+        except (WebSocketDisconnect, RuntimeError):  # the page has gone without a word
+            self.closed = True
+            self.come.set()
+
+
+async def turn_away(socket: WebSocket, why: Note) -> None:
+    """Refuse to serve a page, with the reason."""
+    await socket.accept()
+    await socket.send_bytes(packed(refused(None, UsageError(why))))
+    await socket.close(TRY_LATER, why)
+
+
+def _message(text: str | None) -> Message | UsageError:
+    if text is None:
+        return UsageError(Note("the message is no text; give JSON"))
+    try:
+        return read(text)
+    except UsageError as error:
+        return error
+
+
+def _done(task: asyncio.Task[None] | None) -> bool:
+    return task is None or task.done()

@@ -1,4 +1,4 @@
-"""One page: what it asks, what it is answered, and files to keep.
+"""The session of a page: what it asks of a machine, and what it is answered.
 
 It knows nothing of how messages travel.
 """
@@ -9,45 +9,55 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import field
 from threading import Lock
+from typing import TYPE_CHECKING
 
 from equipoise import __version__
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
-from equipoise.i18n import Note, localized, speaking, wording
+from equipoise.i18n import Note, localized, say, speaking, wording
+from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.kinematics.machine_draft import USUAL_SIZE
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.results.result import words_of
+from equipoise.schema.documents import dumps
 from equipoise.schema.files import LARGEST
 from equipoise.schema.template import named_parts
-from equipoise.web import file_requests, table_requests
-from equipoise.web.block import Array, Values
 from equipoise.web.deferred import deferred_replies, response_of
-from equipoise.web.design import Design
-from equipoise.web.disk import Disk
+from equipoise.web.design import Design, History, HistoryStep
 from equipoise.web.documents import language_of, spoken_in, wording_of
 from equipoise.web.edits import Computed, settled, solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.figures import figures_of
-from equipoise.web.gallery import opened_example, opened_text, titles, tool_titles
-from equipoise.web.history import History, HistoryStep
+from equipoise.web.files import NOT_OF_FILE, Disk, downloaded
+from equipoise.web.gallery import opened_example, opened_text, pictured, titles, tool_titles
 from equipoise.web.incomplete import (
     Incomplete,
     changed,
     computed,
     computed_or_incomplete,
     finished,
+    plain_of,
     sketch_of,
     state_of_sketch,
+    with_entry,
 )
-from equipoise.web.measured_records import MeasuredSignals
-from equipoise.web.messages import MOST_LANGUAGES, SLOW, Message
-from equipoise.web.replies import Reply, refused
+from equipoise.web.measured_records import MeasuredSignals, record_of_text
+from equipoise.web.messages import MOST_LANGUAGES, MOST_OUTPUTS, SLOW, Message
+from equipoise.web.replies import Array, Reply, Values, refused
 from equipoise.web.sketch import Sketch
-from equipoise.web.sketch_edits import lost, sketch_after
 from equipoise.web.state import first_of, spectra_of, state_of
-from equipoise.web.view_state import ASKED, ViewState
+from equipoise.web.structure_edits import lost, sketch_after
+from equipoise.web.tables import tables_of
+from equipoise.web.view_state import ViewState, points_of, signals_without_chart
+
+if TYPE_CHECKING:
+    from equipoise.web.balanced import Balancing
+
+NO_STORE = Note("no store of a study is open; give one to `equipoise serve`")
+OF_VARIANTS = ("pin", "rename", "drop", "go", "against")
+"""What can be done with designs that are kept."""
 
 
 @dataclass
@@ -74,7 +84,7 @@ class Session:
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
-    history: History | None = None
+    history: History[Design | Sketch] | None = None
     current_state: Computed | Incomplete | None = None
     preview: Computed | Incomplete | None = None
     before: Computed | None = None
@@ -96,10 +106,6 @@ class Session:
         """Answer a message; what takes long comes last, and may be left unasked."""
         good = self.history, self.current_state, self.preview
         try:
-            for handlers in (file_requests.ASKED, table_requests.ASKED, ASKED):
-                if message.kind in handlers:
-                    yield from handlers[message.kind](self, message)
-                    return
             yield from getattr(self, f"_{message.kind}")(message)
         except EquipoiseError as error:
             yield refused(message.seq, error, self.language)
@@ -117,14 +123,58 @@ class Session:
             yield from self.state_replies(message.seq)
 
     def _balance(self, message: Message) -> Iterator[Reply]:
-        from equipoise.web import balanced
+        base = self.current()
+        yield from self.adopted(base, self.balancing(base, message), message)
 
-        yield from balanced.answered(self, message)
+    def balancing(self, base: Computed, message: Message) -> Balancing:
+        """Balance a design, and show nothing yet; errors as of `balance`."""
+        from equipoise.web.balanced import balancing_of
+
+        return balancing_of(base, message.flag("hold", False), self.localized)
+
+    def adopted(self, base: Computed, balancing: Balancing, message: Message) -> Iterator[Reply]:
+        """Show a balanced design as the next step.
+
+        Raises
+        ------
+        UsageError : the machine is no longer `base`.
+        """
+        if balancing.design is None:
+            yield from self.state_replies(message.seq, *filter(None, [balancing.nothing]))
+            return
+        after = solved(balancing.design)
+        self.before_change()
+        with self.lock:
+            if self.current_state is not base:
+                raise UsageError(
+                    Note("the machine was changed while it was balanced; balance it again")
+                )
+            self.go_to(after, "balance")
+            self.before = base
+        yield Reply({"type": "balanced", "seq": message.seq, **balancing.content})
+        yield from self.state_replies(message.seq)
 
     def _run(self, message: Message) -> Iterator[Reply]:
-        from equipoise.web import runs
+        yield self.run_reply(self.current(), message)
 
-        yield from runs.answered(self, message)
+    def run_reply(self, base: Computed, message: Message) -> Reply:
+        """Run a design as its file has it.
+
+        Raises
+        ------
+        UsageError : the machine is no longer `base`; others as of `run`.
+        """
+        from equipoise.web.runs import CHANGED, run_message, run_of
+
+        def progress(turns: int, most: int) -> None:
+            if self.current_state is not base:
+                raise UsageError(CHANGED)
+
+        result = run_of(base, progress)
+        with self.localized():
+            content, data = run_message(result, base)
+        head = {"type": "run", "seq": message.seq, "design": self.number_of(base)}
+        return Reply({**head, **content}, data)
 
     def _cancel(self, message: Message) -> Iterator[Reply]:
         yield from ()  # a server acts on it at once; elsewhere nothing is computed any more
@@ -205,6 +255,105 @@ class Session:
         for name in names:
             _ = self.current().analysis.outputs[name]
         self.wanted = names
+        yield from self.state_replies(message.seq)
+
+    def _tables(self, message: Message) -> Iterator[Reply]:
+        with self.localized():
+            tables = tables_of(plain_of(self.base()))
+        yield Reply({"type": "tables", "seq": message.seq, **tables})
+
+    def _entry(self, message: Message) -> Iterator[Reply]:
+        with self.lock, self.localized():
+            self.go_to(with_entry(self.base(), message.entry()), message.label)
+        yield from self.state_replies(message.seq)
+
+    # -- its files, and those that it is offered ---------------------------------------------------
+
+    def _save(self, message: Message) -> Iterator[Reply]:
+        current = self.current()
+        if self.disk is None:
+            raise UsageError(Note(NOT_OF_FILE, name=current.design.name))
+        first = self._past.first
+        text = dumps(first.machine) if isinstance(first, Design) else self.disk.text
+        self.disk.save(current.design.machine)
+        yield from self.state_replies(message.seq)
+        yield self.disk.reply(message.seq, text)
+
+    def _download(self, message: Message) -> Iterator[Reply]:
+        current = self.current()
+
+        def everything(language: str) -> Iterator[Reply]:
+            """Every reply that a page could get on the design, in a language."""
+            other = Session()
+            other.open(current.design, current)
+            other.wanted = tuple(output.name for output in current.analysis.outputs)
+            yield from other.receive(Message("speak", None, {"languages": [language]}))
+            yield from other.receive(Message("ready", None, {}))
+            yield from other.deferred_replies()
+
+        with self.localized():
+            content, data = downloaded(current, message, everything)
+        yield Reply({"type": "file", "seq": message.seq, **content}, data)
+
+    def _gallery(self, message: Message) -> Iterator[Reply]:
+        pictures = pictured()
+        while True:
+            with self.localized():  # left where this waits: whoever goes on may be another thread
+                picture = next(pictures, None)
+            if picture is None:
+                break
+            content, data = picture
+            yield Reply({"type": "pictured", "seq": message.seq, **content}, data)
+        yield Reply({"type": "gallery", "seq": message.seq})
+
+    def _stores(self, message: Message) -> Iterator[Reply]:
+        """Without a server there are none."""
+        yield Reply({"type": "stores", "seq": message.seq, "folder": None, "names": []})
+
+    def _study(self, message: Message) -> Iterator[Reply]:
+        """Nothing that is asked of a store is here."""
+        raise UsageError(NO_STORE)
+
+    _design = _study
+
+    # -- what is shown besides the machine ---------------------------------------------------------
+
+    def _arrows(self, message: Message) -> Iterator[Reply]:
+        """Show arrows at a point, or at none."""
+        point = message.text("point", "") or None
+        points = points_of(self.shown.analysis)
+        if point is not None and point not in points:
+            raise UsageError(unknown(point, points, "point"))
+        self.view_state.arrows_at = point
+        yield from self.state_replies(message.seq)
+
+    def _variant(self, message: Message) -> Iterator[Reply]:
+        """Keep the design, or do something with one that is kept."""
+        doing, view = message.text("do"), self.view_state
+        with self.lock:
+            if doing == "pin":
+                view.variants = view.variants.pinned(self.current())
+            elif doing == "rename":
+                view.variants = view.variants.renamed(message.text("name"), message.text("to"))
+            elif doing == "drop":
+                view.variants = view.variants.without(message.text("name"))
+            elif doing == "against":
+                view.variants = view.variants.with_comparison(message.text("to"))
+            elif doing == "go":
+                name = message.text("name")
+                self.go_to(view.variants.of(name), say("go to {name}", name=name))
+            else:
+                raise UsageError(unknown(doing, OF_VARIANTS, "thing to do with a variant"))
+        yield from self.state_replies(message.seq)
+
+    def _record(self, message: Message) -> Iterator[Reply]:
+        """Draw a record beside the machine's own signals, or none where it has no text."""
+        text, record = message.text("text", ""), None
+        if text:
+            record = record_of_text(message.text("name", "record.csv"), text)
+            wanted = (*self.wanted, *signals_without_chart(record, self.shown))
+            self.wanted = tuple(dict.fromkeys(wanted))[-MOST_OUTPUTS:]
+        self.view_state.record = record
         yield from self.state_replies(message.seq)
 
     # -- its state ---------------------------------------------------------------------------------
@@ -318,7 +467,7 @@ class Session:
         return finished(self.view)
 
     @property
-    def _past(self) -> History:
+    def _past(self) -> History[Design | Sketch]:
         self.base()
         assert self.history is not None
         return self.history
@@ -333,7 +482,9 @@ class Session:
         """The design that is, or a `UsageError` where it is not finished."""
         return finished(self.base())
 
-    def _go(self, history: History, result: Computed | Incomplete | None = None) -> None:
+    def _go(
+        self, history: History[Design | Sketch], result: Computed | Incomplete | None = None
+    ) -> None:
         """Show where a history has come to; nothing has changed where that cannot be computed."""
         result = result or computed(history.now.design)
         self.view_state.last = last = (
@@ -377,7 +528,7 @@ class Session:
 
     def _state(self, seq: int | None) -> Reply:
         assert self.scale is not None
-        view, history = self.view, self._past
+        view = self.view
         if isinstance(view, Incomplete):
             content, data = state_of_sketch(view, self.scale)
             self.written = None
@@ -390,13 +541,12 @@ class Session:
         file = self.disk and self.disk.status(
             now.design.machine if isinstance(now, Computed) else None
         )
-        steps = [len(history.past), len(history.future)]
         content["wording"] = wording_of(words_of(self._machine))
         if self.numbered[0] is not view:
             self.numbered = view, self.numbered[1] + 1
         content["design"] = self.number_of(view)
-        text = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
-        return Reply({"type": "state", "seq": seq, **text, **content}, data)
+        text = {"type": "state", "seq": seq, **self._past.content, "file": file}
+        return Reply({**text, **content}, data)
 
     def number_of(self, result: Computed | Incomplete) -> int:
         """By which a page knows that it shows a design; 0 of one that it does not show."""

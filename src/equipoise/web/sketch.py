@@ -1,28 +1,42 @@
-"""A machine that is being made on a page: an outline that can be changed part by part."""
+"""A machine that is being made on a page: an outline that can be changed part by part.
+
+What it lacks to be computed is one sentence that says what to do (`lacking`).  A link that is drawn
+is a bar of flat steel, assumed until its masses are given.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, fields, replace
+from math import floor, log10
 from typing import Any
 
 from equipoise.dataclass import dataclass
+from equipoise.i18n import all_of, localized, say, to_say
+from equipoise.mechanism.assembly.joints import Structure, held_too_often, undetermined
 from equipoise.mechanism.kinematics.machine_draft import STILL, LinkPlacement, MachineDraft
+from equipoise.mechanism.parts.bodies import MATERIALS, Body
 from equipoise.mechanism.parts.element_kinds import part_kinds
+from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import clean_place
-from equipoise.web.assumed_masses import rebuilt
+from equipoise.schema.entries import own_keys
 from equipoise.web.design import Counterweight, Design
 from equipoise.web.edits import Computed, solved
+from equipoise.web.tables import word_of
 
 UNTITLED = "untitled"
+
+
 REST = tuple(
     {item.name for item in fields(Machine)}.difference(
         (item.name for item in fields(MachineDraft)), ("assembly", "position")
     )
 )
 """Fields of a machine that a sketch hands on as they are; sides and places follow from it."""
+
+
 LISTS = (*part_kinds(Machine), "loads", "timed_loads", "joints", "constraints")
 """Those of them that have names of links and points in them."""
 
@@ -118,3 +132,173 @@ class Sketch(MachineDraft):
         machine = self.settled()
         weights = {item: w for item, w in self.counterweights.items() if item in self.links}
         return solved(Design(self.name, machine, weights))
+
+
+# -- what it lacks ---------------------------------------------------------------------------------
+
+
+AND = to_say("{names} and {last}")
+
+
+OR = to_say("{names} or {last}")
+
+
+def lacking(sketch: Sketch) -> str:
+    """What is missing before a sketch can be computed; empty where nothing is, as far as joints
+    and the drive are concerned.  Whether joints hold too much, lengths decide once it is driven.
+    """
+    if not sketch.links:
+        return say("nothing moves yet: draw a link from a point of the frame")
+    joints = sketch.joints
+    if not any(FRAME in bodies for bodies in joints.pins.values()):
+        return say("the machine is not connected to the frame: pin one of its points to the frame")
+    mobility, drive = sketch.mobility, sketch.drive
+    wanted = max(len(sketch.driven), 1)
+    if mobility > wanted:
+        too_many = say(
+            "mobility is {mobility}; expected {wanted}", mobility=mobility, wanted=wanted
+        )
+        return f"{too_many}; {_loose(sketch, joints)}"
+    if mobility < 1 and drive is None:
+        links = _listed(held_too_often(joints, sketch.driven), AND)
+        return say(
+            "no degree of freedom: overconstrained by the joints of {links}; free a point",
+            links=links,
+        )
+    return _without_drive(_pivoted(sketch)) if drive is None else ""
+
+
+def forces_lack(machine: Machine) -> str:
+    """What forces need that links lack, in the words of its form; empty where none does."""
+    missing = [name for name, link in machine.links.items() if not link.has_mass]
+    if not missing:
+        return ""
+    own = own_keys(Link)
+    numbers = all_of([word_of(own[key]) for key in ("mass", "center_of_mass", "inertia")], True)
+    return say(
+        "forces need {numbers} of every link: give them, or bodies, at “{place}” for {links}",
+        numbers=localized(numbers),
+        place=say("Parts of the model"),
+        links=_listed(missing, AND),
+    )
+
+
+def _without_drive(cranks: Sequence[str]) -> str:
+    if not cranks:
+        return say("no drive: pin a link to the frame at one point, for the crank")
+    return say("no drive: choose the driven link ({links})", links=_listed(cranks, OR))
+
+
+def _loose(sketch: Sketch, joints: Structure) -> str:
+    """What moves besides, and what to do about it."""
+    left = undetermined(joints, sketch.driven)
+    for link in left:
+        free = [point for point in sketch.links[link].points if point not in joints.pins]
+        constrained = len(sketch.links[link].points) - len(free)
+        constrained += sum(link in (slider.link, slider.on) for slider in sketch.sliders)
+        if constrained < 2 and free:
+            points = _listed(free, OR)
+            return say(
+                "{link} is not connected: pin {points} to another link or the frame",
+                link=link,
+                points=points,
+            )
+    links = _listed(left or [*sketch.links], AND)
+    return say(
+        "the position of {links} is undetermined: add a link, a joint or another drive", links=links
+    )
+
+
+def _pivoted(sketch: Sketch) -> list[str]:
+    """Links that could be the crank."""
+    return [
+        name
+        for name, link in sketch.links.items()
+        if sum(point in sketch.frame for point in link.points) == 1 and len(link.points) > 1
+    ]
+
+
+def _listed(names: Sequence[str], several: str) -> str:
+    """Names in a sentence; several : how the last is joined to those before."""
+    matching_names = [name for name in names if name]
+    if len(matching_names) < 2:
+        return "".join(matching_names)
+    return say(several, names=", ".join(matching_names[:-1]), last=matching_names[-1])
+
+
+# -- assumed masses --------------------------------------------------------------------------------
+
+
+Links = Mapping[str, Link]
+
+
+SLENDER, FLAT = 5.0, 3.0
+"""Length over width of the first bar that is drawn, and width over thickness of its section."""
+
+
+STEPS = (1.0, 1.2, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+"""Round numbers of a decade, as flat steel is rolled."""
+
+
+def assumed_bar(links: Links, length: float, first: str, second: str) -> Body:
+    """Return a bar (length in m) between two points, of the section that drawn links have."""
+    width, thickness = _section(links, length)
+    return _of_steel((first, second), width, thickness)
+
+
+def assumed_block(links: Links, length: float) -> Body:
+    """Return the block of a slider: twice as long as it is wide, its middle in the origin of its
+    axes.
+
+    length : of its guide as it is drawn, m, where nothing has a section yet.
+    """
+    width, thickness = _section(links, length)
+    return _of_steel(((-width, 0.0), (width, 0.0)), width, thickness)
+
+
+def _of_steel(between: tuple[Any, Any], width: float, thickness: float) -> Body:
+    return Body("bar", between=between, width=width, thickness=thickness,
+                density=MATERIALS["steel"], assumed=True)  # fmt: skip
+
+
+def _section(links: Links, length: float) -> tuple[float, float]:
+    """Width and thickness (m) of the bar that was drawn last, or one for such a length."""
+    bodies = [body for link in links.values() for body in link.bodies]
+    for body in reversed(bodies):
+        if body.assumed and body.width is not None and body.thickness is not None:
+            return body.width, body.thickness
+    width = _round(length / SLENDER)
+    return width, _round(width / FLAT)
+
+
+def _round(length: float) -> float:
+    """Return the round length (m) next below, in whole parts of its decade."""
+    decade = floor(log10(length))
+    part = max(step for step in STEPS if step <= length / 10.0**decade * (1 + 1e-9))
+    return float(f"{part}e{decade}")
+
+
+def rebuilt(link: Link, points: Mapping[str, Vector]) -> dict[str, Any]:
+    """Return what of a link is other with other points: its assumed bars follow them.
+
+    A bar whose end has another name goes on to that; one whose end is gone goes between the first
+    two points, or goes too, and the mass with the last body.
+    """
+    names = [*points]
+    renamed = dict(zip(link.points, names, strict=True)) if len(names) == len(link.points) else {}
+    bodies = tuple(
+        bar for body in link.bodies for bar in (_between(body, names, renamed),) if bar is not None
+    )
+    if bodies == link.bodies:
+        return {}
+    return {"bodies": bodies} if bodies else dict.fromkeys(MASS_FIELDS)
+
+
+def _between(body: Body, names: list[str], renamed: Mapping[str, str]) -> Body | None:
+    gone = [end for end in body.between if isinstance(end, str) and end not in names]
+    if not body.assumed or not gone:
+        return body
+    ends = tuple(renamed.get(end, end) if isinstance(end, str) else end for end in body.between)
+    if any(isinstance(end, str) and end not in names for end in ends) or ends[0] == ends[1]:
+        ends = (*names[:2],)
+    return replace(body, between=ends) if len(ends) == 2 else None

@@ -16,13 +16,13 @@ from equipoise.quantities import Dimension, Display, display
 from equipoise.results.analysis import Analysis
 from equipoise.results.machine_blocks import driven
 from equipoise.signals import Periodic
-from equipoise.web.block import Array, FloatBlock, Values
-from equipoise.web.completeness import forces_lack
 from equipoise.web.drawing import circles_of, ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed, kept_with_first, movable
 from equipoise.web.figures import charts_of, least_of, signals_of
 from equipoise.web.following import extent_of
 from equipoise.web.measured_records import MeasuredSignals
+from equipoise.web.replies import Array, FloatBlock, Values
+from equipoise.web.sketch import forces_lack
 from equipoise.web.view_state import arrows_of, points_of, record_values
 
 MOST_ORDER = 20

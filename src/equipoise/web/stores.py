@@ -24,8 +24,7 @@ from equipoise.studies.outcomes import feasible
 from equipoise.studies.selection import best
 from equipoise.studies.store import ABOUT, MARK, UNKNOWN, Store, open_store
 from equipoise.studies.study import random_numbers
-from equipoise.web.block import Array, FloatBlock, Values
-from equipoise.web.replies import Reply
+from equipoise.web.replies import Array, FloatBlock, Reply, Values
 
 MOST, BEST = 5_000, 50
 """Designs that a page is sent; of the best, those that are marked."""

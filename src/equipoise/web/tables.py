@@ -1,35 +1,59 @@
-"""The tables of a machine's file on a page: what there is, what can be added, and changing it."""
+"""The tables of a machine's file on a page: what there is, what can be added, and changing it.
+
+A form has a control for each key of a table, as the key is declared: `CONTROLS` has that of each
+kind of value, and nothing of forms knows a table or a key.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import cache
+from itertools import count
+from math import pi
 from types import MappingProxyType
 from typing import Any
 
+from equipoise import keys
 from equipoise.errors import UsageError
 from equipoise.i18n import Worded, say, to_say
 from equipoise.keys import Frozen, Key, Named, Quantity, Tables, Wording
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.outputs.declaring import declared
+from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.mechanism.parts.shown_units import SIGN, amounts_of
-from equipoise.quantities import clean, format_exact, format_quantity, parse_expression, pattern
+from equipoise.quantities import (
+    clean,
+    display,
+    format_exact,
+    format_quantity,
+    parse,
+    parse_expression,
+    pattern,
+)
 from equipoise.quantities.expressions import Names, names_in
 from equipoise.schema.entries import Document, entry_of, kind_at, own_keys, tables_below
-from equipoise.schema.writing import value_text
-from equipoise.web.dependent_entries import completed
+from equipoise.schema.file_numbers import plain_word
+from equipoise.schema.open_files import document_of
+from equipoise.schema.writing import plain_default, value_text
 from equipoise.web.design import Design, pin_of
-from equipoise.web.forms import Values, forms_of, text_of, word_of
 from equipoise.web.messages import Entry
 
+Values = dict[str, Any]
 MOST_WORDS = 4
 """Keys of an entry, at most, that are shown where it is listed."""
+
+
 LONGEST_VALUE = 40
+
+
 MANY_DIGITS = re.compile(r"^-?\d*\.\d{6,}(?:e-?\d+)?(?= )")
 """A computed number before its unit."""
+
+
 WHOLE = to_say("machine"), to_say("title, gravity and what else is of the whole")
 """What the table around all others is called, and what it holds."""
 
@@ -212,3 +236,251 @@ def _mass_of(machine: Machine, name: str) -> str:
         y=y,
         inertia=inertia,
     )
+
+
+# -- what goes with an entry -----------------------------------------------------------------------
+
+
+APART = 0.05
+"""m from a bearing in the plane of its link to the second one."""
+
+
+ROUNDED = 1e-9
+"""rad by which angles of segments may miss a cycle."""
+
+
+OTHERWISE = ("between", "values", "crank_angles", "spline", "table", "segments")
+"""Keys of a law, but for those that go with segments."""
+
+
+def completed(document: Document, entry: Entry, own: Machine) -> Document:
+    """A document with what goes with an entry of it that is new, other or gone.
+
+    own : the machine before.
+    """
+    place = entry.place
+    if place[:1] == ("links",) and (len(place) == 2 or place[2] == "bodies"):
+        return _as_given(document, entry)
+    if place[:1] == ("bearings",):
+        return _in_twos(document, entry, own)
+    if len(place) > 2 and place[-2] == "segments":
+        try:
+            return _in_a_cycle(document, entry)
+        except (KeyError, UsageError):
+            return document  # its reader reports the error
+    return document
+
+
+def _as_given(document: Document, entry: Entry) -> Document:
+    """Without what of a link was assumed, once its mass or a body is given."""
+    values: Mapping[str, Any] = entry.values or {}
+    of_link = len(entry.place) == 2
+    name = str(entry.name or entry.place[1]) if of_link else str(entry.place[1])
+    given = values.keys() & MASS_FIELDS if of_link else values and not values.get("assumed")
+    bodies = document.content.get("links", {}).get(name, {}).get("bodies", ())
+    for number in reversed(range(len(bodies))) if given else ():
+        if bodies[number].get("assumed"):
+            document = document.without(KeyPath(("links", name, "bodies", number)))
+    return document
+
+
+def _in_twos(document: Document, entry: Entry, own: Machine) -> Document:
+    """With the second bearing of a link that got its first, which can be no sooner than that: as
+    far on the other side of the link's plane.  With one that is deleted goes the other.
+    """
+    bearings: Mapping[str, Any] = document.content.get("bearings", {})
+    if entry.values is None:
+        gone = own.bearings.get(str(entry.place[-1]))
+        for name in [
+            name for name, bearing in bearings.items() if gone and bearing["link"] == gone.link
+        ]:
+            document = document.without(KeyPath(("bearings", name)))
+        return document
+    name, link = str(entry.name or entry.place[-1]), entry.values.get("link")
+    if (
+        link not in own.links
+        or [bearing.get("link") for bearing in bearings.values()].count(link) != 1
+    ):
+        return document
+    try:
+        plane = parse(entry.values.get("plane"), "length")
+    except UsageError:
+        return document  # its own reader reports the error
+    middle = own.links[str(link)].plane
+    other = 2 * middle - plane if plane != middle else plane + APART
+    second = next(item for item in map(f"{name}{{}}".format, count(2)) if item not in bearings)
+    values = {"link": link, "plane": format_exact(clean(other, "length"), "length")}
+    return document.put(KeyPath(("bearings", second)), values)
+
+
+def _in_a_cycle(document: Document, entry: Entry) -> Document:
+    """With segments that fill the cycle of their law: the one after that which is entered, or else
+    the one before, takes what is left.  The first one stands in place of another way to give the
+    law, and a second one leads back to where it begins.
+    """
+    way, number = entry.place.parent, entry.place[-1]
+    law: Any = way.parent.read(document.content)
+    segments = law.get("segments", [])
+    overs = [parse(segment["over"], "angle") for segment in segments]
+    left = 2 * pi * law.get("turns", 1) - sum(overs)
+    if not segments or abs(left) < ROUNDED:
+        return document
+    if len(segments) == 1 and entry.values is not None:
+        start = law.get("start") or law.get("between", [_none_of(segments[0]["to"])])[0]
+        plain = {key: value for key, value in law.items() if key not in OTHERWISE}
+        document = document.put(way.parent, {**plain, "start": start})
+        neighbor, values = 1, {"to": start}
+    else:
+        after = int(number) + (entry.values is not None)
+        neighbor = after if after < len(segments) else int(number) - 1
+        left, values = left + overs[neighbor], segments[neighbor]
+    if left <= 0:
+        return document
+    over = format_exact(clean(left, "angle"), "angle")
+    return document.put(way / neighbor, {**values, "over": over})
+
+
+def _none_of(text: str) -> str:
+    """0 in the dimension of a quantity."""
+    try:
+        parse(text, "angle")
+    except UsageError:
+        return format_exact(0.0, "length")
+    return format_exact(0.0, "angle")
+
+
+# -- forms -----------------------------------------------------------------------------------------
+
+
+def forms_of(of: type[keys.Frozen]) -> dict[str, Values]:
+    """The form of a table and of all below it, by the name of its class.
+
+    Each has its controls, those of required keys first, and what the JSON Schema says of keys that
+    go together.
+    """
+    by_name: dict[str, Values] = {}
+    for table in _tables_of(of):
+        own = own_keys(table)
+        controls = [control_of(key, own) for key in own.values()]
+        by_name[table.__name__] = {
+            "rule": table.conditions,
+            "controls": sorted(controls, key=lambda control: not control["required"]),
+        }
+    return by_name
+
+
+def _tables_of(of: type[keys.Frozen]) -> Iterator[type[keys.Frozen]]:
+    """A table and all below it, each once."""
+    names: set[str] = set()
+    waiting = [of]
+    while waiting:
+        item = waiting.pop()
+        if item.__name__ not in names:
+            names.add(item.__name__)
+            yield item
+            inner = (entry_of(key.kind) for key in tables_below(item).values())
+            waiting += [table.type for table in inner if table is not None]
+
+
+def word_in_forms(name: str) -> str:
+    """What forms of the tables of a linkage call a key; the key where they have several words."""
+    words = {word_of(keys_of_linkage) for keys_of_linkage in _keys_of_linkages().get(name, ())}
+    return words.pop() if len(words) == 1 else name
+
+
+@cache
+def _keys_of_linkages() -> Mapping[str, tuple[keys.Key, ...]]:
+    by_name: dict[str, tuple[keys.Key, ...]] = {}
+    for table in _tables_of(document_of("linkage")):
+        for name, own_key in own_keys(table).items():
+            by_name[name] = (*by_name.get(name, ()), own_key)
+    return MappingProxyType(by_name)
+
+
+def control_of(key: keys.Key, siblings: Mapping[str, keys.Key]) -> Values:
+    """What a page needs to ask for the value of a key; beside : keys of the same table."""
+    default = plain_default(key)
+    return {
+        "key": key.name,
+        "word": word_of(key),
+        "text": text_of(key, siblings),
+        "required": key.required,
+        "default": None if default in ([], {}) else default,
+        "example": key.example,
+        **_control(key.kind),
+    }
+
+
+def word_of(key: keys.Key) -> str:
+    """What a key is called: as its number is, where that does not take in what is around it."""
+    return say(key.word if key.word and "{" not in key.word else plain_word(key))
+
+
+def text_of(key: keys.Key, siblings: Mapping[str, keys.Key] = MappingProxyType({})) -> str:
+    """What a key means; of keys beside it in what a form calls them."""
+    values = getattr(key.kind, "names", ())
+
+    def key_word(match: re.Match[str]) -> str:
+        name = match[1]
+        other = siblings.get(name) if name not in values else None
+        return name if other is None else say("“{name}”", name=word_of(other))
+
+    return re.sub("`([^`]*)`", key_word, say(key.text))
+
+
+def _control(kind: keys.Kind) -> Values:
+    return CONTROLS[type(kind)](kind)
+
+
+def _text(kind: keys.TextKind) -> Values:
+    if kind.names:
+        return {"kind": "choice", "options": [*kind.names]}
+    if kind.of == "output":  # of which a file may have others, such as those of rows
+        return {"kind": "text", "of": kind.of}
+    if kind.of:
+        return {"kind": "name", "of": kind.of, "on": kind.on}
+    return {"kind": "text", "options": [*kind.suggested]}
+
+
+def _whole(kind: keys.Whole) -> Values:
+    return {"kind": "choice", "options": [*kind.names]} if kind.names else {"kind": "number"}
+
+
+def _unit(dimension: Any) -> str:
+    return display(dimension).unit
+
+
+def _listing(kind: keys.Listing) -> Values:
+    """Some in a row; how many there can be is none for one and more."""
+    return {"kind": "list", "item": _control(kind.item), "sizes": [*kind.sizes], "bare": False}
+
+
+def _one_or(kind: keys.OneOr) -> Values:
+    return {"kind": "list", "item": _control(kind.item), "sizes": [1, kind.size], "bare": True}
+
+
+def _place(kind: keys.Point) -> Values:
+    text = {"named": kind.named, "space": kind.space, "axes": kind.axes}
+    return {"kind": "place", "unit": _unit("length"), **text}
+
+
+CONTROLS: Mapping[type[keys.Kind], Callable[[Any], Values]] = {
+    keys.ParameterValue: lambda kind: {"kind": "text", "options": []},
+    keys.Direction: lambda kind: {"kind": "direction", "unit": _unit("angle")},
+    keys.File: lambda kind: {"kind": "file"},
+    keys.Flag: lambda kind: {"kind": "flag"},
+    keys.Listing: _listing,
+    keys.Named: lambda kind: {
+        "kind": "names", "item": _control(kind.item), "by": _control(kind.by),
+        "listed": kind.listed,
+    },
+    keys.Number: lambda kind: {"kind": "number"},
+    keys.OneOr: _one_or,
+    keys.Point: _place,
+    keys.Quantity: lambda kind: {"kind": "quantity", "unit": _unit(kind.dimension)},
+    keys.TextKind: _text,
+    keys.DependentQuantity: lambda kind: {"kind": "text", "options": []},
+    keys.Whole: _whole,
+    keys.Wording: lambda kind: {"kind": "wording"},
+}  # fmt: skip
+"""Of kinds that files of linkages have."""

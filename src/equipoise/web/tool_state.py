@@ -22,9 +22,9 @@ from equipoise.i18n import localized, say
 from equipoise.quantities import Dimension, display, format_quantity
 from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.tool import ToolScene
-from equipoise.web.block import Array, FloatBlock, Values
 from equipoise.web.drawing import UNIT, shapes_of
 from equipoise.web.figures import chart, compared
+from equipoise.web.replies import Array, FloatBlock, Values
 
 MODES, SPEEDS, POINTS = 6, 81, 61
 """Natural frequencies in a plane, speeds of curves, places along the shaft."""

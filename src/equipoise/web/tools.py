@@ -19,13 +19,13 @@ from equipoise.schema.models import taken_along
 from equipoise.schema.numbers import FileNumber, format_share, parse_share
 from equipoise.schema.open_files import opened
 from equipoise.schema.template import Template, named_parts
-from equipoise.web.disk import NOT_OF_FILE, Disk
+from equipoise.web.design import History, HistoryStep
+from equipoise.web.files import NOT_OF_FILE, Disk
 from equipoise.web.messages import Message, Setting
 from equipoise.web.replies import Reply
 from equipoise.web.tool_state import ToolFigures, tool_state
 
 Values = dict[str, Any]
-MOST_STEPS = 500
 NOT_SHOWN = ("design.", "title", "description")
 """Begin paths of what only says what a design may change."""
 SHOWN = 5
@@ -38,7 +38,6 @@ class ToolStep:
 
     values: Mapping[str, float]
     tool: Tool
-    label: str = ""
 
     @cached_property
     def figures(self) -> ToolFigures:
@@ -51,27 +50,30 @@ class ToolDesk:
     """A tool that is open on a page.
 
     name : of its file.  template : in which numbers are put.
-    past, now, future : what was done.  preview : while a slider is held.
+    history : what was done.  preview : while a slider is held.
     disk : its file, if it can be saved.
     """
 
     name: str
     template: Template
-    now: ToolStep
-    past: tuple[ToolStep, ...] = ()
-    future: tuple[ToolStep, ...] = ()
+    history: History[ToolStep]
     preview: ToolStep | None = None
     disk: Disk | None = None
 
     @property
     def first(self) -> ToolStep:
         """As it was opened, or the oldest that is kept."""
-        return (*self.past, self.now)[0]
+        return self.history.first
+
+    @property
+    def now(self) -> ToolStep:
+        """As it is, but for a slider that is held."""
+        return self.history.now.design
 
     @property
     def again(self) -> ToolDesk:
         """Desk of this tool for another page, as the tool was opened."""
-        return ToolDesk(self.name, self.template, self.first)
+        return ToolDesk(self.name, self.template, History(HistoryStep(self.first, "")))
 
     @classmethod
     def of(cls, name: str, template: Template) -> ToolDesk:
@@ -81,7 +83,7 @@ class ToolDesk:
             raise UsageError(
                 Note("{name}: got the file of a linkage; give that of a tool", name=name)
             )
-        return cls(name, template, ToolStep({}, tool))
+        return cls(name, template, History(HistoryStep(ToolStep({}, tool), "")))
 
     # -- what a page may ask -----------------------------------------------------------------------
 
@@ -90,7 +92,9 @@ class ToolDesk:
         if message.kind == "edit":
             self._edit(message)
         elif message.kind in ("undo", "redo"):
-            self._step(message.kind)
+            undo = message.kind == "undo"
+            self.history = self.history.undone() if undo else self.history.redone()
+            self.preview = None
         elif message.kind == "download":
             yield self._download(message)
             return
@@ -121,15 +125,14 @@ class ToolDesk:
                 raise UsageError(Note("a tool has no joints to be dragged; set a number of it"))
             values[change.path] = self._value(change)
         try:
-            tool_step = ToolStep(values, self._tool(values), message.label)
+            tool_step = ToolStep(values, self._tool(values))
             _ = tool_step.figures.whole
         except (ModelError, UsageError):
             if not commit or self.preview is None:
                 raise
             tool_step = self.preview  # the last place of a slider at which it could be
         if commit:
-            self.past = (*self.past[1 - MOST_STEPS :], self.now)
-            self.now, self.future, self.preview = tool_step, (), None
+            self.history, self.preview = self.history.then(tool_step, message.label), None
         else:
             self.preview = tool_step
 
@@ -156,20 +159,6 @@ class ToolDesk:
         tool = self.template.machine(values)
         assert isinstance(tool, Tool)
         return tool
-
-    def _step(self, way: str) -> None:
-        where = self.past if way == "undo" else self.future
-        if not where:
-            raise UsageError(
-                Note("there is nothing to undo")
-                if way == "undo"
-                else Note("there is nothing to redo")
-            )
-        if way == "undo":
-            self.future, self.now, self.past = (self.now, *self.future), where[-1], where[:-1]
-        else:
-            self.past, self.now, self.future = (*self.past, self.now), where[0], where[1:]
-        self.preview = None
 
     def _download(self, message: Message) -> Reply:
         kind, language = message.text("kind"), message.text("language", "en")
@@ -207,15 +196,9 @@ class ToolDesk:
     def reply(self, seq: int | None) -> Reply:
         """Everything that the page shows of the tool."""
         content, data = tool_state(self.shown.figures, self.first.figures)
-        history = {
-            "undo": self.now.label if self.past else None,
-            "redo": self.future[0].label if self.future else None,
-            "steps": [len(self.past), len(self.future)],
-            "file": self.disk and self.disk.status(None if self.preview else self.now.tool),
-        }
-        fields = [*self._fields()]
-        text = {"type": "tool", "seq": seq, "name": self.name, "fields": fields, **history}
-        return Reply({**text, **content}, data)
+        head = {"type": "tool", "seq": seq, "name": self.name, "fields": [*self._fields()]}
+        file = self.disk and self.disk.status(None if self.preview else self.now.tool)
+        return Reply({**head, **self.history.content, "file": file, **content}, data)
 
     def _numbers(self) -> dict[str, FileNumber]:
         numbers = self.template.numbers()

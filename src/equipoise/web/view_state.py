@@ -1,11 +1,12 @@
-"""What a page shows besides the machine itself: arrows, records, comparisons."""
+"""What a page shows besides the machine: arrows, a record, variants of the design to compare."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field
-from threading import Lock
-from typing import Any, Protocol
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field, replace
+from string import ascii_uppercase
+from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -13,18 +14,150 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.outputs.declared import body_named
+from equipoise.mechanism.outputs.declared import DECLARED, body_named
 from equipoise.quantities import Dimension, display
+from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis
-from equipoise.web.block import Array, FloatBlock, Values
-from equipoise.web.deferred import SAMPLES
+from equipoise.web.deferred import SAMPLES, can_be_shaken, responded
 from equipoise.web.drawing import ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed
-from equipoise.web.figures import listed_signals
-from equipoise.web.measured_records import MeasuredSignals, compared_with, record_of_text
-from equipoise.web.messages import MOST_OUTPUTS, Message
-from equipoise.web.replies import Reply
-from equipoise.web.variants import NOTHING, OPENED, STEP, VARIANT, Variants
+from equipoise.web.figures import figures_of, listed_signals, text_of
+from equipoise.web.measured_records import MeasuredSignals, compared_with
+from equipoise.web.replies import Array, FloatBlock, Reply, Values
+
+MOST, LONGEST = 12, 40
+"""Variants; signs of the name of one."""
+NOTHING, STEP, OPENED = "nothing", "step", "opened"
+"""Designs for comparison, besides a variant: none, that before the last change, or as opened."""
+VARIANT = "variant:"
+"""What stands before the name of one."""
+
+
+@dataclass(frozen=True)
+class Variants:
+    """Designs that are kept, by name, and the design with which the one shown is compared."""
+
+    pinned_designs: Mapping[str, Computed] = field(default_factory=dict)
+    against: str = STEP
+
+    def pinned(self, computed: Computed) -> Variants:
+        """Variants with one more, with which the design is compared from now on.
+
+        Raises
+        ------
+        UsageError : there are too many.
+        """
+        if len(self.pinned_designs) >= MOST:
+            raise UsageError(
+                Note("{most} variants are kept already; delete one of them", most=MOST)
+            )
+        letters = (a + b for b in ("", *"23456789") for a in ascii_uppercase)
+        name = next(letter for letter in letters if letter not in self.pinned_designs)
+        return Variants(MappingProxyType({**self.pinned_designs, name: computed}), VARIANT + name)
+
+    def of(self, name: str) -> Computed:
+        """One of them, by its name; a `UsageError` where there is none of it."""
+        if name not in self.pinned_designs:
+            raise UsageError(unknown(name, self.pinned_designs, "variant"))
+        return self.pinned_designs[name]
+
+    def renamed(self, name: str, to: str) -> Variants:
+        """Variants with one of another name; a `UsageError` where that is none or is taken."""
+        self.of(name)
+        to = "".join(sign for sign in to.strip() if sign.isprintable())
+        if not to or len(to) > LONGEST:
+            raise UsageError(
+                Note(
+                    "got a name of {to} signs; give one of 1 to {longest}",
+                    to=len(to),
+                    longest=LONGEST,
+                )
+            )
+        if to != name and to in self.pinned_designs:
+            raise UsageError(
+                Note("there is a variant of the name {to!r} already; give another", to=to)
+            )
+        by_name = {
+            to if item == name else item: result for item, result in self.pinned_designs.items()
+        }
+        against = VARIANT + to if self.against == VARIANT + name else self.against
+        return Variants(MappingProxyType(by_name), against)
+
+    def without(self, name: str) -> Variants:
+        """Variants without one of them."""
+        self.of(name)
+        by_name = {item: result for item, result in self.pinned_designs.items() if item != name}
+        against = STEP if self.against == VARIANT + name else self.against
+        return Variants(MappingProxyType(by_name), against)
+
+    def with_comparison(self, what: str) -> Variants:
+        """Variants compared with something else: one of the three words, or a variant."""
+        if what not in (NOTHING, STEP, OPENED):
+            self.of(what.removeprefix(VARIANT))
+        return replace(self, against=what)
+
+    def named(self) -> str:
+        """Name of the design with which figures are compared, in the language that is spoken."""
+        if self.against == STEP:
+            return say("before the last change")
+        if self.against == OPENED:
+            return say("as it was opened")
+        return self.against.removeprefix(VARIANT)
+
+    def table(self, now: Computed) -> Values:
+        """Figures of every variant and of the design that is, and which is best of each.
+
+        Of every figure the smallest is best; none is where all are the same.
+        """
+        every = [item.analysis for item in (*self.pinned_designs.values(), now)]
+        figures = [_named(figures_of(item)) for item in every]
+        names = [name for name in figures[-1] if all(name in figure for figure in figures)]
+        rows = [_row([figure[name] for figure in figures]) for name in names]
+        rows += _gauges((*self.pinned_designs.values(), now))
+        masses = [item.machine.mass for item in every]
+        if all(masses):
+            unit = display("mass", masses)
+            words = {"label": say("mass of the links"), "unit": unit.name}
+            values = [unit.factor * mass for mass in masses]
+            rows.append(
+                _row([{**words, "value": value, "text": text_of(value)} for value in values])
+            )
+        return {"kept": [*self.pinned_designs], "against": self.against, "rows": rows}
+
+
+def _named(figures: list[Values]) -> dict[str, Values]:
+    return {figure["name"]: figure for figure in figures}
+
+
+def _gauges(every: Sequence[Computed]) -> Iterator[Values]:
+    """What gauges read peak to peak, where every design has the same and a steady state."""
+    try:
+        items = [responded(item).gauges for item in every if can_be_shaken(item.design.machine)]
+    except EquipoiseError:
+        return
+    if len(items) < len(every):
+        return
+    for name in (item for item in items[-1] if all(item in gauges for gauges in items)):
+        read = [gauges[name].displacement.peak_to_peak for gauges in items]
+        output = DECLARED["gauges.{}"].say(name)
+        dimension: Dimension = "angle" if items[-1][name].rotation else "length"
+        unit = display(dimension, read, "mrad" if dimension == "angle" else None)
+        words = {"label": say("{output}, peak to peak", output=output), "unit": unit.name}
+        values = [float(unit.factor * item) for item in read]
+        yield _row([{**words, "value": value, "text": text_of(value)} for value in values])
+
+
+def _row(cells: list[Values]) -> Values:
+    values = [cell["value"] for cell in cells]
+    known = [abs(value) for value in values if value is not None]
+    least, most = min(known, default=0.0), max(known, default=0.0)
+    best = [
+        number
+        for number, value in enumerate(values)
+        if value is not None and most - least > SAME * most and abs(value) - least <= SAME * most
+    ]
+    texts = [cell["text"] for cell in cells]
+    return {"label": cells[-1]["label"], "unit": cells[-1]["unit"], "texts": texts, "best": best}
 
 
 def points_of(analysis: Analysis) -> list[str]:
@@ -89,6 +222,18 @@ def charted(output: str) -> bool:
     if output.startswith("joints."):
         return output.count(".") == 1
     return output in listed_signals()
+
+
+def signals_without_chart(record: MeasuredSignals, computed: Computed) -> list[str]:
+    """Outputs that a record measures, and that have no chart unless they are asked for.
+
+    Raises
+    ------
+    EquipoiseError : the record cannot be compared with the design.
+    """
+    analysis = computed.analysis
+    compared = compared_with(record, analysis, gauges_of(computed))
+    return [name for name in compared.signals if name in analysis.outputs and not charted(name)]
 
 
 def record_values(
@@ -181,116 +326,3 @@ def _ghost(pale: Computed | None) -> Reply:
     return Reply(
         {"type": "ghost", "seq": None, "scene": scene, "arrays": block.placement}, block.data
     )
-
-
-# -- what a page may ask ---------------------------------------------------------------------------
-
-
-class ViewSession(Protocol):
-    """What answers need of a session."""
-
-    view_state: ViewState
-    lock: Lock
-    wanted: tuple[str, ...]
-
-    @property
-    def shown(self) -> Computed:
-        """What the page sees."""
-
-    def current(self) -> Computed:
-        """The design that is."""
-
-    def go_to(self, computed: Computed, label: str) -> None:
-        """Make another design the one that is."""
-
-    def state_replies(self, seq: int | None, *notes: str) -> Iterator[Reply]:
-        """Replies on the design that is shown."""
-
-
-def _arrows(session: ViewSession, message: Message) -> Iterator[Reply]:
-    """Show arrows at a point, or at none."""
-    point = message.text("point", "") or None
-    points = points_of(session.shown.analysis)
-    if point is not None and point not in points:
-        raise UsageError(unknown(point, points, "point"))
-    session.view_state.arrows_at = point
-    yield from session.state_replies(message.seq)
-
-
-def _variant(session: ViewSession, message: Message) -> Iterator[Reply]:
-    """Keep the design, or do something with one that is kept."""
-    doing = message.text("do")
-    if doing not in DOING:
-        raise UsageError(unknown(doing, DOING, "thing to do with a variant"))
-    with session.lock:
-        DOING[doing](session, message)
-    yield from session.state_replies(message.seq)
-
-
-def _pin(session: ViewSession, _: Message) -> None:
-    session.view_state.variants = session.view_state.variants.pinned(session.current())
-
-
-def _rename(session: ViewSession, message: Message) -> None:
-    view = session.view_state
-    view.variants = view.variants.renamed(message.text("name"), message.text("to"))
-
-
-def _drop(session: ViewSession, message: Message) -> None:
-    session.view_state.variants = session.view_state.variants.without(message.text("name"))
-
-
-def _go(session: ViewSession, message: Message) -> None:
-    name = message.text("name")
-    result = session.view_state.variants.of(name)
-    session.go_to(result, say("go to {name}", name=name))
-
-
-def _against(session: ViewSession, message: Message) -> None:
-    session.view_state.variants = session.view_state.variants.with_comparison(message.text("to"))
-
-
-def _record(session: ViewSession, message: Message) -> Iterator[Reply]:
-    """Draw a record beside the machine's own signals, or none where it has no text."""
-    text, record = message.text("text", ""), None
-    if text:
-        analysis = session.shown.analysis
-        record = record_of_text(message.text("name", "record.csv"), text)
-        compared = compared_with(record, analysis, gauges_of(session.shown))
-        matching_signals = [
-            name for name in compared.signals if name in analysis.outputs and not charted(name)
-        ]
-        session.wanted = tuple(dict.fromkeys((*session.wanted, *matching_signals)))[-MOST_OUTPUTS:]
-    session.view_state.record = record
-    yield from session.state_replies(message.seq)
-
-
-NO_STORE = Note("no store of a study is open; give one to `equipoise serve`")
-
-
-def _stores(session: ViewSession, message: Message) -> Iterator[Reply]:
-    """Without a server there are none."""
-    yield Reply({"type": "stores", "seq": message.seq, "folder": None, "names": []})
-
-
-def _stored(session: ViewSession, message: Message) -> Iterator[Reply]:
-    """Nothing that is asked of a store is here."""
-    raise UsageError(NO_STORE)
-
-
-DOING: dict[str, Callable[[ViewSession, Message], None]] = {
-    "pin": _pin,
-    "rename": _rename,
-    "drop": _drop,
-    "go": _go,
-    "against": _against,
-}
-ASKED: dict[str, Callable[[ViewSession, Message], Iterator[Reply]]] = {
-    "arrows": _arrows,
-    "variant": _variant,
-    "record": _record,
-    "stores": _stores,
-    "study": _stored,
-    "design": _stored,
-}
-"""Answers to messages, by their kind."""

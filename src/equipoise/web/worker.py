@@ -27,6 +27,7 @@ from equipoise.web.messages import SLOW, Message, makes_way, read
 from equipoise.web.replies import (
     CANCELLED,
     Reply,
+    StateChanges,
     busy,
     completed,
     packed,
@@ -34,7 +35,6 @@ from equipoise.web.replies import (
     unexpected,
 )
 from equipoise.web.session import Session
-from equipoise.web.state_changes import StateChanges
 
 OF_MACHINE = ("balance", "run", "download")
 """Of the questions that take long, those about the machine that is open."""
@@ -154,11 +154,9 @@ class Foreground:
         task, result = self._running.popleft()
         balancing = pickle.loads(data) if memoryview(data) else None
         if balancing is not None:
-            from equipoise.web import balanced
-
             assert task.message is not None and result is not None
             message, self.desk.session.brief = task.message, False
-            self._replies = balanced.adopted(self.desk.session, result, balancing, message)
+            self._replies = self.desk.session.adopted(result, balancing, message)
             self._message = message
         elif task.message is not None:
             self._answer(task.message)
@@ -338,15 +336,11 @@ class Background:
                     ):
                         yield "reply", packed(Reply({"seq": None, **content}, data))
             elif task.message.kind == "balance":
-                from equipoise.web import balanced
-
                 assert outcome is not None
-                result = pickle.dumps(balanced.computed(session, outcome, task.message))
+                result = pickle.dumps(session.balancing(outcome, task.message))
             elif task.message.kind == "run":
-                from equipoise.web import runs
-
                 assert outcome is not None
-                yield "reply", packed(runs.computed(session, outcome, task.message))
+                yield "reply", packed(session.run_reply(outcome, task.message))
             else:
                 for reply in session.receive(task.message):
                     yield "reply", packed(reply)

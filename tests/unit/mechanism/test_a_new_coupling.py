@@ -35,6 +35,7 @@ from equipoise.results.machine_blocks import model_blocks
 from equipoise.results.yardsticks import assess
 from equipoise.schema.writing import key_table
 from equipoise.symbols.pieces import pieces
+from equipoise.web.additions import PartTool, part_tools
 from equipoise.web.gallery import sections
 from support.own_kinds import (
     BY_KIND,
@@ -65,6 +66,7 @@ class Rollers(Turning):
     heading = Note("Rollers")
     counted = "{count} pairs of rollers"
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"start", "lean"}}
+    page_tool = f"{__name__}:ROLLING"
     contact_values = f"{__name__}:contact_values"
     figures = f"{__name__}:RollerFigures"
     questions = f"{__name__}:small_rollers"
@@ -137,6 +139,7 @@ def heavy_rollers(_: Forces) -> Iterator[Note]:
     yield Note("heavy rollers")
 
 
+ROLLING = PartTool("rollers", "", lambda sketch, _: sketch, "Rollers", "o", "click", "then", "")
 Rolled = machine_with(Rollers)
 BASE = eq.load("geared-counterweight")
 (GEAR,) = BASE.gears
@@ -252,6 +255,10 @@ def test_the_documentation_has_its_keys() -> None:
     rows = key_table(Rollers)
     assert "`radii`" in rows
     assert "of the push from the line square" in rows
+
+
+def test_a_page_has_its_tool() -> None:
+    assert [tool.name for tool in part_tools(Rolled)] == ["gears", "belt", "rack", "cam", "rollers"]
 
 
 def test_the_gallery_is_searched_by_its_word() -> None:

@@ -31,7 +31,7 @@ TYPED = {
     "12,5°": "12.5°",
 }
 ASKED = """
-import { asTyped, decimals, point } from "./decimals.mjs";
+import { asTyped, decimals, point } from "./format.mjs";
 const [shown, typed] = %s;
 const all = () => [shown.map(decimals), typed.map(asTyped)];
 const before = all();
@@ -42,7 +42,7 @@ console.log(JSON.stringify([before, all()]));
 
 @pytest.mark.skipif(NODE is None or not ESBUILD.exists(), reason="the page's tools are not here")
 def test_numbers_are_shown_with_a_comma_and_typed_with_either(tmp_path: Path) -> None:
-    source, built = PAGE / "src" / "decimals.ts", tmp_path / "decimals.mjs"
+    source, built = PAGE / "src" / "format.ts", tmp_path / "format.mjs"
     subprocess.run([str(ESBUILD), str(source), f"--outfile={built}"], check=True, timeout=300)
     (tmp_path / "ask.mjs").write_text(ASKED % json.dumps([[*SHOWN], [*TYPED]]), encoding="utf-8")
     told = subprocess.run(

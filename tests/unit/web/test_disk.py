@@ -9,7 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.web.desk import begun
-from equipoise.web.disk import on_disk
+from equipoise.web.files import on_disk
 from equipoise.web.gallery import opened_file
 from equipoise.web.session import Session
 from surface.running import example_text

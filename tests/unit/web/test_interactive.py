@@ -22,8 +22,7 @@ from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.force_elements import Load, LoadTable
 from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
-from equipoise.web.drawing import stage_of
-from equipoise.web.following_signs import ties_of
+from equipoise.web.drawing import stage_of, ties_of
 from equipoise.web.interactive import Interactive
 from support import machines
 from support.chosen import DISTINCT, few

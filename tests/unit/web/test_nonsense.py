@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from equipoise.errors import UsageError
 from equipoise.web.gallery import opened_example
 from equipoise.web.messages import KINDS, read
-from equipoise.web.page import packed
+from equipoise.web.server import packed
 from equipoise.web.session import Session
 
 NUMBERS = (0, 1, -1, 1e-3, -0.02, 0.05, 1e-9, 1e3, 1e29, -1e29, 1e31, 1e308)

@@ -22,8 +22,8 @@ from equipoise.results.blocks import Block, Column, Facts, FileText, Notes, Tabl
 from equipoise.results.charts import Axis, Chart, Curve, Panel
 from equipoise.running.run_results import DrivesRun, Run
 from equipoise.web import result_blocks, runs
-from equipoise.web.block import FloatBlock
 from equipoise.web.messages import message_of
+from equipoise.web.replies import FloatBlock
 from surface.running import example_text
 from unit.web.pages import State, ask, edit, opened, refusal
 
@@ -139,7 +139,7 @@ def test_a_run_is_of_the_design_that_was_shown() -> None:
     after = edit(session, mass)
     assert after.content["design"] != shown.content["design"]
     with pytest.raises(UsageError) as refused:
-        runs.computed(session, base, message_of({"type": "run", "seq": 1}))
+        session.run_reply(base, message_of({"type": "run", "seq": 1}))
     assert refused.value.note == runs.CHANGED
     (again,) = ask(session, "outputs", seq=4, names=["drive_torque"])
     assert again.content["design"] == after.content["design"]

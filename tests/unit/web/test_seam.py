@@ -16,9 +16,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.web.answers import Counterpart, answers
 from equipoise.web.desk import begun
-from equipoise.web.replies import packed
+from equipoise.web.replies import Counterpart, answers, packed
 from equipoise.web.session import Session
 from unit.web.pages import State, unpacked
 
@@ -83,7 +82,7 @@ ALONE = """
 import sys
 sys.modules["charset_normalizer"] = None  # NumPy takes it where it is there, and does without
 before = set(sys.modules)  # what an installation loads by itself
-from equipoise.web.answers import answers
+from equipoise.web.replies import answers
 from equipoise.web.desk import begun
 desk = begun(None)()
 asked = [

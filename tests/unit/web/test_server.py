@@ -26,8 +26,6 @@ from websockets.sync.client import ClientConnection, connect
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import UsageError
 from equipoise.web import balanced as balanced_module
-from equipoise.web import page as page_module
-from equipoise.web import server as incoming_module
 from equipoise.web import server as served_module
 from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
@@ -37,13 +35,13 @@ from equipoise.web.edits import Computed
 from equipoise.web.gallery import opened_example
 from equipoise.web.incomplete import Incomplete
 from equipoise.web.lanes import MOMENT, EndedError, Lanes, PageWork, print_no_endings
-from equipoise.web.page import MOST_WAITING
 from equipoise.web.replies import CANCELLED
 from equipoise.web.server import (
     FULL,
     HOST,
     LONGEST,
     MOST_PAGES,
+    MOST_WAITING,
     ORIGIN,
     POLICY,
     TOKEN,
@@ -244,7 +242,7 @@ def test_dragging_goes_on_while_something_takes_long(
         return balanced(design, hold)
 
     monkeypatch.setattr(balanced_module, "balanced", slowly)
-    monkeypatch.setattr(page_module, "give_back", given_back.set)
+    monkeypatch.setattr(served_module, "give_back", given_back.set)
     with here.page() as page:
         hear(page)
         assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
@@ -270,7 +268,7 @@ def test_a_question_too_many_has_all_its_answers_too(
         return balanced(design, hold)
 
     monkeypatch.setattr(balanced_module, "balanced", slowly)
-    most = page_module.MOST_QUESTIONS + 2  # the first is being answered
+    most = served_module.MOST_QUESTIONS + 2  # the first is being answered
     with here.page() as page:
         hear(page)
         assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
@@ -317,16 +315,16 @@ def test_a_move_that_is_overtaken_is_told_by_its_state_alone(
     seldom: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """But now and then all of it is told, or a drag without a pause would show too little."""
-    monkeypatch.setattr(page_module, "NEXT", 20.0)
-    monkeypatch.setattr(page_module, "SELDOM", seldom)
-    monkeypatch.setattr(page_module, "PAUSE", 0.0)
+    monkeypatch.setattr(served_module, "NEXT", 20.0)
+    monkeypatch.setattr(served_module, "SELDOM", seldom)
+    monkeypatch.setattr(served_module, "PAUSE", 0.0)
     session = Session()
     session.open(opened_example("yamashita-rig"))
 
     async def drag() -> list[tuple[str, int]]:
         socket = Dragged(4)
         with Lanes() as lanes:
-            await page_module.Page(socket, session, lanes).run()  # type: ignore[arg-type]
+            await served_module.Page(socket, session, lanes).run()  # type: ignore[arg-type]
         return socket.sent
 
     sent = asyncio.run(drag())
@@ -556,7 +554,7 @@ def test_requests_that_do_not_come_to_their_end_are_dropped(
     here: Here, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever of them has come, and however much trickles in; the connection of a page stays."""
-    monkeypatch.setattr(incoming_module, "LONGEST", 0.5)
+    monkeypatch.setattr(served_module, "LONGEST", 0.5)
     whole = f"GET /equipoise.css?{here.query} HTTP/1.1\r\nHost: {here.host}\r\n".encode()
     posted = b"POST" + whole.removeprefix(b"GET") + b"Content-Length: 99\r\n\r\nhalf"
     port = int(here.host.rpartition(":")[2])

@@ -12,7 +12,6 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.web import balanced
 from equipoise.web.design import Design
 from equipoise.web.desk import begun
 from equipoise.web.edits import Computed
@@ -281,10 +280,10 @@ def test_a_sector_keeps_its_own_inertia_on_the_page() -> None:
 def test_a_change_while_it_is_balanced_is_not_lost() -> None:
     session, _ = opened("balance-crank")
     question, base = message_of({"type": "balance", "seq": 1}), session.current()
-    balancing = balanced.computed(session, base, question)
+    balancing = session.balancing(base, question)
     edit(session, MASS)
     with refused(UsageError, by="adopted"):
-        next(balanced.adopted(session, base, balancing, question))
+        next(session.adopted(base, balancing, question))
     assert session.shown.design.own.links["crank"].mass == 0.25
 
 

@@ -10,8 +10,7 @@ from typing import Any
 
 import pytest
 
-from equipoise.web.replies import Reply
-from equipoise.web.state_changes import StateChanges, changes
+from equipoise.web.replies import Reply, StateChanges, changes
 from equipoise.web.worker import Foreground
 from unit.web.pages import unpacked
 

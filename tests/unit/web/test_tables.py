@@ -16,11 +16,10 @@ from equipoise.mechanism.parts.links import SET_BY_BODIES
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import parse, showing
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
-from equipoise.web.forms import forms_of
 from equipoise.web.gallery import opened_example, titles
 from equipoise.web.replies import refused
 from equipoise.web.session import Session
-from equipoise.web.tables import tables_of
+from equipoise.web.tables import forms_of, tables_of
 from support.chosen import few
 from unit.web.pages import Content, ask, opened, refusal, state
 

@@ -185,7 +185,7 @@ def test_memory_that_is_used_up_is_a_sentence_here_and_beside(
         raise MemoryError
         yield
 
-    monkeypatch.setattr("equipoise.web.balanced.computed", lambda *_: next(large()))
+    monkeypatch.setattr("equipoise.web.balanced.balancing_of", lambda *_: next(large()))
     asked(page, "balance")
     replies = done_beside(page)
     monkeypatch.setattr(page.desk, "receive", large)

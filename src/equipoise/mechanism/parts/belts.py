@@ -54,6 +54,7 @@ class Belt(Turning):
     }
 
     sign = "equipoise.symbols.straight_pieces:strand_sign"
+    page_tool = "equipoise.web.couplings:BELT"
     noun = to_say("belt")
     group = to_say("belts")
     loses = True

@@ -46,6 +46,7 @@ class Cam(Coupling):
     order = 4
     sign = "equipoise.symbols.cams:cam_sign"
     dragged = "equipoise.symbols.cams:base_circle"
+    page_tool = "equipoise.web.cams:CAM"
     noun = to_say("cam")
     group = to_say("cams")
     columns: ClassVar[Mapping[PathPattern, Set[str]]] = {

@@ -74,6 +74,8 @@ class PartKind(Frozen):
         surroundings to marks; empty where it has no sign of its own.
     dragged : ``module:function`` of the room of symbols that gives the circle by which a number of
         the part is dragged on a drawing; empty where none is.
+    page_tool : ``module:NAME`` of the tool by which a page adds one between two links; empty where
+        only its form does.
     tables : ``module:function`` that shows what an analysis says of all parts of the kind, by the
         chapter in which that stands, ``motion`` or ``joints``.
     figures : ``module:class`` of the figures of a part; its `of_parts` computes those of all, by
@@ -91,6 +93,7 @@ class PartKind(Frozen):
     group: ClassVar[str]
     sign: ClassVar[str] = ""
     dragged: ClassVar[str] = ""
+    page_tool: ClassVar[str] = ""
     tables: ClassVar[Mapping[str, str]] = {}
     figures: ClassVar[str] = ""
     questions: ClassVar[str] = ""
@@ -194,11 +197,16 @@ class Element(PartKind):
 
 
 @cache
+def named_value(name: str) -> Any:
+    """What a kind of part names as ``module:name``."""
+    module, _, item = name.partition(":")
+    return getattr(import_module(module), item)
+
+
 def named_function(name: str) -> Callable[..., Any]:
     """The function that a kind of part names as ``module:function``."""
-    module, _, function = name.partition(":")
-    named: Callable[..., Any] = getattr(import_module(module), function)
-    return named
+    function: Callable[..., Any] = named_value(name)
+    return function
 
 
 @once

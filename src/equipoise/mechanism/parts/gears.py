@@ -69,6 +69,7 @@ class Gear(Turning):
 
     noun = to_say("pair of gears")
     group = to_say("gears")
+    page_tool = "equipoise.web.couplings:GEARS"
     wheels = to_say("pitch circles of gears")
     loses = True
     columns: ClassVar[Mapping[PathPattern, Set[str]]] = {

@@ -41,6 +41,7 @@ class Rack(Coupling):
     order = 3
 
     sign = "equipoise.symbols.straight_pieces:rack_sign"
+    page_tool = "equipoise.web.couplings:RACK"
     noun = to_say("rack")
     group = to_say("racks")
     loses = True

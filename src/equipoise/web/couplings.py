@@ -1,4 +1,4 @@
-"""Couplings that are added to a machine that is made: gears, belts, racks.
+"""Gears, belts and racks that are added to a machine that is made.
 
 Each function takes a sketch to another one, or refuses in an `EquipoiseError`.  Links keep the
 places in which they are drawn; what follows from a drawing, such as the radius of a pinion, is
@@ -8,7 +8,7 @@ not asked for.
 from __future__ import annotations
 
 from cmath import exp
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from math import pi
@@ -16,12 +16,11 @@ from math import pi
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.belts import Belt
-from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean
-from equipoise.web.additions import COINCIDENT, check_body, the
+from equipoise.web.additions import COINCIDENT, PartTool, ToolOptions, check_body, the, with_part
 from equipoise.web.messages import Message
 from equipoise.web.sketch import Sketch
 
@@ -39,7 +38,7 @@ def with_gears(
     gear = Gear(driver, driven, teeth=teeth, carrier=carrier)
     for wrong in gear.problems("gears", sketch.bodies):
         raise wrong
-    return _added(sketch, gear)
+    return with_part(sketch, gear)
 
 
 def with_belt(
@@ -53,7 +52,7 @@ def with_belt(
     item, other = (sketch.places[_pin(sketch, body, carrier)] for body in (driver, driven))
     room = FILLED * 2 * pi * abs(item - other) / sum(teeth)
     pitch = next((pitch for pitch in PITCHES if pitch <= room), clean(room, "length"))
-    return _added(sketch, replace(belt, pitch=pitch))
+    return with_part(sketch, replace(belt, pitch=pitch))
 
 
 def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
@@ -84,7 +83,7 @@ def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
                 drives="pinion" if pinion == driver else "rack",
                 carrier=slider.on,
             )
-            return _added(sketch, rack)
+            return with_part(sketch, rack)
     raise UsageError(
         Note(
             "neither {driver} nor {driven} slides on a body about one point of which the other "
@@ -93,11 +92,6 @@ def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
             driven=the(driven),
         )
     )
-
-
-def _added(sketch: Sketch, coupling: Coupling) -> Sketch:
-    others = sketch.rest.get(coupling.list_name, ())
-    return replace(sketch, rest={**sketch.rest, coupling.list_name: (*others, coupling)})
 
 
 def _shared(sketch: Sketch, body: str, carrier: str) -> list[str]:
@@ -133,19 +127,60 @@ def _carrier(sketch: Sketch, driver: str, driven: str, given: str | None) -> str
     )
 
 
-def _wheels(make: Callable[..., Sketch], sketch: Sketch, message: Message) -> Sketch:
+def _asked_wheels(make: Callable[..., Sketch], sketch: Sketch, message: Message) -> Sketch:
     """What two bodies have that turn on a carrier, as a page asks for it."""
     teeth = message.whole("teeth"), message.whole("driven_teeth")
     ends = message.text("driver"), message.text("driven")
     return make(sketch, *ends, teeth, message.optional("carrier"))
 
 
-OPERATIONS: Mapping[str, tuple[str, Callable[[Sketch, Message], Sketch]]] = {
-    "gears": (to_say("add a pair of gears"), partial(_wheels, with_gears)),
-    "belt": (to_say("add a belt"), partial(_wheels, with_belt)),
-    "rack": (
-        to_say("add a rack"),
-        lambda sketch, message: with_rack(sketch, message.text("driver"), message.text("driven")),
+def _asked_rack(sketch: Sketch, message: Message) -> Sketch:
+    return with_rack(sketch, message.text("driver"), message.text("driven"))
+
+
+TEETH = ToolOptions(
+    to_say("teeth"),
+    {"teeth": to_say("Teeth of the driver"), "driven_teeth": to_say("Teeth of the driven link")},
+    value="20",
+)
+GEARS = PartTool(
+    "gears",
+    to_say("add a pair of gears"),
+    partial(_asked_wheels, with_gears),
+    to_say("Gears"),
+    key="g",
+    first=to_say("click the link of the driving gear"),
+    then=to_say("click the link of the driven gear"),
+    picture="M5.500 5.500a3 3 0 1 0 .01 0M11.500 3a2.200 2.200 0 1 0 .01 0",
+    options=TEETH,
+)
+BELT = PartTool(
+    "belt",
+    to_say("add a belt"),
+    partial(_asked_wheels, with_belt),
+    to_say("Belt"),
+    key="b",
+    first=to_say("click the link of the driving pulley"),
+    then=to_say("click the link of the driven pulley"),
+    picture=(
+        "M4.500 6.500a2 2 0 1 0 .01 0M12 5a3 3 0 1 0 .01 0M4.500 6.500l7.500-1.500"
+        "M4.500 10.500l7.500 .5"
     ),
-}
-"""Read by `sketch_edits`."""
+    options=TEETH,
+)
+RACK = PartTool(
+    "rack",
+    to_say("add a rack"),
+    _asked_rack,
+    to_say("Rack"),
+    key="k",
+    first=to_say("click what drives: the link of the pinion, or the block of the rack"),
+    then=to_say(
+        "click the other of both: the block of the rack slides on the carrier of the pinion"
+    ),
+    picture=(
+        "M7 2.500a3 3 0 1 0 .01 0M2 13.500v-2.500h1.500v-1.500h2v1.500h2v-1.500h2v1.500h2v-1.500h2"
+        "v1.500h.5v2.500z"
+    ),
+    slides=True,
+)

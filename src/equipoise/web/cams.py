@@ -7,7 +7,7 @@ return and its next rise.
 from __future__ import annotations
 
 from cmath import phase
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from math import degrees, pi, radians, remainder
 from typing import Any
@@ -23,7 +23,16 @@ from equipoise.mechanism.parts.cams import RIDES, Cam
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import FRAME, Slider
 from equipoise.quantities import clean
-from equipoise.web.additions import COINCIDENT, check_body, check_link, put, the
+from equipoise.web.additions import (
+    COINCIDENT,
+    PartTool,
+    ToolOptions,
+    check_body,
+    check_link,
+    put,
+    the,
+    with_part,
+)
 from equipoise.web.messages import Message, Spot
 from equipoise.web.sketch import Sketch
 
@@ -161,8 +170,7 @@ def _cut(sketch: Sketch, cam: Cam, pin: str, joint: Slider | str) -> Sketch:
     """The sketch with a cam of the largest usual lift that can be cut."""
     refused: ModelError | None = None
     for item in _moving(sketch, cam, pin, joint):
-        cams = (*sketch.rest.get("cams", ()), item)
-        result = replace(sketch, rest={**sketch.rest, "cams": cams})
+        result = with_part(sketch, item)
         try:
             machine = result.machine()
             check_shape(machine, result.joints, fitted(machine, result.joints, item))
@@ -211,7 +219,25 @@ def _asked(sketch: Sketch, message: Message) -> Sketch:
     return with_cam(sketch, *ends, message.spot("spot"), message.text("rides", RIDES[0]))
 
 
-OPERATIONS: Mapping[str, tuple[str, Callable[[Sketch, Message], Sketch]]] = {
-    "cam": (to_say("add a cam"), _asked)
-}
-"""Read by `sketch_edits`."""
+CAM = PartTool(
+    "cam",
+    to_say("add a cam"),
+    _asked,
+    to_say("Cam"),
+    key="c",
+    first=to_say("click the link that bears the cam"),
+    then=to_say("click the follower, where it rides on the cam: a link that swings, or a slider"),
+    picture=(
+        "M6 13.500a3.500 3.500 0 0 1-3.300-4.700l2-5a1.400 1.400 0 0 1 2.600 0l2 5a3.500 3.500 0 0 "
+        "1-3.300 4.700zM6 9.500a.8.8 0 1 0 .01 0M12.500 2.500v7M11 9.500h3"
+    ),
+    options=ToolOptions(
+        to_say("follower"),
+        {"rides": to_say("What rides on the cam")},
+        dict(
+            zip(RIDES, (to_say("roller"), to_say("flat face"), to_say("knife edge")), strict=True)
+        ),
+        value=RIDES[0],
+    ),
+    slides=True,
+)
