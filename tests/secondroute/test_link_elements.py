@@ -263,7 +263,7 @@ def test_as_a_table(tmp_path: Path) -> None:
     assert len((tmp_path / "one.csv").read_text().splitlines()) == len(of_one) + 1
 
 
-REFUSED: list[tuple[dict[str, Any], dict[str, Any], str]] = [
+REFUSED: list[tuple[dict[str, Any], dict[str, Any], dict[str, Any]]] = [
     ({}, {"link": "rodd"}, {"given": "rodd", "name": "rod"}),
     ({}, {"link": "crank"}, {"place": "links.crank.section"}),
     ({"elastic_modulus": None}, {}, {"place": "links.rod.section.elastic_modulus"}),

@@ -277,7 +277,7 @@ def test_they_are_reported_everywhere() -> None:
     )
 
 
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"height": "1 mm"}, {"place": "links.rod.section"}),
     ({"diameter": "1 mm", "wall": "0.5 mm"}, {"place": "links.rod.section.wall"}),
     (

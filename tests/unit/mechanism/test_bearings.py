@@ -216,7 +216,7 @@ def test_check_prints_them(tmp_path: Any) -> None:
 
 
 RATED = "joints[1].bearing"
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"joint": "joints.B", "width": 0.02}, {"place": "joints[1].radius"}),
     (
         {"joint": "joints.piston on frame", "bearing": CATALOGUE},

@@ -183,7 +183,7 @@ def test_formats_without_them_leave_them_out(tmp_path: Path) -> None:
     assert "bushings" in export(MACHINE, tmp_path / "mine", "urdf")
 
 
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"on": "rocker"}, {"place": "bushings[1].on", "link": "rocker"}),
     ({"point": "Q"}, {"place": "bushings[1].point", "given": "Q", "body": "rocker"}),
     ({"to": "X"}, {"place": "bushings[1].to", "given": "X", "body": "coupler"}),

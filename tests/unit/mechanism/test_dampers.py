@@ -239,7 +239,7 @@ def test_a_run_is_that_of_scipy_on_virtual_work() -> None:
 
 # -- what is wrong ---------------------------------------------------------------------------------
 
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"link": "rockr"}, {"place": "dampers[1].link", "given": "rockr", "name": "rocker"}),
     ({"point": "Q"}, {"place": "dampers[1].point", "given": "Q", "body": "rocker"}),
     ({"damping": -1.0}, {"place": "dampers[1].damping", "text": "-1 N s/m"}),

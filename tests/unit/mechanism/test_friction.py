@@ -254,7 +254,7 @@ def test_a_file_tells_friction_and_check_says_it(tmp_path: Any) -> None:
     assert "drag 10.00 N" in out
 
 
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"joint": "joints.C", "friction": 0.1}, {"place": "joints[1].radius"}),
     ({"joint": "joints.C", "friction": -0.1}, {"place": "joints[1].friction", "text": -0.1}),
     (

@@ -176,7 +176,7 @@ def test_a_wrong_file_is_named(tmp_path: Path, slip: tuple[str, str], sentence: 
 
 SHORT = GasTable((0.0, 1.0, 2.0), (1e5, 4e5, 2e5))
 UNEQUAL = GasTable((0.0, 2 * np.pi), (1e5, 4e5))
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"bore": None}, {"place": "loads[1].bore"}),
     ({"bore": -0.1}, {"place": "loads[1].bore", "text": "-0.1 m"}),
     ({"axes": "link"}, {"place": "loads[1].axes"}),

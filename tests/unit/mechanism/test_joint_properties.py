@@ -59,7 +59,7 @@ def test_a_whole_pin_of_several_links_goes_by_its_point() -> None:
         eq.mechanism.assemble(replace(sieve, joints=twice))
 
 
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"joint": "joints.c", "radius": 0.01}, {"place": "joints[1].joint", "given": "joints.c"}),
     ({"joint": "C", "radius": 0.01},
      {"place": "joints[1].joint", "name": "joints.C", "joint": "C"}),

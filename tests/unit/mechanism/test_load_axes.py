@@ -176,7 +176,7 @@ def test_mujoco_has_them(tmp_path: Path) -> None:
     assert data.qfrc_actuator[crank] == pytest.approx(wanted, rel=1e-9)
 
 
-WRONG: list[tuple[Load, str]] = [
+WRONG: list[tuple[Load, dict[str, Any]]] = [
     (replace(IN_LEVER, link="lever", point="E"),
      {"place": "loads[1].axes", "link": "lever"}),
     (Load("lever", torque=2.0, axes="link"), {"place": "loads[1].axes"}),

@@ -275,7 +275,7 @@ link = "arm"
         eq.loads(text)
 
 
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"on": "rocker"}, {"place": "resistances[1].on", "link": "rocker"}),
     ({"point": "Q"}, {"place": "resistances[1].point", "given": "Q", "body": "rocker"}),
     ({"to": "X"}, {"place": "resistances[1].to", "given": "X", "body": "coupler"}),

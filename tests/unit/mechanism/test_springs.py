@@ -215,7 +215,7 @@ def test_modelica_has_their_pull() -> None:
 
 # -- what is wrong ---------------------------------------------------------------------------------
 
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"stiffness": None}, {"place": "springs[1]", "constant": "stiffness"}),
     ({"lengths": (0.0, 1.0)}, {"place": "springs[1]", "constant": "stiffness"}),
     ({"stiffness": None, "lengths": (0.0, 1.0), "forces": (0.0, 1.0)},

@@ -143,7 +143,7 @@ def test_formats_without_them_leave_them_out(tmp_path: Path) -> None:
     assert "stops" in export(MACHINE, tmp_path / "mine", "urdf")
 
 
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"on": "rocker"}, {"place": "stops[1].on", "link": "rocker"}),
     ({"point": "Q"}, {"place": "stops[1].point", "given": "Q", "body": "rocker"}),
     ({"to": "Q"}, {"place": "stops[1].to", "given": "Q"}),

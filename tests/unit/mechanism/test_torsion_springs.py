@@ -144,7 +144,7 @@ def test_scripts_take_their_numbers(tmp_path: Path) -> None:
     np.testing.assert_allclose(got, found.forces.drive_torque, atol=1e-12)
 
 
-WRONG: list[tuple[dict[str, Any], str]] = [
+WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"link": "rockr"}, {"place": "torsion_springs[1].link", "given": "rockr", "name": "rocker"}),
     ({"on": "rocker"}, {"place": "torsion_springs[1].on", "link": "rocker"}),
     ({"on": "ground"}, {"place": "torsion_springs[1].on", "given": "ground"}),

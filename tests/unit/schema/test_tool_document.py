@@ -298,7 +298,7 @@ def test_a_linkage_beside_goes_before_an_example(tmp_path: Path) -> None:
     assert shaken.linkage == load("slider-crank-engine")
 
 
-LINKAGES: dict[str, tuple[dict[str, Any], str]] = {
+LINKAGES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "missing": ({}, {"place": "excitations[1].linkage"}),
     "broken": ({"engine_toml": "schema = 2"}, {"place": "excitations[1].linkage"}),
     "no masses": ({"engine_toml": FOUR_BAR}, {"place": "excitations[1].linkage"}),

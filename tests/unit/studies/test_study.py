@@ -91,7 +91,7 @@ def test_from_python() -> None:
 # -- what is refused -------------------------------------------------------------------------------
 
 ONE = Variable(MASS, Range(0.1, 0.2))
-REFUSED: dict[str, tuple[dict[str, Any], str, str]] = {
+REFUSED: dict[str, tuple[dict[str, Any], str, dict[str, Any]]] = {
     # what is given, where, what is said
     "nothing varies": ({"vary": ()}, "vary", {}),
     "twice": (
