@@ -280,9 +280,8 @@ def test_refused(section: Any, options: Any, expected: dict[str, Any], tmp_path:
 
 def test_which_of_several_links(tmp_path: Path) -> None:
     both = with_section(engine(), "crank", between=("A", "B"))
-    with pytest.raises(eq.EquipoiseError) as caught:
+    with refused(eq.EquipoiseError, names="crank, rod"):
         eq.export(both, tmp_path / "x.inp")
-    assert str(caught.value) == "several links have a section; give the link as one of crank, rod"
     with refused(eq.EquipoiseError, formats="inp, link-loads"):
         eq.export(both, tmp_path / "x.xml", link="rod")
 

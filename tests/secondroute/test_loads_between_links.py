@@ -186,12 +186,10 @@ def test_it_is_written_and_read() -> None:
 
 
 def test_a_body_that_cannot_bear_it() -> None:
-    with refused(ModelError, "loads[1].reaction") as caught:
+    with refused(ModelError, "loads[1].reaction", given="head"):
         engine(replace(PUSH, reaction="head"))
-    assert "'head'" in str(caught.value)
-    with refused(ModelError, "loads[1].reaction") as caught:
+    with refused(ModelError, "loads[1].reaction", link="piston"):
         engine(replace(PUSH, reaction="piston"))
-    assert "cannot push itself" in str(caught.value)
 
 
 @pytest.mark.parametrize("name", ["model.xml", "model.py"])

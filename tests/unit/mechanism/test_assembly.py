@@ -140,18 +140,17 @@ def test_sides_of_a_swinging_guide(side: str, turn: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "joint", "words"),
+    ("given", "joint", "sides"),
     [
-        (crank_rocker(), "C", 'missing; give "left" or "right": C lies left or right of the line'),
-        (slider_crank(), "C", 'missing; give "forward" or "backward": C lies ahead of or behind B'),
-        (quick_return("forward"), "B", 'missing; give "forward" or "backward": B lies ahead of'),
+        (crank_rocker(), "C", ("left", "right")),
+        (slider_crank(), "C", ("forward", "backward")),
+        (quick_return("forward"), "B", ("forward", "backward")),
     ],
 )
-def test_missing_sides(given: eq.Machine, joint: str, words: str) -> None:
-    with pytest.raises(ModelError) as caught:
+def test_missing_sides(given: eq.Machine, joint: str, sides: tuple[str, str]) -> None:
+    first, second = sides
+    with refused(ModelError, f"assembly.{joint}", first=first, second=second):
         eq.mechanism.assemble(replace(given, assembly={}))
-    assert caught.value.where == f"assembly.{joint}"
-    assert words in caught.value.what
 
 
 def test_a_side_of_the_wrong_kind() -> None:
@@ -162,19 +161,17 @@ def test_a_side_of_the_wrong_kind() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "joint", "words"),
+    ("given", "joint", "expected"),
     [
-        (four_bar(1.0, 0.35, 0.9, 0.8), "B", "the dyads of this linkage meet at C"),
-        (four_bar(1.0, 0.35, 0.9, 0.8), "c", "on two sides; did you mean 'C'?"),
-        (eq.load("scotch-yoke"), "B", "no dyad has its inner joint there"),
-        (two_gears(eq.Gear("crank", "wheel", -1.0)), "A", "meet at no point"),
+        (four_bar(1.0, 0.35, 0.9, 0.8), "B", {"dyads": "C"}),
+        (four_bar(1.0, 0.35, 0.9, 0.8), "c", {"name": "C"}),
+        (eq.load("scotch-yoke"), "B", {}),
+        (two_gears(eq.Gear("crank", "wheel", -1.0)), "A", {}),
     ],
 )
-def test_idle_sides(given: eq.Machine, joint: str, words: str) -> None:
-    with pytest.raises(ModelError) as caught:
+def test_idle_sides(given: eq.Machine, joint: str, expected: dict[str, str]) -> None:
+    with refused(ModelError, f"assembly.{joint}", **expected):
         eq.mechanism.assemble(replace(given, assembly={**given.assembly, joint: "left"}))
-    assert caught.value.where == f"assembly.{joint}"
-    assert words in caught.value.what
 
 
 # -- sliders from either side ----------------------------------------------------------------------
@@ -243,10 +240,8 @@ def test_crossed_guides_meet() -> None:
 def test_parallel_guides_are_refused() -> None:
     given = eq.load("scotch-yoke")
     slot, rail = given.sliders
-    with pytest.raises(ModelError) as caught:
+    with refused(ModelError, "sliders[1]", name="yoke on frame", other="yoke"):
         eq.mechanism.assemble(replace(given, sliders=(replace(slot, direction=0.0), rail)))
-    assert caught.value.where == "sliders[1]"
-    assert "its line is parallel to that of 'yoke on frame'" in caught.value.what
 
 
 def test_three_sliding_joints_in_a_row_are_refused() -> None:
@@ -268,10 +263,8 @@ def test_three_sliding_joints_in_a_row_are_refused() -> None:
 
 def test_a_link_of_no_length() -> None:
     given = four_bar(1.0, 0.35, 0.9, 0.8)
-    with pytest.raises(ModelError) as caught:
+    with refused(ModelError, "links.rocker.points"):
         eq.mechanism.assemble(given.with_link("rocker", points={"D": ORIGIN, "C": ORIGIN}))
-    assert caught.value.where == "links.rocker.points"
-    assert "D and C lie at the same place" in caught.value.what
 
 
 # -- sides that are missing ------------------------------------------------------------------------
@@ -392,10 +385,8 @@ def test_a_side_without_which_the_crank_cannot_turn() -> None:
 
 def test_wrong_and_idle_sides_are_told_with_missing_ones() -> None:
     given = replace(eq.load("watt-six-bar"), assembly={"C": "forward", "f": "left"})
-    words = "C got 'forward', F is missing; give each its side in [assembly] ('f' is no inner"
-    with pytest.raises(ModelError) as caught:
+    with refused(ModelError, "assembly", joint="F", given="forward", name="F") as caught:
         eq.mechanism.assemble(given)
-    assert caught.value.what.startswith(words)
     assert "[assembly]" not in caught.value.lines  # there is one already
 
 

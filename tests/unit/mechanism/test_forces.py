@@ -36,13 +36,8 @@ def test_missing_masses_are_named() -> None:
         given = given.with_link(name, mass=None, center_of_mass=None, inertia=None)
     analysis = eq.analyze(given, 4)
     assert analysis.solved is None
-    message = (
-        "forces need mass, center_of_mass and inertia of every link; missing for coupler, rocker "
-        "(a link to be neglected has mass 0)"
-    )
-    with pytest.raises(MassError) as caught:
+    with refused(MassError, links="coupler, rocker"):
         _ = analysis.forces
-    assert str(caught.value) == message
     with pytest.raises(MassError):
         eq.forces(analysis.motion)
     assert list(analysis.motion.mass_centers) == ["crank"]

@@ -155,10 +155,8 @@ def test_the_drive_needs_a_pivot() -> None:
 
 def test_two_pins_at_one_place() -> None:
     four = crank_rocker()
-    with pytest.raises(ModelError) as caught:
+    with refusals.refused(ModelError, "links.coupler.points"):
         eq.mechanism.assemble(four.with_link("coupler", points={"B": (0.1, 0.2), "C": (0.1, 0.2)}))
-    assert caught.value.where == "links.coupler.points"
-    assert "B and C lie at the same place" in caught.value.what
 
 
 def test_gears_turn_on_their_carrier() -> None:
@@ -171,7 +169,5 @@ def test_gears_turn_on_their_carrier() -> None:
             eq.Gear("crank", "planet", -2.0, carrier="wheel2"),
         ),
     )
-    with pytest.raises(ModelError) as caught:
+    with refusals.refused(ModelError, "gears[2]", body="crank", shared=0, carrier="wheel2"):
         eq.mechanism.assemble(given)
-    assert caught.value.where == "gears[2]"
-    assert "'crank' shares 0 points with the carrier 'wheel2'" in caught.value.what

@@ -247,15 +247,14 @@ def test_position_missing() -> None:
     refused("position", expected, lambda: eq.mechanism.assemble(replace(TRIAD, position=None)))
 
 
-@pytest.mark.parametrize(("missing", "link"), [("C", "rod"), ("P", "front-link"), ("Q", "rear")])
+@pytest.mark.parametrize(
+    ("missing", "link"), [("C", "rod"), ("P", "front-link"), ("Q", "rear-link")]
+)
 def test_position_incomplete(missing: str, link: str) -> None:
     assert TRIAD.position is not None
     points = {name: place for name, place in TRIAD.position.points.items() if name != missing}
-    with pytest.raises(ModelError) as caught:
+    with refusals.refused(ModelError, "position", link=link, crank_angle=0.0):
         eq.mechanism.assemble(replace(TRIAD, position=eq.mechanism.Position(0.0, points)))
-    assert caught.value.where == "position"
-    assert f"does not place '{link}" in caught.value.what
-    assert "at crank angle 0 deg; give two of its points" in caught.value.what
 
 
 def test_a_triad_that_never_closes() -> None:
@@ -290,9 +289,8 @@ def test_angles_start_within_half_a_turn() -> None:
 # The angle: the test below.
 @pytest.mark.exhaustive
 def test_a_triad_that_cannot_turn_tells_the_angle() -> None:
-    with refusals.refused(MotionError, low="-140.91 deg", high="77.66 deg") as caught:
+    with refusals.refused(MotionError, low="-140.91 deg", high="77.66 deg"):
         eq.move(stuck(), 36)
-    assert "'rod' and 'plate' and 'front-link' and 'rear-link' can be" in str(caught.value)
 
 
 def test_the_angle_told_is_where_it_ends() -> None:
@@ -362,4 +360,3 @@ def test_a_bifurcation_is_called_one(lean: float) -> None:
         eq.move(rough, 36)
     at = caught.value.crank_angle
     assert abs(np.sin(at - lean)) < radians(0.5)  # a step of the grid
-    assert "change point at crank angle" in str(caught.value)

@@ -134,13 +134,10 @@ def test_refusals(
 
 @pytest.mark.parametrize("model", MODELS)
 def test_a_crank_that_stands_still(model: Model) -> None:
-    words = "a crank that stands still shakes nothing; give another speed"
-    with pytest.raises(UsageError) as asked:
+    with refused(UsageError, by="steady_speed"):
         respond(rig(), 0.0, model)
-    assert str(asked.value) == f"got a speed of 0; {words}"
-    with pytest.raises(ModelError) as given:
+    with refused(ModelError, "drive.speed"):
         respond(rig().with_drive(speed=0.0), None, model)
-    assert str(given.value) == f"drive.speed: got 0; {words}"
 
 
 def test_a_speed_that_the_motor_sets_itself() -> None:

@@ -461,12 +461,8 @@ def test_told_values_of_resonance() -> None:
     ("slowest", "fastest"), [(3.0, -9.0), (0.0, 9.0), (9.0, 3.0), (-9.0, -3.0), (5.0, 5.0)]
 )
 def test_wrong_ranges(slowest: float, fastest: float) -> None:
-    with pytest.raises(UsageError) as caught:
+    with refused(UsageError, slowest=slowest, fastest=fastest):
         sweep_speed(rig(), slowest, fastest)
-    assert str(caught.value) == (
-        f"got speeds from {slowest:g} to {fastest:g} rad/s; give two of the same sign that are not "
-        "0, the slower one first"
-    )
 
 
 @pytest.mark.parametrize("speeds", [1, 0, -3, 20_001])

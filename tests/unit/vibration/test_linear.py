@@ -13,6 +13,7 @@ from equipoise.errors import ModelError, ResponseError
 from equipoise.vibration.forced import respond
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.simplified import linear_of
+from support.refusals import refused
 from unit.vibration.build import SPEED, Gauge, Mount, block, cart, close, rig, springs
 
 MASS, ECCENTRIC, RADIUS = 10.0, 0.2, 0.03
@@ -78,11 +79,8 @@ def test_without_damping_at_resonance_there_is_no_answer() -> None:
     """10.25 kg on 2624 N/m at 16 rad/s: all exact in binary."""
     feet = {"a": Mount((0.0, 0.0, 0.0), stiffness=2624.0)}
     machine = unbalance(mounts=feet).with_link("crank", mass=0.25)
-    with pytest.raises(ResponseError) as caught:
+    with refused(ResponseError, speed=16.0):
         respond(machine, 16.0, "moment")
-    assert str(caught.value) == (
-        "resonance without damping at 16 rad/s; give the mounts a damping, or take another speed"
-    )
 
 
 @pytest.mark.parametrize("model", ["linear", "torque", "moment"])
@@ -199,11 +197,8 @@ def test_a_constant_force_on_what_nothing_holds() -> None:
     moved = respond(machine, SPEED, "moment").gauges["seat"].displacement
     assert np.isfinite(moved.peak_to_peak)
     pushed = replace(machine, loads=(eq.Load("coupler", "P", (5.0, 0.0)),))
-    with pytest.raises(ModelError) as caught:
+    with refused(ModelError, "support.mounts", by="Linear._mean"):
         respond(pushed, SPEED, "moment")
-    assert caught.value.what == (
-        "a constant force drives the support away in surge; add a mount there"
-    )
 
 
 def test_a_period_of_several_turns() -> None:
