@@ -210,6 +210,29 @@ def test_a_narrow_gap(gap: float, lean: float) -> None:
     assert len(found) == 1
 
 
+@pytest.mark.parametrize("lean", [0.0, 0.4, 2.09])
+def test_a_gap_between_the_points_of_the_grid(lean: float) -> None:
+    """A block on a crank of 1 m passes the pivot of its guide 0.3 mm off, and the guide lies 1 mm
+    off the pivot: within about 0.001 rad, a small part of the grid's step, it cannot be reached.
+    """
+    offset, frame = 0.001, 0.9997
+    far = frame * np.exp(1j * lean)
+    given = machine(
+        {"A": ORIGIN, "D": (far.real, far.imag)},
+        {
+            "crank": heavy(A=ORIGIN, B=(1.0, 0.0)),
+            "block": heavy(B=ORIGIN),
+            "rocker": heavy(D=ORIGIN, H=(0.5, offset)),
+        },
+        assembly={"B": "forward"},
+        sliders=(eq.Slider("block", "B", "rocker", "H", 0.0, 0.0),),
+    )
+    half = acos((1.0 + frame**2 - offset**2) / (2.0 * frame))
+    ((begin, end),) = limits_of(given)
+    assert (begin - lean) % (2 * pi) == pytest.approx(half, abs=1e-6)
+    assert (lean - end) % (2 * pi) == pytest.approx(half, abs=1e-6)
+
+
 def test_the_second_dyad_may_be_the_one_that_stops() -> None:
     given = eq.load("watt-six-bar")
     points = {"G": ORIGIN, "F": (0.03, 0.0)}

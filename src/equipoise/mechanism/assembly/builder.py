@@ -47,6 +47,8 @@ class Group:
     through : whether they go on through change points, where the margin is zero.
     jams : whether they come to no place where the margin is zero, instead of to two branches.
     equal : whether they close a four-bar of equal opposite sides, so that they could.
+    peaked : whether the margin can dip within less than a step of crank angles, as it does where a
+        block passes the pivot of its guide.
     """
 
     kind: Literal["dyad", "coupled", "loops", "pointed", "hung"]
@@ -61,6 +63,7 @@ class Group:
     through: bool = False
     jams: bool = False
     equal: bool = False
+    peaked: bool = False
 
 
 @dataclass(frozen=True)

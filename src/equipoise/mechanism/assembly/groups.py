@@ -167,7 +167,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
     from_point = builder.arm(link, guide.point, block.point) * guide.turn
     offset, back = (from_pivot + from_point).imag, guide.along.conjugate()
     places = (f"p({block.point})", f"p({other.point})", f"u({link})")
-    return _dyad(
+    group = _dyad(
         builder,
         (block, other),
         (block.reaction(), other.reaction(), guide_reaction(guide, link, on, block.point)),
@@ -181,6 +181,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
             slider=slider.name,
         ),
     )
+    return replace(group, peaked=True)
 
 
 def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:

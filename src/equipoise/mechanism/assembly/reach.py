@@ -70,8 +70,9 @@ class FullTurn:
         """
         least = np.min(margin)
         # Between two points a margin dips by an eighth of its second difference, so it is followed
-        # closely only where it comes near zero.
-        if least > CHANGE_POINT and least > np.max(np.abs(np.diff(margin, 2))):
+        # closely only where it comes near zero.  One with peaks between them shows no such thing.
+        dip = 1.0 if group.peaked else np.max(np.abs(np.diff(margin, 2)))
+        if least > CHANGE_POINT and least > dip:
             return
         smallest, at = self.smallest(group, margin)
         names = all_of([repr(link) for link in group.links])
