@@ -11,7 +11,6 @@ from collections.abc import Collection, Iterator
 from hashlib import sha256
 from html import escape
 from itertools import groupby, product
-from math import floor, log10
 from typing import Any, Literal
 
 import numpy as np
@@ -27,6 +26,7 @@ from equipoise.figures.stage import (
     check_width,
     width_of,
 )
+from equipoise.figures.view import round_below
 from equipoise.i18n import Note, decimals, localized, say
 from equipoise.mechanism.parts.machine import unknown
 from equipoise.symbols.carrier import mount
@@ -120,9 +120,7 @@ def ruler_ends(stage: Stage) -> tuple[complex, complex]:
 
 def _ruler_length(stage: Stage) -> float:
     """A round length, m, of a tenth to a fifth of the picture."""
-    most = RULER * stage.width / stage.scale
-    size = 10.0 ** floor(log10(most))
-    return max(by * size for by in (1, 2, 5) if by * size <= most)
+    return round_below(RULER * stage.width / stage.scale)
 
 
 def _of_pivots(stage: Stage) -> Iterator[list[Label]]:

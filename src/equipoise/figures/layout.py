@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import floor, log10
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,15 @@ from equipoise.figures.curves import UNIT, draw_shapes, sample_of, signs_at
 from equipoise.figures.panel import LEAD, draw, flag_height, frame
 from equipoise.figures.sheet import MIDDLE, Canvas, CanvasStroke, Words, lines_of, set_in, width_of
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL, look_of
-from equipoise.figures.view import DECADES, AxisScale, View, corners_of, ends_of, ticks_of
+from equipoise.figures.view import (
+    DECADES,
+    AxisScale,
+    View,
+    corners_of,
+    ends_of,
+    round_below,
+    ticks_of,
+)
 from equipoise.i18n import localized, say
 from equipoise.results.charts import Axis, Chart, Panel
 from equipoise.symbols.looks import LOOKS
@@ -235,9 +242,7 @@ def _enlarged(cell: Cell, most: float) -> float:
     """Scale of a panel over that of the others, which span `most`; 1 unless stated on the panel."""
     if not cell.span or most < LIKE * cell.span:
         return 1.0
-    times = most / cell.span
-    power = 10.0 ** floor(log10(times))
-    larger = power * max(digit for digit in (1, 2, 5) if digit * power <= times)
+    larger = round_below(most / cell.span)
     text = say("drawn {times} times as large", times=f"{larger:g}")
     remark = f"{cell.panel.remark}; {text}" if cell.panel.remark else text
     cell.panel = replace(cell.panel, remark=remark)

@@ -14,6 +14,7 @@ from equipoise.figures.chart_parts import by_name
 from equipoise.figures.curves import UNIT
 from equipoise.figures.linkage import support_keys
 from equipoise.figures.style import short
+from equipoise.figures.view import round_above
 from equipoise.i18n import decimals, say, to_say
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import AXES, Gauge, Mount, unit_vector
@@ -265,9 +266,7 @@ def _downward(low: complex, high: complex) -> tuple[tuple[float, str], ...]:
 
     low, high : m; the numbers are in mm.
     """
-    exact = (high - low).imag / 5
-    power = 10.0 ** np.floor(np.log10(exact))
-    step = next(by * power for by in (1, 2, 5, 10) if by * power >= exact)
+    step = round_above((high - low).imag / 5)
     counts = range(int(np.ceil(low.imag / step)), int(np.floor(high.imag / step)) + 1)
     return tuple((count * step, four_digits(-1000 * count * step + 0.0)) for count in counts)
 

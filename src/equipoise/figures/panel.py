@@ -34,7 +34,7 @@ from equipoise.figures.style import (
     look_of,
     mixed,
 )
-from equipoise.figures.view import View, aside, corners_of
+from equipoise.figures.view import View, aside, corners_of, round_above
 from equipoise.i18n import decimals
 from equipoise.results.charts import Bars, Mark, Outline, Panel, Surface
 
@@ -253,8 +253,7 @@ def _rings(view: View) -> None:
     """Circles of round sizes about the origin."""
     x, y = view.x, view.y
     most = max(abs(complex(a, b)) for a in (x.low, x.high) for b in (y.low, y.high))
-    step = 10.0 ** floor(log10(most / RINGS))
-    step *= next(by for by in (1, 2, 5, 10) if RINGS * by * step >= most)
+    step = round_above(most / RINGS)
     turn = np.radians(np.arange(0, 361, 3))
     lines = tuple(
         np.column_stack([x.of(k * step * np.cos(turn)), y.of(k * step * np.sin(turn))])

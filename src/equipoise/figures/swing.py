@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import floor, log10
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures.modes import described
+from equipoise.figures.view import round_below
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, PLANAR
@@ -83,7 +83,7 @@ def _enlarged(scene: Scene, reach: float, factor: float | None = None) -> tuple[
     reach : as of `_reach`, m.  factor : the one to be used, where it is given.
     """
     if factor is None:
-        factor = _round(LARGEST * _size(scene) / reach) if reach else 1.0
+        factor = max(1.0, round_below(LARGEST * _size(scene) / reach)) if reach else 1.0
     if factor == 1:
         return factor, [say("movement of the support to scale")]
     return factor, [
@@ -212,9 +212,3 @@ def _across(scene: Scene, values: Array, reach: float) -> Iterator[tuple[str, st
         alone[k] = values[k]
         if _reach(scene, alone) > LEAST * reach:
             yield name, quantity(size, "angle" if name in AXES else "length")
-
-
-def _round(value: float) -> float:
-    """The largest of 1, 2 or 5 and zeros that is no larger, and at least 1."""
-    power = 10.0 ** floor(log10(value))
-    return max(1.0, *(by * power for by in (1, 2, 5) if by * power <= value))

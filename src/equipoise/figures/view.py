@@ -105,6 +105,18 @@ def _log_ends(values: Array, low: float | None, high: float | None) -> tuple[flo
     return (least, most) if most > least else (least / 3, most * 3)
 
 
+def round_below(value: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is no larger than a value above 0."""
+    power = 10.0 ** floor(log10(value))
+    return max(digit * power for digit in (1, 2, 5) if digit * power <= value)
+
+
+def round_above(value: float) -> float:
+    """The least of 1, 2 and 5 times a power of ten that is no less than a value above 0."""
+    power = 10.0 ** floor(log10(value))
+    return next(digit * power for digit in (1, 2, 5, 10) if digit * power >= value)
+
+
 def ticks_of(scale: AxisScale, upright: bool = False) -> Ticks:
     """Places in the unit of the axis, and numbers there: at least three where there is room."""
     axis = scale.axis
