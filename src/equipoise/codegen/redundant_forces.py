@@ -22,7 +22,7 @@ from equipoise.codegen.terms import select
 from equipoise.codegen.trace import Trace
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.assembly.loops import CouplingLoop, Pose, Poses
+from equipoise.mechanism.assembly.loops import Pose, Poses
 from equipoise.mechanism.assembly.redundant_reactions import RedundantReactions
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.forces import forces
@@ -65,7 +65,7 @@ def check_shared(trace: Trace) -> None:
     if np.min(shared.strength(trace.linkage.solve(theta))) < STRONG:
         raise UsageError(SINGULAR)
     loops = shared.loops
-    switching = [loop for loop in loops if isinstance(loop, CouplingLoop) and loop.switches]
+    switching = [loop for loop in loops if loop.switches]
     forces_of = zip(loops, shared.reactions, strict=True)
     rigid = sum(loop.unknowns for loop, item in forces_of if item.force not in shared.compliance)
     many = len(switching) > MOST_SWITCHING or (shared.compliance and rigid > MOST_RIGID)
@@ -99,10 +99,7 @@ class _SharedForces:
         demand = [part for link in self.links for part in _demand(trace, link)]
         self.rows = [1.0, 1.0, self.size] * len(self.links)
         self.right = [part * (1.0 / row) for part, row in zip(demand, self.rows, strict=True)]
-        self.couplings = [
-            k for k, loop in enumerate(shared.loops)
-            if isinstance(loop, CouplingLoop) and loop.switches
-        ]  # fmt: skip
+        self.couplings = [k for k, loop in enumerate(shared.loops) if loop.switches]
 
     def put(self) -> None:
         """Add the forces to the state."""

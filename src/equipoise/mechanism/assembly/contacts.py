@@ -218,7 +218,7 @@ class Flank:
                 rides = Rides(own, end(coupling.carrier, entry.guide.base), entry.guide.along)
         placed = replace(self, arm=end(coupling.carrier, self.pin).arm)
         kernel, numbers = coupling.relation
-        return CouplingLoop(coupling.name, coupling.list_name, on, by, coupling.carrier, kernel,
+        return CouplingLoop(coupling.name, on, by, coupling.list_name, coupling.carrier, kernel,
                             numbers, 0.0, placed, rides)  # fmt: skip
 
     def place(self, poses: Poses) -> Any:
@@ -354,7 +354,7 @@ class CamPush:
         base = end(cam.carrier, fit.pin if fit.guide is None else fit.guide.base)
         kernel, numbers = cam.relation
         return CamLoop(
-            cam.name, cam.list_name, on, by, cam.carrier, kernel, numbers, 0.0, self, None,
+            cam.name, on, by, cam.list_name, cam.carrier, kernel, numbers, 0.0, self, None,
             end(cam.driven, cam.point), end(cam.carrier, fit.cam_pin), base,
         )  # fmt: skip
 

@@ -20,13 +20,11 @@ from equipoise.mechanism.assembly.loops import (
     CouplingLoop,
     End,
     Free,
-    Hinge,
     Loop,
     LoopGroup,
     PinLoop,
     Place,
     Poses,
-    Rail,
     Riding,
     SlideLoop,
     TrackLoop,
@@ -38,7 +36,6 @@ from equipoise.mechanism.assembly.steps import (
     State,
     Step,
     initial_state,
-    pin_reaction,
     run,
 )
 from equipoise.mechanism.formulas import kernels
@@ -174,7 +171,7 @@ def loop_group(
         solved, loops = _solve_start(builder, before, unsolved, loops, guess)
     builder.add(maker.anchors, {maker.anchors[link] for link in links})
     builder.running.update(place.link for place in solved.tree if place.counted)
-    reactions = tuple(maker.reaction(loop) for loop in loops)
+    reactions = tuple(loop.reaction() for loop in loops)
     hand_over = tuple(
         builder.hand_over(reaction) for reaction in reactions if reaction.by not in links
     )
@@ -278,20 +275,8 @@ class Maker:
 
     def tree(self, loops: Sequence[Loop]) -> tuple[Place, ...]:
         """Where each link is; one that nothing but couplings, or riders, holds may be anywhere."""
-        constrained = [self.place(link, loops[k]) for link, k in self.holds.items()]
+        constrained = [loops[k].placement(link) for link, k in self.holds.items()]
         return (*map(Free, self.free), *constrained)
-
-    def place(self, link: str, loop: Loop) -> Place:
-        here = link == loop.on.body
-        to = loop.by if here else loop.on
-        if isinstance(loop, TrackLoop):
-            return Riding(link, to, loop.curve, loop.turn)
-        if not isinstance(loop, SlideLoop):
-            return Hinge(link, to)
-        along, turn = loop.along, loop.turn
-        if not here:
-            along, turn = turn.conjugate(), along.conjugate()
-        return Rail(link, to, along, turn, np.angle(along * turn))
 
     def roots(self, bodies: Iterable[str], loops: Sequence[Loop]) -> Iterator[str]:
         """Known bodies whose angles those of these bodies are counted from."""
@@ -321,17 +306,6 @@ class Maker:
         if coupling.driven not in self.links:
             raise ModelError(place_in_file(self.joints, coupling), coupling.backwards())
         return contact.loop(self.end)
-
-    def reaction(self, loop: Loop) -> Reaction:
-        on, by = loop.on.body, loop.by.body
-        force = f"R({loop.name}/{on})"
-        if isinstance(loop, PinLoop):
-            return pin_reaction(loop.name, on, by)
-        if isinstance(loop, SlideLoop | TrackLoop):
-            couple = f"C({loop.name}/{on})"
-            return Reaction(loop.name, "slider", on, by, loop.on.point, force, couple)
-        push = f"C({loop.name}/{on})" if loop.contact.couples else None
-        return Reaction(loop.name, loop.kind, on, by, loop.at, force, push)
 
 
 def _solve_start(

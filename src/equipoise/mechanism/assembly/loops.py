@@ -19,6 +19,7 @@ neighbouring crank angles first, then any crank angle from the nearest one follo
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from functools import cached_property
@@ -31,7 +32,16 @@ from equipoise.dataclass import dataclass
 from equipoise.decompositions import singular_values
 from equipoise.errors import MotionError
 from equipoise.i18n import Note
-from equipoise.mechanism.assembly.steps import Array, State, Step, along, p, u
+from equipoise.mechanism.assembly.steps import (
+    Array,
+    Reaction,
+    State,
+    Step,
+    along,
+    p,
+    pin_reaction,
+    u,
+)
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import HERMITE
 from equipoise.mechanism.formulas.kernels import on_track
@@ -112,19 +122,58 @@ class PushingContact(Contact, Protocol):
 
 
 @dataclass(frozen=True)
-class PinLoop:
-    """Two points stay together; `on` carries the force that `by` exerts."""
+class BodyLoop(ABC):
+    """Something vanishes between two bodies; `on` carries the force that `by` exerts.
+
+    unknowns : of its force, as many as equations.
+    turns : whether its first gap is an angle, and its first unknown a couple.
+    starts : whether the file says at which angle the driven link starts.
+    switches : whether its line of action depends on the sense of the push.
+    """
 
     name: str
     on: End
     by: End
 
     unknowns: ClassVar[int] = 2
-    turns: ClassVar[bool] = False
-    """Whether its first gap is an angle, and its first unknown a couple."""
+    turns: ClassVar[bool] = True
+    starts: ClassVar[bool] = False
+    switches: ClassVar[bool] = False
 
+    @abstractmethod
     def gaps(self, poses: Poses, level: int) -> list[Any]:
         """What vanishes (level 0), and its first and second derivative."""
+
+    @abstractmethod
+    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
+        """Force and couple on `on`, at that place, for a unit of each unknown."""
+
+    def place(self, poses: Poses) -> Any:
+        """Where its force acts."""
+        return poses[self.on.body].place_of(self.on.arm)
+
+    def reaction(self) -> Reaction:
+        """The force on `on`, with a couple."""
+        on, by = self.on.body, self.by.body
+        key = f"({self.name}/{on})"
+        return Reaction(self.name, "slider", on, by, self.on.point, f"R{key}", f"C{key}")
+
+    def placement(self, link: str) -> Place:
+        """Where one of the bodies is by this joint alone."""
+        return Hinge(link, self.other(link))
+
+    def other(self, link: str) -> End:
+        """The end on the other body."""
+        return self.by if link == self.on.body else self.on
+
+
+@dataclass(frozen=True)
+class PinLoop(BodyLoop):
+    """Two points stay together."""
+
+    turns: ClassVar[bool] = False
+
+    def gaps(self, poses: Poses, level: int) -> list[Any]:
         ends = ((poses[end.body], end.arm) for end in (self.on, self.by))
         here, there = (
             pose.point(arm)[level] if level else pose.place_of(arm) for pose, arm in ends
@@ -132,31 +181,23 @@ class PinLoop:
         gap = here - there
         return [gap.real, gap.imag]
 
-    def place(self, poses: Poses) -> Any:
-        """Where its force acts."""
-        return poses[self.on.body].place_of(self.on.arm)
-
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
-        """Force and couple on `on`, at that place, for a unit of each unknown."""
         return [(1 + 0j, 0.0), (1j, 0.0)]
+
+    def reaction(self) -> Reaction:
+        return pin_reaction(self.name, self.on.body, self.by.body)
 
 
 @dataclass(frozen=True)
-class SlideLoop:
+class SlideLoop(BodyLoop):
     """A link's point stays on a line of the body `by`, and the link does not turn in it.
 
     along : unit vector of the line in that body's axes; turn : of the link's x axis in axes along
     the line.
     """
 
-    name: str
-    on: End
-    by: End
     along: Any
     turn: Any
-
-    unknowns: ClassVar[int] = 2
-    turns: ClassVar[bool] = True
 
     def gaps(self, poses: Poses, level: int) -> list[Any]:
         link, guide = poses[self.on.body], poses[self.by.body]
@@ -169,11 +210,14 @@ class SlideLoop:
         d, d1, d2 = (a - b for a, b in ends)
         return [turned, kernels.along_line(d, d1, d2, n, w_n, a_n)[level].imag]
 
-    def place(self, poses: Poses) -> Any:
-        return poses[self.on.body].place_of(self.on.arm)
-
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
         return [(0j, 1.0), (1j * poses[self.by.body].turn[0] * self.along, 0.0)]
+
+    def placement(self, link: str) -> Rail:
+        along, turn = self.along, self.turn
+        if link != self.on.body:
+            along, turn = turn.conjugate(), along.conjugate()
+        return Rail(link, self.other(link), along, turn, np.angle(along * turn))
 
 
 @dataclass(frozen=True)
@@ -196,20 +240,14 @@ class Rides:
 
 
 @dataclass(frozen=True)
-class TrackLoop:
+class TrackLoop(BodyLoop):
     """The rider `on` stays on a curve of the body `by`, its x axis along the curve.
 
     curve : a `PlaneCurve`.  turn : of its axes in those of the body.
     """
 
-    name: str
-    on: End
-    by: End
     curve: Any
     turn: Any
-
-    unknowns: ClassVar[int] = 2
-    turns: ClassVar[bool] = True
 
     def gaps(self, poses: Poses, level: int) -> list[Any]:
         """What vanishes; its rates always do, as a rider is placed by its track."""
@@ -223,25 +261,22 @@ class TrackLoop:
         off = tangent.conjugate() * back * rider.turn[0]
         return [2 * off.imag / (1 + off.real), kernels.cross(tangent, place - c)]
 
-    def place(self, poses: Poses) -> Any:
-        return poses[self.on.body].place_of(self.on.arm)
-
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
         return [(0j, 1.0), (1j * poses[self.on.body].turn[0], 0.0)]
 
+    def placement(self, link: str) -> Riding:
+        return Riding(link, self.other(link), self.curve, self.turn)
+
 
 @dataclass(frozen=True)
-class CouplingLoop:
+class CouplingLoop(BodyLoop):
     """Angles of driven link, driver and carrier in a fixed relation.
 
     kind : of its `Reaction`.  kernel, numbers : as of `couplings.Relation`.
     rides : of the body that slides on the carrier, if one does.
     """
 
-    name: str
     kind: str
-    on: End
-    by: End
     carrier: str
     kernel: Callable[..., tuple[Any, ...]]
     numbers: tuple[Any, ...]
@@ -252,9 +287,7 @@ class CouplingLoop:
     unknowns: ClassVar[int] = 1
     turns: ClassVar[bool] = False
     starts: ClassVar[bool] = True
-    """Whether the file says at which angle the driven link starts."""
     switches: ClassVar[bool] = True
-    """Whether the line of action depends on the sense of the push."""
 
     @property
     def at(self) -> str:
@@ -285,6 +318,11 @@ class CouplingLoop:
 
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
         return self.contact.wrenches(poses, sense)
+
+    def reaction(self) -> Reaction:
+        on, by = self.on.body, self.by.body
+        couple = f"C({self.name}/{on})" if self.contact.couples else None
+        return Reaction(self.name, self.kind, on, by, self.at, f"R({self.name}/{on})", couple)
 
     @property
     def slides(self) -> bool:

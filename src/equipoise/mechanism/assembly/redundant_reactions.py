@@ -320,8 +320,7 @@ class RedundantReactions(LoopForces):
 
     def senses(self, state: State, poses: Poses) -> list[Any]:
         """Senses of pushes, with those that agree with each other once they are shared."""
-        pairs = [(k, loop.name) for k, loop in enumerate(self.loops)
-                 if isinstance(loop, CouplingLoop) and loop.switches]  # fmt: skip
+        pairs = [(k, loop.name) for k, loop in enumerate(self.loops) if loop.switches]
         known = all(f"flank({name})" in state for _, name in pairs)
         senses = super().senses(state, poses)
         if known or not self.count:
@@ -523,7 +522,7 @@ def shared(
     anchors = tuple(maker.anchors.values())
     size = _span_of_joints(builder.machine, joints, apart)
     whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), size)
-    reactions = tuple(map(maker.reaction, loops))
+    reactions = tuple(loop.reaction() for loop in loops)
     every = (*reactions, *(reaction for group in decided for reaction in group.reactions))
     named = {family_of(item.kind) + name_in_outputs(joints, item): item.force for item in every}
     given = given_properties(builder.machine, joints, every)
