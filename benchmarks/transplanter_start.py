@@ -19,7 +19,7 @@ from statistics import median
 from scipy.integrate import solve_ivp
 
 import equipoise as eq
-from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.running.run_results import Run
 from timing import in_turn, report
 

@@ -17,7 +17,7 @@ from equipoise.exchange import exudyn as exudyn_export
 from equipoise.exchange import mjcf
 from equipoise.exchange.formats import Job
 from equipoise.mechanism import JointProperties
-from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.running.run_results import DrivesRun, Run
 from support.machines import make
 from support.poses import Array

@@ -13,9 +13,7 @@ from scipy.integrate import solve_ivp
 import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.errors import ResponseError, UsageError
-from equipoise.mechanism.parts.dc_motors import DcMotor
-from equipoise.mechanism.parts.force_elements import Motor
-from equipoise.mechanism.parts.induction_motors import InductionMotor
+from equipoise.mechanism.parts.motors import DcMotor, InductionMotor, Motor
 from equipoise.running import tabulated
 from equipoise.running.blocks import drives_headline, run_headline
 from equipoise.running.collocation import Instant

@@ -7,9 +7,8 @@ from dataclasses import replace
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.parts.force_elements import Motor
-from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.motors import InductionMotor, Motor
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 
 RIG = eq.load("yamashita-rig")

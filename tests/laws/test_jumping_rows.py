@@ -31,7 +31,7 @@ from equipoise.mechanism.parts.balance import (
     Phases,
     Weight,
 )
-from equipoise.mechanism.parts.force_elements import Load, LoadTable
+from equipoise.mechanism.parts.loads import Load, LoadTable
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
 from support.chosen import EXHAUSTIVE, few, few_together

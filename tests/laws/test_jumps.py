@@ -26,9 +26,9 @@ from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.mechanism.kinematics.friction_joints import rubbing_joints, ways_of
 from equipoise.mechanism.kinematics.jumps import jumps_of
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.parts.force_elements import Load, LoadTable
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.laws import LengthLaw, LengthSegment
+from equipoise.mechanism.parts.loads import Load, LoadTable
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import JumpSampling

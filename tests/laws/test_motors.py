@@ -15,11 +15,9 @@ from scipy.optimize import brentq
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.mechanism.parts.dc_motors import DcMotor
-from equipoise.mechanism.parts.force_elements import Load, Motor
-from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.joint_properties import JointProperties
-from equipoise.mechanism.parts.servo_motors import ServoMotor
+from equipoise.mechanism.parts.loads import Load
+from equipoise.mechanism.parts.motors import DcMotor, InductionMotor, Motor, ServoMotor
 from equipoise.running.blocks import verdict
 from equipoise.running.collocation import Instant
 from equipoise.running.drivers import Controller

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.dynamics.applied_loads import soil_force
+from equipoise.mechanism.dynamics.loads import soil_force
 from equipoise.mechanism.parts.field import Planting, Soil, SoilTable
 from equipoise.planting.names import TURNING, dimension_of
 from equipoise.planting.summary import PlantingFigures, plant, table

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.dynamics.shares import EVERYWHERE
+from equipoise.mechanism.dynamics.forces import EVERYWHERE
 from equipoise.mechanism.parts.dampers import Damper
 from equipoise.mechanism.parts.resistances import Resistance
 from equipoise.mechanism.parts.stops import Stop

@@ -15,8 +15,8 @@ from scipy.special import ellipk
 
 import equipoise as eq
 from equipoise.errors import ResponseError, UsageError
-from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.running import integration
 from equipoise.running.blocks import run_blocks, run_headline, verdict
 from equipoise.running.collocation import Instant

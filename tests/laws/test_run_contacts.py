@@ -14,8 +14,8 @@ from equipoise.mechanism.dynamics.cam_contacts import let_go
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import FurtherDrive
+from equipoise.mechanism.parts.run_plans import TimedLoad
 from equipoise.mechanism.parts.support import Row
-from equipoise.mechanism.parts.timed_loads import TimedLoad
 
 INERTIA, RADIUS, STIFFNESS, SPEED, GAP = 0.5, 0.2, 4e5, 3.0, 0.6
 """kg m2, m, N/m, rad/s and rad."""

@@ -14,13 +14,11 @@ import equipoise as eq
 from equipoise.errors import ModelError, ResponseError, UsageError
 from equipoise.figures.style import look_of
 from equipoise.figures.time_charts import drives_charts
-from equipoise.mechanism.parts.dc_motors import DcMotor
-from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.laws import AngleLaw
 from equipoise.mechanism.parts.machine import FurtherDrive
-from equipoise.mechanism.parts.servo_motors import ServoMotor
-from equipoise.mechanism.parts.timed_loads import TimedLoad
+from equipoise.mechanism.parts.motors import DcMotor, Motor, ServoMotor
+from equipoise.mechanism.parts.run_plans import TimedLoad
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.results.blocks import Facts
 from equipoise.running import drives_integration

@@ -14,8 +14,9 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.bushings import Bushing
 from equipoise.mechanism.parts.dampers import Damper
-from equipoise.mechanism.parts.force_elements import Load, Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.loads import Load
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.mechanism.parts.resistances import Resistance
 from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper

@@ -12,11 +12,10 @@ import pytest
 import equipoise as eq
 from equipoise.errors import EquipoiseError, ModelError
 from equipoise.figures.time_charts import drives_charts
-from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import FurtherDrive
-from equipoise.mechanism.parts.run_plans import RunPlan
+from equipoise.mechanism.parts.motors import Motor
+from equipoise.mechanism.parts.run_plans import RunPlan, TimedLoad
 from equipoise.mechanism.parts.support import FREEDOMS, Mount, Support
-from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.running.blocks import drives_blocks, drives_headline
 from equipoise.running.run_results import DrivesRun
 from equipoise.running.support_equation import SupportedEquation

@@ -26,8 +26,8 @@ from equipoise.mechanism.parts.balance import (
     Objective,
     Phases,
     Weight,
+    balanced_names,
 )
-from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.quantities import SI
 from equipoise.quantities.units import FACTORS
 from equipoise.results.blocks import Column, Many, Span, Table, Value

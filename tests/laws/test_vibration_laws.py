@@ -13,7 +13,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.parts.bodies import Body
-from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.mechanism.parts.support import Gauge, Mount, Row, Support, unit_vector
 from equipoise.signals import Periodic
 from equipoise.vibration.exact import solve_exact

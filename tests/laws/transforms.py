@@ -15,14 +15,13 @@ import pint
 import equipoise as eq
 from equipoise.keys import Frozen, KeyTable, Kind, Point, innermost
 from equipoise.keys.declaring import declarations
-from equipoise.mechanism.parts.balance import Limit
+from equipoise.mechanism.parts.balance import Limit, quantity_of
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.links import Slider
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Vector
-from equipoise.mechanism.parts.objectives import quantity_of
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.quantities import SI

@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.parts.drives import Drive
-from equipoise.mechanism.parts.force_elements import Load, LoadTable
+from equipoise.mechanism.parts.loads import Load, LoadTable
 from equipoise.running.flywheel import size_flywheel
 
 Array = np.ndarray

@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from equipoise.mechanism.dynamics.bearing_life import bearing_life
+from equipoise.mechanism.dynamics.joint_duty import bearing_life
 from equipoise.mechanism.dynamics.link_stress import rainflow
 from equipoise.mechanism.parts.joint_properties import RollingBearing
 

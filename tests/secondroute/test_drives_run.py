@@ -17,15 +17,14 @@ import equipoise as eq
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import run as run_steps
 from equipoise.mechanism.assembly.steps import u
-from equipoise.mechanism.dynamics.applied_loads import given_loads, spring_demands
+from equipoise.mechanism.dynamics.loads import given_loads, spring_demands
 from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.dynamics.reduced import generalized_force
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.parts.dc_motors import DcMotor
-from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw
 from equipoise.mechanism.parts.machine import FurtherDrive, Row
+from equipoise.mechanism.parts.motors import DcMotor, Motor
 from equipoise.results.remarks import linkage_remarks
 from equipoise.running.blocks import drives_verdict
 from equipoise.running.drives_equation import DrivesEquation

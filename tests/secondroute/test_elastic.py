@@ -13,7 +13,7 @@ from scipy.linalg import eigh
 
 import equipoise as eq
 from equipoise.mechanism import LinkSection
-from equipoise.mechanism.dynamics.elastic import elastic_link
+from equipoise.mechanism.dynamics.section_loads import elastic_link
 from equipoise.mechanism.parts.balance import Balance, CenterMove, Objective
 from secondroute.test_link_elements import engine, read_beams, solved, stiffness
 from surface.running import equipoise, succeeded

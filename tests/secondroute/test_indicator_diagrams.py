@@ -17,7 +17,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.loads import load_at, work_in_cycle
 from equipoise.mechanism.kinematics.indicators import loads_of
-from equipoise.mechanism.parts.indicator_diagrams import IndicatorDiagram
+from equipoise.mechanism.parts.loads import IndicatorDiagram
 from support.refusals import refused
 
 BORE, CRANK, ROD = 0.068, 0.027, 0.095

@@ -22,7 +22,7 @@ from equipoise.mechanism import Load, Machine, Slider
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.mechanism.kinematics.indicators import loads_of
-from equipoise.mechanism.parts.indicator_diagrams import IndicatorDiagram
+from equipoise.mechanism.parts.loads import IndicatorDiagram
 from equipoise.schema.writing import Writer, toml_text
 from support.own_kinds import scripted
 from support.refusals import refused

@@ -14,9 +14,10 @@ from scipy.spatial.transform import Rotation
 
 import equipoise as eq
 from equipoise.mechanism.assembly.steps import u
-from equipoise.mechanism.parts.force_elements import Load, Motor
 from equipoise.mechanism.parts.laws import AngleLaw
+from equipoise.mechanism.parts.loads import Load
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, Mount, Row, Support
 from equipoise.running.drives_linkage import LinkageRows, pose_of
 from equipoise.running.friction import NEAR_REST

@@ -20,7 +20,7 @@ import pytest
 from numpy.typing import NDArray
 
 import equipoise as eq
-from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.vibration.exact import ExactSolution, solve_exact
 from equipoise.vibration.forced import respond
 from equipoise.vibration.response import Model

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import equipoise as eq
 from equipoise.mechanism.parts import support as package
-from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.mechanism.parts.springs import Spring
 from support.rig_reference import Mount, Rig, Row, Support, Tie, Torsion, paper_rig, rig_of
 

@@ -67,9 +67,16 @@ from equipoise.balancing.workshop import Change
 from equipoise.errors import EquipoiseError, MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.parts.balance import Balance, Limit, Objective, Phases
+from equipoise.mechanism.parts.balance import (
+    GAUGES,
+    OF_ROWS,
+    ROWS,
+    Balance,
+    Limit,
+    Objective,
+    Phases,
+)
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, OF_ROWS, ROWS
 from equipoise.results.rotors import unbalances
 from equipoise.results.yardsticks import FigureAssessment
 from equipoise.vibration.forced import check_moving

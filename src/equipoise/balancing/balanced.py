@@ -28,9 +28,8 @@ from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import declared
-from equipoise.mechanism.parts.balance import Balance, Objective
+from equipoise.mechanism.parts.balance import GAUGES, ROWS, Balance, Objective
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.planting.names import dimension_of as of_planting
 from equipoise.quantities import Dimension, format_quantity
 from equipoise.results.analysis import Analysis, analyze

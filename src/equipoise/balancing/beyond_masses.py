@@ -47,7 +47,7 @@ from equipoise.balancing.spaced_arms import (
 from equipoise.balancing.workshop import weight_named
 from equipoise.dataclass import dataclass
 from equipoise.i18n import say
-from equipoise.mechanism.dynamics import applied_loads
+from equipoise.mechanism.dynamics.loads import outer_loads
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import angle, percent
 from equipoise.results.analysis import Analysis
@@ -194,7 +194,7 @@ def counterbalance_for(
 def _hanging(analysis: Analysis) -> float:
     """Largest force of a load from outside against or along gravity, N."""
     down = analysis.machine.gravity[1] * 1j / abs(analysis.machine.gravity[1])
-    forces = (force for _, _, force, _ in applied_loads.outer_loads(analysis.motion))
+    forces = (force for _, _, force, _ in outer_loads(analysis.motion))
     return max((float(np.max(np.abs(np.real(force * np.conj(down))))) for force in forces),
                default=0.0)  # fmt: skip
 

@@ -31,7 +31,7 @@ from equipoise.balancing.outcome import (
 )
 from equipoise.balancing.workshop import in_short, sentences
 from equipoise.i18n import localized, say, sentence_start, to_say
-from equipoise.mechanism.parts.objectives import ROWS
+from equipoise.mechanism.parts.balance import ROWS
 from equipoise.quantities import Dimension, change, display, number, percent
 from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.blocks import (

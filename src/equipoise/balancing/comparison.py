@@ -10,9 +10,8 @@ from equipoise.balancing.objectives import measured
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, ResponseError
 from equipoise.mechanism.outputs.declared import GROUPS, declared
-from equipoise.mechanism.parts.balance import Balance, Measure, Objective
+from equipoise.mechanism.parts.balance import GAUGES, ROWS, WITHIN, Balance, Measure, Objective
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, ROWS, WITHIN
 from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import AnalysisOutput, unit_of_measure

@@ -26,9 +26,15 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.jumps import bends_of, jumps_of
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.parts.balance import Measure, Objective, cost_factor
+from equipoise.mechanism.parts.balance import (
+    GAUGES,
+    Measure,
+    Objective,
+    cost_factor,
+    output_of,
+    wrong_objective,
+)
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, output_of, wrong_objective
 from equipoise.results.analysis import Analysis
 from equipoise.signals import AT_ONCE, Array, Periodic, present
 from equipoise.vibration.excitation import motion_of

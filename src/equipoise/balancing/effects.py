@@ -18,11 +18,11 @@ from equipoise.balancing.rounding import NEARLY
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.force_readings import ForceReadings
 from equipoise.mechanism.dynamics.forces import Forces, demand_of_inertia, forces
 from equipoise.mechanism.dynamics.out_of_plane import OutOfPlaneMoments, exerted_in
 from equipoise.mechanism.dynamics.reactions import (
     Demand,
+    ForceReadings,
     JointReactions,
     VectorSignal,
     demands_of,
@@ -33,9 +33,9 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.outputs.declared import Declared, OutputSource, matches
+from equipoise.mechanism.parts.balance import balanced_names
+from equipoise.mechanism.parts.links import in_frame
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import balanced_names
-from equipoise.mechanism.parts.places import in_frame
 from equipoise.signals import Array, JumpSampling, Periodic
 
 ANGLES = 720

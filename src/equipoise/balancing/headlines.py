@@ -20,9 +20,8 @@ from equipoise.balancing.policy import (
 from equipoise.balancing.problem import Problem
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.outputs.declared import declared
-from equipoise.mechanism.parts.balance import Limit, Objective
+from equipoise.mechanism.parts.balance import GAUGES, MEASURES, ROWS, Limit, Objective
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, MEASURES, ROWS
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.rotors import unbalances
 from equipoise.results.yardsticks import FigureAssessment, assess, assess_parts

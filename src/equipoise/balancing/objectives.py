@@ -28,10 +28,17 @@ from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.parts.balance import Measure, Objective
+from equipoise.mechanism.parts.balance import (
+    GAUGES,
+    OF_ROWS,
+    WITHIN,
+    Measure,
+    Objective,
+    output_of,
+    quantity_of,
+)
+from equipoise.mechanism.parts.links import in_frame
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, OF_ROWS, WITHIN, output_of, quantity_of
-from equipoise.mechanism.parts.places import in_frame
 from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import SI
 from equipoise.signals import Array, JumpSampling, Periodic, Tops, mean, smooth_tops, stencils_above

@@ -22,6 +22,7 @@ from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.balance import (
+    WITHIN,
     AddedMass,
     Balance,
     BalanceShafts,
@@ -34,7 +35,6 @@ from equipoise.mechanism.parts.balance import (
     Weight,
 )
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import WITHIN
 from equipoise.vibration.forced import check_moving
 
 Progress = Callable[[int, int], None]

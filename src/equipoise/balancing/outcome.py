@@ -29,8 +29,15 @@ from equipoise.balancing.resonant_mounts import mount_sentences, outweighs
 from equipoise.balancing.workshop import in_its_plane, phases_text, sentences
 from equipoise.i18n import localized, say, sentence_start, to_say
 from equipoise.mechanism.outputs.declared import GROUPS
-from equipoise.mechanism.parts.balance import CUT, Balance, Objective, Weight, material_of
-from equipoise.mechanism.parts.objectives import GAUGES, ROWS
+from equipoise.mechanism.parts.balance import (
+    CUT,
+    GAUGES,
+    ROWS,
+    Balance,
+    Objective,
+    Weight,
+    material_of,
+)
 from equipoise.quantities import PER_RPM, brief, change, display, format_quantity, percent
 from equipoise.results.blocks import Block, Cell, Column, RelativeChange, Table, Text
 from equipoise.results.lost_contacts import preloads_to_hold

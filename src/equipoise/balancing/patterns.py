@@ -24,9 +24,8 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.balance import OF_ROWS, Objective
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import OF_ROWS
 from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import display, fixed, format_quantity, in_si
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value

@@ -44,9 +44,8 @@ from equipoise.design.solvers import DesignProblem, DesignSolution, solve
 from equipoise.design.variables import Range
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.parts.balance import Limit, Objective, Phases
+from equipoise.mechanism.parts.balance import OF_ROWS, Limit, Objective, Phases
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import OF_ROWS
 from equipoise.results.result import Result
 from equipoise.signals import Array
 

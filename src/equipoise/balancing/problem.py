@@ -31,9 +31,8 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.outputs.declared import declared
-from equipoise.mechanism.parts.balance import Balance, Objective
+from equipoise.mechanism.parts.balance import WITHIN, Balance, Objective
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import WITHIN
 from equipoise.signals import Array
 
 WITHOUT_EFFECT = 1e-9

@@ -39,9 +39,8 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.jumps import bends_of, jumps_of
-from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.balance import GAUGES, WITHIN, Objective
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, WITHIN
 from equipoise.signals import Array, Periodic
 
 BESIDE = 0.1

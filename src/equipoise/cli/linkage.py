@@ -50,8 +50,8 @@ from equipoise.errors import EquipoiseError, UsageError, at_place
 from equipoise.i18n import Note
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.parts.force_elements import Motor
     from equipoise.mechanism.parts.machine import Machine
+    from equipoise.mechanism.parts.motors import Motor
     from equipoise.results.result import Result
     from equipoise.vibration.response import Response
 
@@ -267,7 +267,7 @@ def _motor(option: str, text: str) -> Motor:
     """A motor by its keys in a file, such as ``no_load_speed = 300 rpm, stall_torque = 2 N m``;
     a key of a table in its table has a dot: ``dc.voltage = 24 V``.
     """
-    from equipoise.mechanism.parts.force_elements import Motor
+    from equipoise.mechanism.parts.motors import Motor
     from equipoise.schema.models import AdjacentFiles
     from equipoise.schema.reading import Context, read_table
 

@@ -287,8 +287,7 @@ def _read_word(option: str, word: str, value: str) -> dict[str, Any]:
 
 def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
     """A plan with one more limit, such as ``peak joints.B <= 120 N``."""
-    from equipoise.mechanism.parts.balance import Limit
-    from equipoise.mechanism.parts.objectives import quantity_of
+    from equipoise.mechanism.parts.balance import Limit, quantity_of
     from equipoise.schema.numbers import parse_share
 
     head, sign, tail = (part.strip() for part in text.partition("<="))

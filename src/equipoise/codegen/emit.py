@@ -38,7 +38,7 @@ from equipoise.mechanism.dynamics.reactions import PUSH, Push
 from equipoise.mechanism.formulas.kernels import cross, length
 from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
-from equipoise.mechanism.parts.force_kinds import force_kinds
+from equipoise.mechanism.parts.element_kinds import force_kinds
 from equipoise.mechanism.parts.joint_properties import JOINTS, family_of
 from equipoise.mechanism.parts.machine import Machine
 

@@ -48,17 +48,15 @@ from equipoise.mechanism.assembly.steps import (
     size_of_bodies,
     u,
 )
-from equipoise.mechanism.dynamics.applied_loads import against_soil
 from equipoise.mechanism.dynamics.forces import inertia_moved, massless
-from equipoise.mechanism.dynamics.loads import load_at
+from equipoise.mechanism.dynamics.loads import against_soil, load_at
 from equipoise.mechanism.dynamics.out_of_plane import contacts, statics
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import ROUNDING, StateBodies, track_of
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
-from equipoise.mechanism.parts.element_kinds import Element
+from equipoise.mechanism.parts.element_kinds import Element, ForceElement
 from equipoise.mechanism.parts.field import PARTS
-from equipoise.mechanism.parts.force_kinds import ForceElement
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.links import moments_across
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Load

@@ -14,8 +14,7 @@ from equipoise.exchange.formats import FORMATS, Angles, Format, Job
 from equipoise.i18n import LANGUAGES, Note, speaking, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import numbered
-from equipoise.mechanism.parts.element_kinds import part_kinds
-from equipoise.mechanism.parts.force_kinds import ForceElement
+from equipoise.mechanism.parts.element_kinds import ForceElement, part_kinds
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import printable, write
 from equipoise.studies.selection import write_designs

@@ -22,9 +22,9 @@ from equipoise.exchange.tree import (
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import PlacedBodies, move
+from equipoise.mechanism.parts.element_kinds import BetweenPoints
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.support import PLANAR, Support, unit_vector
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 
 Data = dict[str, Any]
 End = tuple[str, list[float]]

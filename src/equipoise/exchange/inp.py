@@ -2,7 +2,7 @@
 
 Coordinates are along the line of the link, x from its first point to its second and y to the left
 of that.  Weight, inertia and all that acts on the link are forces and couples at nodes, see
-`dynamics.nodal_loads`.  They are in balance, so what holds the link in place has nothing to bear.
+`dynamics.section_loads`.  They are in balance, so what holds the link in place has nothing to bear.
 """
 
 from __future__ import annotations

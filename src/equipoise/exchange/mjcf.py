@@ -31,10 +31,10 @@ from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.friction_joints import rubbing_joints
 from equipoise.mechanism.kinematics.motion import PlacedBodies, move
+from equipoise.mechanism.parts.element_kinds import BetweenPoints
 from equipoise.mechanism.parts.links import Link, size_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.support import FREEDOMS, Support, unit_vector
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 
 STEPS = 2000
 """Steps of the integration in a turn of the crank."""

@@ -18,10 +18,9 @@ from equipoise.exchange.tree import constant_loads, mass_of, weighed
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move
-from equipoise.mechanism.parts.damping import Damping
+from equipoise.mechanism.parts.element_kinds import BetweenPoints
 from equipoise.mechanism.parts.machine import FRAME, Load, Machine
-from equipoise.mechanism.parts.ramps import Ramps, ramps_of
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints
+from equipoise.mechanism.parts.row_laws import Damping, Ramps, ramps_of
 
 
 @dataclass

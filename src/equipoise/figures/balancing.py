@@ -35,9 +35,8 @@ from equipoise.figures.forces import Read, last_order, order_panel
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.declared import Declared
-from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.balance import Objective, output_of
 from equipoise.mechanism.parts.machine import Drive
-from equipoise.mechanism.parts.objectives import output_of
 from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import (

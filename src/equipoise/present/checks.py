@@ -44,9 +44,9 @@ if TYPE_CHECKING:
     from equipoise.handheld.shaft import Shaft, Tube
     from equipoise.mechanism.assembly.linkage import Linkage
     from equipoise.mechanism.kinematics.motion import Motion
-    from equipoise.mechanism.parts.force_elements import Motor
     from equipoise.mechanism.parts.joint_properties import JointProperties
     from equipoise.mechanism.parts.machine import Machine
+    from equipoise.mechanism.parts.motors import Motor
     from equipoise.mechanism.parts.support import Gauge, Mount
     from equipoise.studies.study import Study
 

@@ -15,22 +15,24 @@ from equipoise.limits import check_memory
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.dynamics.assessment import FourBar, four_bar
-from equipoise.mechanism.dynamics.bearing_life import BearingLife, bearing_lives
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
-from equipoise.mechanism.dynamics.link_stress import LinkStress, link_stresses
-from equipoise.mechanism.dynamics.losses import Losses, losses_of
-from equipoise.mechanism.dynamics.plain_bearing_duty import (
+from equipoise.mechanism.dynamics.joint_duty import (
+    BearingLife,
+    Losses,
     PlainBearingDuty,
+    bearing_lives,
+    losses_of,
     plain_bearing_duties,
 )
+from equipoise.mechanism.dynamics.link_stress import LinkStress, link_stresses
 from equipoise.mechanism.dynamics.reactions import indeterminate_reactions
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.jumps import jumps_of, resolved
 from equipoise.mechanism.kinematics.motion import Motion, move, move_again
 from equipoise.mechanism.kinematics.strokes import Dwell, Stroke, dwell, strokes
 from equipoise.mechanism.outputs.declared import DECLARED, OutputSource
+from equipoise.mechanism.parts.links import in_frame
 from equipoise.mechanism.parts.machine import Machine, Vector
-from equipoise.mechanism.parts.places import in_frame
 from equipoise.quantities import Dimension, column_heading
 from equipoise.results.declaring import OWN, Declarations, ResultOutput, values_of
 from equipoise.results.outputs import (

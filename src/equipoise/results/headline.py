@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.parts.objectives import GAUGES
+from equipoise.mechanism.parts.balance import GAUGES
 from equipoise.quantities import format_quantity
 from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
 from equipoise.results.machine_blocks import driven

@@ -16,11 +16,10 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.keys import Frozen
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.bearing_life import BearingLife
+from equipoise.mechanism.dynamics.forces import ELEMENTS
+from equipoise.mechanism.dynamics.joint_duty import BearingLife, PlainBearingDuty
 from equipoise.mechanism.dynamics.link_stress import LinkStress
-from equipoise.mechanism.dynamics.plain_bearing_duty import PlainBearingDuty
 from equipoise.mechanism.dynamics.reactions import refuse_unbounded
-from equipoise.mechanism.dynamics.shares import ELEMENTS
 from equipoise.mechanism.kinematics.strokes import DeadPosition, Stroke, declared_figures
 from equipoise.mechanism.outputs.declared import (
     DECLARED,

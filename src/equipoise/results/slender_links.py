@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from math import inf, pi
 
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics.elastic import ADDED, added_share, bending_frequency
+from equipoise.mechanism.dynamics.section_loads import ADDED, added_share, bending_frequency
 from equipoise.mechanism.parts.links import Link
 from equipoise.quantities import number, percent
 

@@ -46,13 +46,13 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.i18n import Note, capital, say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
-from equipoise.mechanism.dynamics import applied_loads
-from equipoise.mechanism.dynamics.pin_bearings import joint_properties
+from equipoise.mechanism.dynamics.forces import joint_properties
+from equipoise.mechanism.dynamics.loads import acting_loads, outer_loads
 from equipoise.mechanism.kinematics.strokes import declared_figures, least_value
 from equipoise.mechanism.outputs.declared import DECLARED, declared, joint_named, named
+from equipoise.mechanism.parts.balance import GAUGES
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Machine
-from equipoise.mechanism.parts.objectives import GAUGES
 from equipoise.quantities import SI, Dimension, angle, display, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.machine_blocks import pushing
@@ -398,12 +398,12 @@ class _Scales:
     @cached_property
     def outer_load(self) -> float:
         """Largest of a load from outside."""
-        return _largest(applied_loads.outer_loads(self.analysis.motion))
+        return _largest(outer_loads(self.analysis.motion))
 
     @cached_property
     def load(self) -> float:
         """Largest of any load, those that the frame bears too."""
-        return max(self.outer_load, _largest(applied_loads.acting_loads(self.analysis.motion)))
+        return max(self.outer_load, _largest(acting_loads(self.analysis.motion)))
 
     @cached_property
     def steadying(self) -> tuple[float, Note]:

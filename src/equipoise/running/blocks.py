@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import degrees, inf, pi
 from typing import TYPE_CHECKING
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from equipoise.running.flywheel import Flywheel
     from equipoise.running.integration import Event
     from equipoise.running.run_contacts import RunContact
-    from equipoise.running.run_results import DrivesRun, Run
+    from equipoise.running.run_results import DrivesRun, Electric, Run, RunResult
     from equipoise.signals import Array
     from equipoise.vibration.support_motion import SupportMotion
 
@@ -62,7 +62,7 @@ def run_headline(run: Run, alone: bool = False) -> Iterator[Block]:
     if remark := _other_speed(run):
         yield Text(remark)
     if run.flywheel is not None:
-        yield Text(flywheel_sentence(run.flywheel))
+        yield Text(_flywheel_sentence(run.flywheel))
     if alone and (lines := tuple(_figures(run))):
         yield Facts(say("Last cycle"), lines)
 
@@ -155,7 +155,7 @@ def _stopped(run: Run) -> Iterator[str]:
         yield say("Switched off, it stops in {time} s and {turns} turns.", time=time, turns=turns)
 
 
-def flywheel_sentence(flywheel: Flywheel) -> str:
+def _flywheel_sentence(flywheel: Flywheel) -> str:
     """What flywheel the wanted fluctuation needs."""
     wanted = f"{100 * flywheel.wanted:.3g}"
     if not flywheel.inertia:
@@ -213,7 +213,7 @@ def _figures(run: Run) -> Iterator[str]:
             energy=format_quantity(cycle.energy_per_turn if gives else 0.0, "energy", "J"),
             power=format_quantity(cycle.power if gives else 0.0, "power", "W"),
         )
-    yield from lossiest(run)
+    yield from _lossiest(run)
     if run.electric is not None:
         yield say(
             "current of the motor: up to {most}, {last} at the end",
@@ -222,13 +222,35 @@ def _figures(run: Run) -> Iterator[str]:
         )
 
 
-def _lost(run: Run | DrivesRun) -> tuple[dict[str, float], float]:
+def _energies(
+    run: RunResult, labels: Mapping[str, str], circuits: Iterable[tuple[Electric, str, str]]
+) -> Iterator[Block]:
+    """Work of everything that has acted, what became of it, and how far the balance is from closed.
+
+    labels : of what acts beside the sources of the equation, by its key in the works.
+    circuits : of direct-current motors, with labels of what the supply gave and of heat.
+    """
+    labels = {source.key: say(source.label) for source in run.equation.sources} | {**labels}
+    energy = run.kinetic_energy
+    rows = [(labels[name], Value(float(work[-1]))) for name, work in run.work.items()]
+    rows.append((say("kinetic energy"), Value(float(energy[-1] - energy[0]))))
+    for circuit, supply, heat in circuits:
+        rows.append((supply, Value(float(circuit.supply[-1]))))
+        rows.append((heat, Value(float(circuit.heat[-1]))))
+    columns = ("", Column(say("work"), "energy"))
+    yield Table.of(say("Energy from the start to the end"), columns, rows)
+    yield from _losses(run)
+    error = f"{run.energy_error:.1e}"
+    yield Text(say("Kinetic energy and work agree to {error} of the largest.", error=error))
+
+
+def _lost(run: RunResult) -> tuple[dict[str, float], float]:
     """Energy that friction has taken in each joint since the start, and in all, J."""
     each = {name: float(lost[-1]) for name, lost in run.losses.items()}
     return each, sum(each.values())
 
 
-def lossiest(run: Run | DrivesRun) -> Iterator[str]:
+def _lossiest(run: RunResult) -> Iterator[str]:
     """Which joint loses most."""
     each, total = _lost(run)
     if not total > 0:
@@ -242,7 +264,7 @@ def lossiest(run: Run | DrivesRun) -> Iterator[str]:
     )
 
 
-def losses_table(run: Run | DrivesRun) -> Iterator[Block]:
+def _losses(run: RunResult) -> Iterator[Block]:
     """What each joint has lost since the start."""
     each, total = _lost(run)
     if not total > 0:
@@ -255,7 +277,7 @@ def losses_table(run: Run | DrivesRun) -> Iterator[Block]:
     yield Table.of(say("Friction in joints from the start to the end"), columns, rows)
 
 
-def contacts_table(contacts: Sequence[RunContact]) -> Iterator[Table]:
+def _contacts(contacts: Sequence[RunContact]) -> Iterator[Table]:
     """The last contacts of a run; nothing where there are none."""
     if not contacts:
         return
@@ -298,19 +320,10 @@ def run_blocks(run: Run) -> Iterator[Block]:
     """Figures, energies and events."""
     if lines := tuple(_figures(run)):
         yield Facts(say("Last cycle"), lines)
-    labels = {source.key: say(source.label) for source in run.equation.sources}
-    labels |= {BRAKE: say("brake"), DRIVE: say("drive")}
-    energy = run.kinetic_energy
-    rows = [(labels[name], Value(float(work[-1]))) for name, work in run.work.items()]
-    rows.append((say("kinetic energy"), Value(float(energy[-1] - energy[0]))))
+    labels, circuits = {BRAKE: say("brake"), DRIVE: say("drive")}, []
     if run.electric is not None:
-        rows.append((say("from the motor's supply"), Value(float(run.electric.supply[-1]))))
-        rows.append((say("heat in the motor"), Value(float(run.electric.heat[-1]))))
-    columns = ("", Column(say("work"), "energy"))
-    yield Table.of(say("Energy from the start to the end"), columns, rows)
-    yield from losses_table(run)
-    error = f"{run.energy_error:.1e}"
-    yield Text(say("Kinetic energy and work agree to {error} of the largest.", error=error))
+        circuits = [(run.electric, say("from the motor's supply"), say("heat in the motor"))]
+    yield from _energies(run, labels, circuits)
     events = [
         (
             event_named(event),
@@ -327,7 +340,7 @@ def run_blocks(run: Run) -> Iterator[Block]:
         Column(say("crank speed"), "angular speed", "rpm"),
     )
     yield Table.of(say("Events"), heads, events)
-    yield from contacts_table(run.contacts)
+    yield from _contacts(run.contacts)
 
 
 DRIVE_EVENTS = {
@@ -367,8 +380,8 @@ def drives_headline(run: DrivesRun, alone: bool = False) -> Iterator[Block]:
     if run.machine.has_crank and run.machine.drive.motor is None:
         yield Text(say(NO_MOTOR))
     if run.flywheel is not None:
-        yield Text(flywheel_sentence(run.flywheel))
-    if alone and run.last_cycle is not None and (lines := (*_speeds(run), *lossiest(run))):
+        yield Text(_flywheel_sentence(run.flywheel))
+    if alone and run.last_cycle is not None and (lines := (*_speeds(run), *_lossiest(run))):
         yield Facts(say("Last cycle"), lines)
     if alone and run.support is not None:
         yield from readings_in_time(run.support)
@@ -414,10 +427,18 @@ def drives_blocks(run: DrivesRun) -> Iterator[Block]:
     yield _drives(run)
     if run.support is not None:
         yield _of_support(run.support, run.time)
-    yield _energies(run)
-    yield from losses_table(run)
-    error = f"{run.energy_error:.1e}"
-    yield Text(say("Kinetic energy and work agree to {error} of the largest.", error=error))
+    labels = {BRAKE: say("brake"), FRICTION: say("friction"), MOUNTS: say("mounts")}
+    labels |= {f"drives.{link}": say("drive of {link}", link=link) for link in run.drives}
+    circuits = [
+        (
+            course.electric,
+            say("from the supply of the motor of {link}", link=link),
+            say("heat in the motor of {link}", link=link),
+        )
+        for link, course in run.drives.items()
+        if course.electric is not None
+    ]
+    yield from _energies(run, labels, circuits)
     rows = [
         (
             drive_event_named(event),
@@ -428,7 +449,7 @@ def drives_blocks(run: DrivesRun) -> Iterator[Block]:
     ]
     heads = ("", Column(say("time"), "time"), say("turns of the crank"))
     yield Table.of(say("Events"), heads, rows)
-    yield from contacts_table(run.contacts)
+    yield from _contacts(run.contacts)
 
 
 def drive_event_named(event: DriveEvent) -> str:
@@ -479,21 +500,3 @@ def _of_support(motion: SupportMotion, time: Array) -> Table:
     last = int(np.searchsorted(time, bounds[-2]))
     rows = [*support_rows(motion, (slice(first), slice(last, None)))]
     return Table.of(say("Gauges and mounts"), extreme_labels(), rows)
-
-
-def _energies(run: DrivesRun) -> Table:
-    """Work of everything that has acted, and what became of it."""
-    labels = {source.key: say(source.label) for source in run.equation.sources}
-    labels |= {"brake": say("brake"), FRICTION: say("friction"), MOUNTS: say("mounts")}
-    labels |= {f"drives.{link}": say("drive of {link}", link=link) for link in run.drives}
-    rows = [(labels[name], Value(float(work[-1]))) for name, work in run.work.items()]
-    energy = run.kinetic_energy
-    rows.append((say("kinetic energy"), Value(float(energy[-1] - energy[0]))))
-    for link, course in run.drives.items():
-        if (circuit := course.electric) is not None:
-            supply = say("from the supply of the motor of {link}", link=link)
-            heat = say("heat in the motor of {link}", link=link)
-            rows.append((supply, Value(float(circuit.supply[-1]))))
-            rows.append((heat, Value(float(circuit.heat[-1]))))
-    columns = ("", Column(say("work"), "energy"))
-    return Table.of(say("Energy from the start to the end"), columns, rows)

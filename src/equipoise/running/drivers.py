@@ -10,9 +10,8 @@ from math import copysign, inf, log, sqrt
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.servo_motors import ServoMotor
+from equipoise.mechanism.parts.motors import Motor, ServoMotor
 from equipoise.signals import Array
 from equipoise.vibration.steady import torque_on_crank
 
@@ -197,6 +196,16 @@ class Driver:
     def _demand(self, speed: Array, angle: Array, time: Array) -> Array:
         turned = self._gear * (angle - self._start)
         return self._controller.demand(self._gear * speed, turned, time)
+
+    def driving_torque(self, speed: Array, current: Array, angle: Array, time: Array) -> Array:
+        """On the crank (...), N m, by what it follows: its current (...), A, where that lags, its
+        controller, as of `smooth_torque_at`, or else its speed alone.
+        """
+        if self.lags:
+            return self.torque_of(current)
+        if self.controlled:
+            return self.smooth_torque_at(speed, angle, time)
+        return self.torque(speed)
 
     @property
     def ramp_end(self) -> float:

@@ -41,9 +41,8 @@ from equipoise.running.drives_linkage import (
     pose_of,
     references_at,
 )
-from equipoise.running.equation import just_after
 from equipoise.running.friction import FRICTION, DrivesFriction, JointPressing
-from equipoise.running.sources import AppliedSource, SourceInputs, plus, sources_of
+from equipoise.running.sources import AppliedSource, SourceInputs, load_factors, plus, sources_of
 from equipoise.running.strokes import Strokes
 from equipoise.signals import Array
 from equipoise.vibration.support_motion import SupportMotion
@@ -372,19 +371,13 @@ class DrivesEquation:
             positions.append(("lever", ", ".join(self.strokes.links)))
         return [position for position in positions for _ in self.rows.all]
 
-    def factors_at(self, time: Array, since: float) -> list[Array]:
-        """Factors (K,) of loads over time at times (K,), s, each on the line that it follows after
-        an instant `since`.
-        """
-        return [load.line_after(since)(time) for load in self.machine.timed_loads]
-
     def at(
         self, time: Array, since: float, where: DriveAngles, references: References
     ) -> DriveState:
         """What acts in K states.
 
         where : as of `placed`.
-        since : an instant, s, after which loads over time follow the line that counts.
+        since : an instant, s, just after which loads over time follow the line that counts.
         references : in these states.
 
         Raises
@@ -395,7 +388,7 @@ class DrivesEquation:
         where = self.in_rows(time, where, references)
         pose = self.pose(where, self._of_rows(references))
         crank_speed = self._crank_speed(rows.repeated(time), where.speeds[self.free])
-        factors = self.factors_at(rows.repeated(time), since)
+        factors = load_factors(self.machine, rows.repeated(time), since)
         inputs = SourceInputs(crank_speed, factors, pose.gravity)
         acting = [source.demands(pose.moving, inputs) for source in self.sources]
         forces = np.zeros((len(self.acting), self.coordinates, pose.count))
@@ -593,7 +586,7 @@ class DrivesRates:
     def _at(self, time: Array, states: Array, references: References) -> NodeValues | None:
         equation = self.equation
         where, rows = self.where(time, states), equation.rows
-        state = equation.at(time, just_after(self.since), where, references)
+        state = equation.at(time, self.since, where, references)
         margins = equation.margins(state)
         if not np.all(margins >= 0):  # before friction, which would seem to lock such a machine
             return None
@@ -658,14 +651,10 @@ class DrivesRates:
         """Torques (N, K) of motors, N m; 0 of drives without one."""
         torques = np.zeros_like(where.speeds)
         for k, driver in enumerate(self.drivers):
-            if not driver.on:
-                continue
-            if driver.lags:
-                torques[k] = driver.torque_of(self.current(k, states, where))
-            elif driver.controlled:
-                torques[k] = driver.smooth_torque_at(where.speeds[k], where.angles[k], time)
-            else:
-                torques[k] = driver.torque(where.speeds[k])
+            if driver.on:
+                current = self.current(k, states, where)
+                at = where.speeds[k], current, where.angles[k], time
+                torques[k] = driver.driving_torque(*at)
         return torques
 
     def _braking(self, where: DriveAngles) -> Array:

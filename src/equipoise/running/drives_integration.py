@@ -32,9 +32,9 @@ from equipoise.running.drives_equation import (
     DrivesReadings,
 )
 from equipoise.running.drives_linkage import References, cannot_be_assembled
-from equipoise.running.equation import just_after
 from equipoise.running.friction import NEAR_REST, leaving, settled_at
 from equipoise.running.integration import Limits
+from equipoise.running.sources import just_after
 from equipoise.signals import Array
 
 RESOLVED = 1e-9

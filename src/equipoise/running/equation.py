@@ -33,15 +33,8 @@ PIECES = 12
 """Pieces of a turn, to begin with."""
 DIFFERENCE = 1e-6
 """rad/s, or of a speed: steps of a difference that only tells whether the motion is stiff."""
-LATER = 1e-12
-"""s, or share of a time, by which an instant may be before a row of a load that it stands for."""
 CLOSE = 1e-9
 """rad, within which edges of pieces are one: rounding of crank angles at which a load sets in."""
-
-
-def just_after(time: float) -> float:
-    """An instant, s, after a row of a load at a time, s, that rounding may have moved."""
-    return time + LATER * (1 + time)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,13 +110,6 @@ class CrankEquation:
         """Times, rising, s, at which the course of a load over time changes."""
         return tuple(sorted({time for load in self.machine.timed_loads for time in load.times}))
 
-    def factors_at(self, time: Array | float, since: float) -> list[Array]:
-        """Factors (...) of loads over time at times (...), s, each on the line that it follows
-        just after an instant `since`, also beyond the end of that.
-        """
-        after = just_after(since)
-        return [load.line_after(after)(np.asarray(time)) for load in self.machine.timed_loads]
-
     @cached_property
     def edges(self) -> Array:
         """Crank angles of a cycle between which everything is smooth, from 0 on, rad."""
@@ -178,7 +164,7 @@ class CrankEquation:
 
         driving : torque (...) of the drive, which matters to friction in joints only.
         sense : in which the crank turns, 1 or -1, which matters to all dry friction.
-        factors : of loads over time, as of `factors_at`.
+        factors : of loads over time, as of `load_factors`.
         """
         each = zip(self.sources, self.slices, strict=True)
         values = [source.sliding_torque(columns[part], speed, sense, factors)

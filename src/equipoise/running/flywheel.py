@@ -25,8 +25,8 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import ResponseError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.running.collocation import NODES, POINTS, TO_CHEBYSHEV, integral_to, polynomials
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation

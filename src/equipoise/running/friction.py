@@ -36,7 +36,6 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import LockError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.dynamics.applied_loads import given_loads, spring_demands
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.dynamics.friction import (
     Demands,
@@ -46,9 +45,14 @@ from equipoise.mechanism.dynamics.friction import (
     pressing_rows,
     unit_demands,
 )
-from equipoise.mechanism.dynamics.rated_elements import effort_demands, rated_efforts, rated_ways
+from equipoise.mechanism.dynamics.loads import given_loads, spring_demands
 from equipoise.mechanism.dynamics.reactions import Acting, JointReactions, demands_of
-from equipoise.mechanism.dynamics.reduced import reduced_inertia
+from equipoise.mechanism.dynamics.reduced import (
+    effort_demands,
+    rated_efforts,
+    rated_ways,
+    reduced_inertia,
+)
 from equipoise.mechanism.kinematics.friction_joints import (
     STILL,
     RubbingJoint,
@@ -58,7 +62,7 @@ from equipoise.mechanism.kinematics.friction_joints import (
 )
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
-from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
+from equipoise.mechanism.parts.element_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drives_linkage import DrivesPose, LinkageRows

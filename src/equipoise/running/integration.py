@@ -38,7 +38,8 @@ from equipoise.running.collocation import (
     roughness,
 )
 from equipoise.running.drivers import LIMIT_REACHED, Driver
-from equipoise.running.equation import CrankEquation, just_after
+from equipoise.running.equation import CrankEquation
+from equipoise.running.sources import just_after, load_factors
 from equipoise.signals import Array
 
 RELATIVE, ABSOLUTE = 1e-11, 1e-13
@@ -270,7 +271,7 @@ class Integration:
 
     def _at_rest(self, now: Instant) -> tuple[float, dict[float, float]]:
         """Torques on a crank at rest as of `CrankEquation.at_rest`, at an instant."""
-        factors = self.equation.factors_at(now.time, self.since)
+        factors = load_factors(self.equation.machine, now.time, self.since)
         return self.equation.at_rest(now.angle, factors)
 
     def _sets_off(self, now: Instant) -> Instant | None:
@@ -442,12 +443,11 @@ class Integration:
         """Torque of the drive (N,), N m, at the nodes of a piece that is passed at these speeds
         (N,), with these currents (N,), A.
         """
-        if self.driver.lags:
-            return self.driver.torque_of(current)
-        if not self.driver.controlled:
-            return self.driver.torque(speed)
-        angle = begin.angle + paths @ np.ones(len(speed))
-        return self.driver.smooth_torque_at(speed, angle, begin.time + paths @ (1 / speed))
+        angle = time = speed
+        if self.driver.controlled:  # else angle and time do not matter
+            angle = begin.angle + paths @ np.ones(len(speed))
+            time = begin.time + paths @ (1 / speed)
+        return self.driver.driving_torque(speed, current, angle, time)
 
     def _slopes(
         self, values: Array, speed: Array, torques: Array, piece: tuple[Array, Instant]
@@ -478,7 +478,7 @@ class Integration:
         (K + 2, ...); driving : of the drive (...), N m.  time : (...), s.
         """
         braking = self._braking()
-        factors = self.equation.factors_at(time, self.since)
+        factors = load_factors(self.equation.machine, time, self.since)
         acting = driving + sum(braking)
         sources = self.equation.torques(columns, speed, acting, self.direction, factors)
         if braking:
@@ -611,19 +611,13 @@ class Integration:
         if self.rates_left < 0:  # as of a motor a thousand million times too strong
             raise _not_beyond(time)
         angle, speed, driver = float(state[0]), float(state[1]), self.driver
-        electric: list[float] = [0.0] * ELECTRIC
-        if driver.controlled:
-            driving = float(driver.smooth_torque_at(state[1], state[0], np.asarray(time)))
-        elif driver.circuit is None:
-            driving = float(driver.torque(np.asarray(speed)))
-        else:
-            current = state[2] if driver.lags else driver.current(state[1])
-            electric = driver.electric_rates(np.asarray(current), state[1]).tolist()
-            lags = driver.lags
-            driving = float(driver.torque_of(current) if lags else driver.torque(state[1]))
+        current = np.asarray(state[2] if driver.lags else driver.current(state[1]))
+        electric = driver.electric_rates(current, state[1]).tolist()
+        at = np.asarray(state[1]), current, state[0], np.asarray(time)
+        driving = float(driver.driving_torque(*at))
         braking = self._braking()
         acting = driving + sum(braking)
-        factors = self.equation.factors_at(time, self.since)
+        factors = load_factors(self.equation.machine, time, self.since)
         inertia, slope, torques = self.equation.at(angle, speed, acting, self.direction, factors)
         change = (float(np.sum(torques)) + acting - 0.5 * slope * speed * speed) / inertia
         powers = [torque * speed for torque in (*torques.tolist(), *braking, driving)]

@@ -16,16 +16,14 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import Note
-from equipoise.mechanism.dynamics.force_readings import ForceReadings
 from equipoise.mechanism.dynamics.friction import with_friction
-from equipoise.mechanism.dynamics.rated_elements import rated_ways
-from equipoise.mechanism.dynamics.reactions import JointReactions, reactions
+from equipoise.mechanism.dynamics.reactions import ForceReadings, JointReactions, reactions
+from equipoise.mechanism.dynamics.reduced import rated_ways
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.parts.force_kinds import rated_elements
+from equipoise.mechanism.parts.element_kinds import rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.running.drives_equation import DrivesEquation, DriveState
 from equipoise.running.drives_linkage import DriveAngles, References
-from equipoise.running.equation import just_after
 from equipoise.running.sources import plus
 from equipoise.signals import ROUNDING, Array
 
@@ -80,7 +78,7 @@ class Passage:
         equation = self.equation
         where = DriveAngles(*(values[..., places] for values in self.where))
         references = {name: values[..., places] for name, values in self.references.items()}
-        state = equation.at(self.time[places], just_after(since), where, references)
+        state = equation.at(self.time[places], since, where, references)
         changes, pose = self._changes(state, places), state.pose
         demanded = (
             {link: (force * change, moment * change) for link, (force, moment) in unit.items()}

@@ -13,7 +13,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.parts.force_kinds import rated_elements
+from equipoise.mechanism.parts.element_kinds import rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.declaring import columns_of, values_of
 from equipoise.results.result import Result
@@ -34,7 +34,7 @@ from equipoise.running.run_contacts import (
     contacts_of_mounts,
     passage_of_crank,
 )
-from equipoise.running.sources import LOADS
+from equipoise.running.sources import LOADS, load_factors
 from equipoise.signals import Array
 from equipoise.vibration.linkages import rows_of
 from equipoise.vibration.support_motion import SupportMotion
@@ -96,6 +96,7 @@ class RunResult(Result):
     """
 
     machine: Machine
+    equation: CrankEquation | DrivesEquation
     time: Array
     crank_angle: Array
     work: Mapping[str, Array]
@@ -333,7 +334,7 @@ class Run(RunResult):
             return None
         driver = Driver.of(self.machine)
         acting, holding = self.equation.at_rest(
-            self.end.crank_angle, self.equation.factors_at(self.end.time, self.end.time)
+            self.end.crank_angle, load_factors(self.machine, self.end.time, self.end.time)
         )
         given = float(driver.torque(np.zeros(())))
         return holding[driver.sense] - driver.sense * acting, driver.sense * given

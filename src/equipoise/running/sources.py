@@ -16,27 +16,30 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.checks import FRAME, numbered
-from equipoise.mechanism.dynamics.applied_loads import (
+from equipoise.mechanism.dynamics.forces import ELEMENTS, weight_demands
+from equipoise.mechanism.dynamics.friction import Demands
+from equipoise.mechanism.dynamics.loads import (
     against_soil,
     given_loads,
+    load_axis,
     loads_from_outside,
     soil_loads,
     spring_demands,
 )
-from equipoise.mechanism.dynamics.forces import weight_demands
-from equipoise.mechanism.dynamics.friction import Demands
-from equipoise.mechanism.dynamics.lines import load_axis
-from equipoise.mechanism.dynamics.rated_elements import rated_torque, rated_ways
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
-from equipoise.mechanism.dynamics.reduced import generalized_force, generalized_size
-from equipoise.mechanism.dynamics.shares import ELEMENTS
+from equipoise.mechanism.dynamics.reduced import (
+    generalized_force,
+    generalized_size,
+    rated_torque,
+    rated_ways,
+)
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.tip import surface_of
+from equipoise.mechanism.parts.element_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.field import Planting
-from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.timed_loads import TimedLoad
+from equipoise.mechanism.parts.run_plans import TimedLoad
 from equipoise.results.outputs import CAUSES
 from equipoise.signals import Array
 
@@ -45,6 +48,9 @@ Motions = Sequence[Motion]
 
 Factors = Sequence[Any]
 """Of each load over time (...), in the order of the file; none at all counts as 0."""
+
+LATER = 1e-12
+"""s, or share of a time, by which an instant may be before a row of a load that it stands for."""
 
 
 class Source(ABC):
@@ -285,6 +291,19 @@ class OfTimedLoads(AppliedSource):
             for factor, unit in zip(inputs.factors, timed_units(motion), strict=True)
         )
         return plus(*parts)
+
+
+def just_after(time: float) -> float:
+    """An instant, s, after a row of a load at a time, s, that rounding may have moved."""
+    return time + LATER * (1 + time)
+
+
+def load_factors(machine: Machine, time: Array | float, since: float) -> list[Array]:
+    """Factors (...) of loads over time at times (...), s, each on the line that it follows just
+    after an instant `since`, also beyond the end of that.
+    """
+    after = just_after(since)
+    return [load.line_after(after)(np.asarray(time)) for load in machine.timed_loads]
 
 
 def timed_units(motion: Motion) -> list[dict[str, Demand]]:

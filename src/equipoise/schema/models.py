@@ -98,8 +98,7 @@ def tool_of(content: Mapping[str, Any], reader: AdjacentFiles) -> Tool:
 
 def _limit(machine: Machine, given: dict[str, Any]) -> Any:
     """A limit of an output, whose text is a share or in a unit of what the output is."""
-    from equipoise.mechanism.parts.balance import Limit
-    from equipoise.mechanism.parts.objectives import quantity_of, wrong_limit
+    from equipoise.mechanism.parts.balance import Limit, quantity_of, wrong_limit
 
     objective, asks = given["objective"], {**given}
     del asks["objective"]
@@ -243,7 +242,7 @@ def _worked_out(model: Machine | Tool) -> WorkedOut:
 
 
 def _limit_table(machine: Machine, limit: Any) -> dict[str, Any]:
-    from equipoise.mechanism.parts.objectives import quantity_of
+    from equipoise.mechanism.parts.balance import quantity_of
 
     if limit.ratio is not None:
         return {"objective": limit.objective, "at_most": format_share(limit.ratio)}

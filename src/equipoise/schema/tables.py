@@ -27,8 +27,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note, all_of, any_of
 from equipoise.keys.csv_tables import CsvTable
-from equipoise.mechanism.parts.force_elements import GasTable, LoadTable
-from equipoise.mechanism.parts.indicator_diagrams import OVER, IndicatorDiagram
+from equipoise.mechanism.parts.loads import OVER, GasTable, IndicatorDiagram, LoadTable
 from equipoise.mechanism.parts.support import TIME_IN_PERIOD
 from equipoise.quantities import (
     FACTORS,

@@ -39,9 +39,8 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.parameters import parameters_of
-from equipoise.mechanism.parts.balance import Balance, Measure, Objective
+from equipoise.mechanism.parts.balance import GAUGES, Balance, Measure, Objective, output_of
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, output_of
 from equipoise.results.result import Result
 from equipoise.signals import highest_at
 from equipoise.studies.clusters import elsewhere

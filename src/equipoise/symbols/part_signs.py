@@ -15,7 +15,7 @@ from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import PartKind, named_function
-from equipoise.mechanism.parts.lines import AlongLine
+from equipoise.mechanism.parts.loads import AlongLine
 from equipoise.symbols.shapes import BodyMark, Shape
 
 if TYPE_CHECKING:

@@ -28,9 +28,9 @@ from equipoise.errors import ResponseError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import size_of_bodies
-from equipoise.mechanism.dynamics.rated_elements import differentiable_torque
+from equipoise.mechanism.dynamics.reduced import differentiable_torque
 from equipoise.mechanism.kinematics.jumps import jumps_of_rows
-from equipoise.mechanism.parts.force_kinds import RatedElement, rated_elements
+from equipoise.mechanism.parts.element_kinds import RatedElement, rated_elements
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import PER_RPM, number
 from equipoise.signals import Array, within_period

@@ -10,8 +10,8 @@ from operator import add
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.mechanism.dynamics.applied_loads import outer_loads, soil_loads
 from equipoise.mechanism.dynamics.forces import Forces, forces
+from equipoise.mechanism.dynamics.loads import outer_loads, soil_loads
 from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.jumps import resolved

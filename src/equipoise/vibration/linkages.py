@@ -26,20 +26,19 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
 from equipoise.mechanism.assembly.steps import p, u
-from equipoise.mechanism.dynamics.applied_loads import (
+from equipoise.mechanism.dynamics.forces import forces, massless
+from equipoise.mechanism.dynamics.friction import with_friction
+from equipoise.mechanism.dynamics.loads import (
     load_demands,
     loads_between,
     outer_loads,
     spring_demands,
 )
-from equipoise.mechanism.dynamics.forces import forces, massless
-from equipoise.mechanism.dynamics.friction import with_friction
-from equipoise.mechanism.dynamics.rated_elements import rated_ways
 from equipoise.mechanism.dynamics.reactions import Demand, JointReactions, demands_of, reactions
-from equipoise.mechanism.dynamics.reduced import generalized_force, reduced_inertia
+from equipoise.mechanism.dynamics.reduced import generalized_force, rated_ways, reduced_inertia
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.parts.force_kinds import rated_elements
+from equipoise.mechanism.parts.element_kinds import rated_elements
 from equipoise.mechanism.parts.links import masses_of, moments_across
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row

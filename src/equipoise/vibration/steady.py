@@ -16,8 +16,8 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.signals import Array
 from equipoise.vibration.collocation import NOTHING, RULE, BoundaryConditions, Orbit, System, solve
 from equipoise.vibration.coupled import Coupled, StallError, Torque, mean_stall_note

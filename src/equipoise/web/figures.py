@@ -17,8 +17,8 @@ from equipoise.dataclass import dataclass
 from equipoise.i18n import capital, say, to_say
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.outputs.declared import DECLARED, Declared
+from equipoise.mechanism.parts.balance import ROWS
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import Display, change, display, number, typeset
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis

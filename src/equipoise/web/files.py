@@ -109,7 +109,7 @@ def _over_crank(computed: Computed, output: str) -> Chart:
     """An output over the crank angle; of all rows together where it is only there."""
     from equipoise.figures.chart_parts import ALL
     from equipoise.figures.forces import over_crank
-    from equipoise.mechanism.parts.objectives import ROWS
+    from equipoise.mechanism.parts.balance import ROWS
     from equipoise.results.scales import TOTALS
 
     outputs = computed.analysis.outputs

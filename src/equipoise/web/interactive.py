@@ -30,8 +30,8 @@ from equipoise.mechanism.assembly.reach import CHANGE_POINT
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.outputs.declared import GROUPS
+from equipoise.mechanism.parts.balance import ROWS
 from equipoise.mechanism.parts.machine import FRAME, Machine
-from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import FACTORS, KINDS, display, display_rules
 from equipoise.quantities.numbers import Display, in_unit
 from equipoise.results.analysis import Analysis, analyze

@@ -19,14 +19,13 @@ from equipoise.keys import Frozen, Kind, Point, TextKind, innermost, keys_of
 from equipoise.mechanism.assembly.joints import joint_names
 from equipoise.mechanism.checks import Bodies, unknown
 from equipoise.mechanism.kinematics.machine_draft import LinkPlacement, length_between, pose_between
-from equipoise.mechanism.parts.balance import Balance
+from equipoise.mechanism.parts.balance import JOINTS, Balance
 from equipoise.mechanism.parts.constraint_solver import constrained
 from equipoise.mechanism.parts.constraints import changed_points
 from equipoise.mechanism.parts.couplings import Coupling, Turning, coupling_kinds, name_of
 from equipoise.mechanism.parts.element_kinds import Element, PartKind
-from equipoise.mechanism.parts.lines import AlongLine
+from equipoise.mechanism.parts.loads import AlongLine
 from equipoise.mechanism.parts.machine import FRAME, Machine, Slider
-from equipoise.mechanism.parts.objectives import JOINTS
 from equipoise.quantities import DIGITS, clean, clean_place
 from equipoise.web.additions import (
     COINCIDENT,

@@ -21,9 +21,9 @@ from equipoise.i18n import Worded, say, to_say
 from equipoise.keys import Frozen, Key, Named, Quantity, Tables, Wording
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.outputs.declaring import declared
+from equipoise.mechanism.parts.balance import balanced_names
 from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.mechanism.parts.shown_units import SIGN, amounts_of
 from equipoise.quantities import (
     clean,

@@ -24,7 +24,7 @@ from equipoise.balancing.policy import (
 )
 from equipoise.balancing.poor_transmission import poor_transmission_for
 from equipoise.balancing.problem import Problem
-from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.results.blocks import Facts, Text
 from equipoise.results.speed_fluctuation import COARSE, STEADY
 from equipoise.results.yardsticks import assess

@@ -14,8 +14,7 @@ from equipoise.exchange.export import export_content
 from equipoise.exchange.formats import FORMATS, Format
 from equipoise.mechanism import Machine
 from equipoise.mechanism.parts.couplings import coupling_kinds
-from equipoise.mechanism.parts.element_kinds import PartKind
-from equipoise.mechanism.parts.force_kinds import force_kinds
+from equipoise.mechanism.parts.element_kinds import PartKind, force_kinds
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.schema.open_files import bundled
 from support.refusals import refused

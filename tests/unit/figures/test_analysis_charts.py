@@ -19,7 +19,7 @@ from equipoise.figures.analysis import analysis_charts
 from equipoise.figures.chart_parts import angle_step, groups
 from equipoise.figures.linkage import cut_at
 from equipoise.figures.style import look_of
-from equipoise.mechanism.dynamics.shares import CAUSES
+from equipoise.mechanism.dynamics.forces import CAUSES
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row

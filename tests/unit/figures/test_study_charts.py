@@ -15,7 +15,7 @@ from equipoise.figures.layout import lay_out
 from equipoise.figures.panel import finer, levels_of
 from equipoise.figures.sheet import CanvasStroke
 from equipoise.figures.style import INK
-from equipoise.mechanism.parts.objectives import Objective
+from equipoise.mechanism.parts.balance import Objective
 from equipoise.results.charts import Chart
 from equipoise.results.outputs import objective_named
 from equipoise.schema.studies import load_study

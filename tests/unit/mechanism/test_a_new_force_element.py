@@ -19,8 +19,7 @@ from equipoise.i18n import Note
 from equipoise.keys import TextKind, declared, key
 from equipoise.mechanism import Machine
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_link
-from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action, ForceElement
+from equipoise.mechanism.parts.element_kinds import Action, ForceElement, Placed
 from equipoise.present.checks import machine_blocks
 from equipoise.quantities import Dimension
 from equipoise.symbols.shapes import BodyMark, circle

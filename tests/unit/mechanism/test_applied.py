@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError
-from equipoise.mechanism.dynamics.applied_loads import acting_elements, resistance, soil_force
+from equipoise.mechanism.dynamics.loads import acting_elements, resistance, soil_force
 from equipoise.mechanism.dynamics.parameters import spring_units
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.field import Planting, Soil, SoilTable

@@ -26,8 +26,9 @@ from equipoise.mechanism.parts.balance import (
     SpringChoice,
     Weight,
     largest_mass,
+    output_of,
+    quantity_of,
 )
-from equipoise.mechanism.parts.objectives import output_of, quantity_of
 from equipoise.mechanism.parts.support import Row
 from support.refusals import refused as refusal
 from unit.mechanism.balances import ALONE, DISC, FOUR, GEARED, ROOM, SHAFTS, SPRING, STEEL, refused

@@ -16,8 +16,8 @@ from equipoise.exchange.formats import FORMATS
 from equipoise.figures import render
 from equipoise.mechanism.dynamics.parameters import parameter_values, regressor
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
-from equipoise.mechanism.parts.force_elements import Load, LoadTable
 from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw
+from equipoise.mechanism.parts.loads import Load, LoadTable
 from equipoise.present.findings import Findings
 from equipoise.present.pictures import each
 from equipoise.present.summary import tiles

@@ -15,9 +15,9 @@ from equipoise.codegen.figures import Figure
 from equipoise.codegen.gram import MassBatch
 from equipoise.errors import MobilityError, ModelError, MotionError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
 from equipoise.mechanism.parts.machine import Drive, FurtherDrive, Link, Machine
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.results.remarks import linkage_remarks
 from equipoise.web.design import Design
 from equipoise.web.edits import solved

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.parts.force_elements import Motor, MotorTable
+from equipoise.mechanism.parts.motors import Motor, MotorTable
 from unit.mechanism.build import crank_rocker, refused
 
 FOUR = crank_rocker()

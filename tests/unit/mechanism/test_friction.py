@@ -16,10 +16,10 @@ from equipoise.mechanism.dynamics import friction
 from equipoise.mechanism.kinematics.jumps import jumps_of
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
-from equipoise.mechanism.parts.force_elements import Load
 from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.links import Position
+from equipoise.mechanism.parts.loads import Load
 from equipoise.mechanism.parts.machine import Row
-from equipoise.mechanism.parts.places import Position
 from laws.subjects import gravity_power, kinetic_power, load_power, spring_power
 from support import refusals
 from surface.running import equipoise, refused

@@ -10,8 +10,7 @@ from pathlib import Path
 from equipoise.mechanism import parts
 from equipoise.mechanism.parts import part_lists
 from equipoise.mechanism.parts.couplings import Coupling
-from equipoise.mechanism.parts.element_kinds import PartKind
-from equipoise.mechanism.parts.force_kinds import ForceElement
+from equipoise.mechanism.parts.element_kinds import ForceElement, PartKind
 from equipoise.mechanism.parts.joint_kinds import JointKind
 
 FILE = Path(part_lists.__file__)

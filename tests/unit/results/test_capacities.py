@@ -12,9 +12,9 @@ from equipoise.balancing.advice import advise
 from equipoise.balancing.blocks import balanced_headline
 from equipoise.errors import ModelError
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
-from equipoise.mechanism.parts.force_elements import Motor, MotorTable
 from equipoise.mechanism.parts.joint_properties import JointProperties, RollingBearing
 from equipoise.mechanism.parts.links import LinkSection
+from equipoise.mechanism.parts.motors import Motor, MotorTable
 from equipoise.results.blocks import Text
 from equipoise.results.headline import verdict_blocks
 from equipoise.results.yardsticks import assess, verdict

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.mechanism.parts.balance import (
     MATERIALS,
+    MEASURED_IN,
     MEASURES,
     SHAPES,
     AddedMass,
@@ -27,7 +28,6 @@ from equipoise.mechanism.parts.balance import (
     SpringChoice,
     Weight,
 )
-from equipoise.mechanism.parts.objectives import MEASURED_IN
 from equipoise.schema import dumps, loads
 from unit.schema.samples import BALANCE, FOUR_BAR, ROWS, SUPPORT, VALIDATOR, survives
 

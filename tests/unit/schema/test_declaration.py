@@ -19,16 +19,14 @@ from equipoise.mechanism.parts import (
     balance,
     bodies,
     cams,
-    counterweights,
     drives,
     field,
-    force_elements,
     gear_shapes,
     gears,
     joint_properties,
     laws,
     links,
-    objectives,
+    motors,
     shown_units,
     support,
     weights,
@@ -38,18 +36,16 @@ from equipoise.mechanism.parts.bushings import Bushing
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.dampers import Damper
-from equipoise.mechanism.parts.dc_motors import DcMotor
-from equipoise.mechanism.parts.induction_motors import InductionMotor
 from equipoise.mechanism.parts.joint_properties import RollingBearing
+from equipoise.mechanism.parts.loads import Load
 from equipoise.mechanism.parts.machine import Frame, Machine, Position
+from equipoise.mechanism.parts.motors import DcMotor, InductionMotor, ServoMotor
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.resistances import Resistance
-from equipoise.mechanism.parts.run_plans import DutyState, RunPlan
+from equipoise.mechanism.parts.run_plans import DutyState, RunPlan, TimedLoad
 from equipoise.mechanism.parts.sections import LinkSection
-from equipoise.mechanism.parts.servo_motors import ServoMotor
 from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.stops import Stop
-from equipoise.mechanism.parts.timed_loads import TimedLoad
 from equipoise.mechanism.parts.torsion_dampers import TorsionDamper
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.schema import file_numbers, models, schemas
@@ -71,22 +67,22 @@ DOCUMENTED: dict[str, type[Frozen]] = {
     of.__name__: of
     for of in (
         Machine, shown_units.ShownUnits, drives.Drive, drives.FurtherDrive, laws.AngleLaw,
-        laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, DcMotor,
+        laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, motors.Motor, DcMotor,
         InductionMotor, ServoMotor, Frame,
         links.Link, LinkSection,
         bodies.Body, bodies.Hole, links.Bearing, links.Slider, gears.Gear,
         joint_properties.JointProperties, RollingBearing,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
         CircularSlot, CurvedSlot,
-        force_elements.Load, Spring, TorsionSpring, Damper, TorsionDamper, Bushing, Stop,
+        Load, Spring, TorsionSpring, Damper, TorsionDamper, Bushing, Stop,
         Resistance, TimedLoad,
         Position, field.Planting,
         field.PlantingArm,
         field.Soil, support.Support,
         support.Mount, support.Row, DutyState, RunPlan, balance.Balance, weights.CenterMove,
-        weights.AddedMass, weights.Weight, counterweights.GearedWeight,
-        counterweights.BalanceShafts,
-        balance.SpringChoice, balance.Phases, objectives.Objective, objectives.Limit, tool.Tool,
+        weights.AddedMass, weights.Weight, weights.GearedWeight,
+        weights.BalanceShafts,
+        balance.SpringChoice, balance.Phases, balance.Objective, balance.Limit, tool.Tool,
         shaft.Shaft, shaft.Segment, station.Station,
         tool.Excitation, tool.Operation, tool.Work, design_plan.DesignPlan,
         design_plan.DesignVariable, design_plan.DesignLimit,

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from equipoise.mechanism.parts.field import Planting, Soil, SoilTable
-from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, UP, Gauge, Mount, Row, Support
 from equipoise.schema import dumps, loads
 from unit.schema.samples import (

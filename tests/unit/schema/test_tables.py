@@ -18,9 +18,9 @@ from equipoise.handheld.model import Impedance
 from equipoise.keys import ROW, TextKind, declared, inside
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.parts.field import Soil, SoilTable
-from equipoise.mechanism.parts.force_elements import Motor, MotorTable
 from equipoise.mechanism.parts.laws import AngleLaw, AngleTable
 from equipoise.mechanism.parts.machine import Load, LoadTable, Machine
+from equipoise.mechanism.parts.motors import Motor, MotorTable
 from equipoise.schema import dumps, load, loads, save
 from equipoise.schema.models import files_of, parts_of
 from equipoise.schema.open_files import opened_example

@@ -23,7 +23,7 @@ import pytest
 from equipoise.design import evaluator
 from equipoise.design.evaluator import Processes, StoppedError, Threads, computed
 from equipoise.errors import UsageError
-from equipoise.mechanism.parts.objectives import Objective
+from equipoise.mechanism.parts.balance import Objective
 from equipoise.schema.studies import load_study
 from equipoise.schema.template import Template
 from equipoise.studies import clusters

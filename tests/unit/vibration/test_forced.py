@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
-from equipoise.mechanism.parts.force_elements import Motor, MotorTable
+from equipoise.mechanism.parts.motors import Motor, MotorTable
 from equipoise.mechanism.parts.support import UP
 from equipoise.present.findings import Findings, find
 from equipoise.present.summary import vibration_sentences

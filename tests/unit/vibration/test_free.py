@@ -13,7 +13,7 @@ import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.dynamics import forces as forces_module
 from equipoise.mechanism.parts.field import Planting, Soil
-from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic
 from equipoise.vibration.excitation import SupportExcitation

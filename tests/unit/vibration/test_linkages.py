@@ -11,8 +11,8 @@ from scipy.signal import resample
 import equipoise as eq
 from equipoise.errors import MassError
 from equipoise.mechanism.dynamics.reactions import JointReactions
-from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import Load
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.exact import ExactSolution, solve_exact
 from equipoise.vibration.linkages import (

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.running.blocks import verdict
 from equipoise.vibration.coupled import stall_note
 

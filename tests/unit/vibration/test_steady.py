@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from equipoise.errors import ResponseError
-from equipoise.mechanism.parts.force_elements import Motor, MotorTable
+from equipoise.mechanism.parts.motors import Motor, MotorTable
 from equipoise.vibration.steady import speed_at, torque_on_crank
 from support.refusals import refused
 from unit.vibration.build import Array

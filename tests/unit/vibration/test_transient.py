@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.motors import Motor
 from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.coupled import StallError
 from equipoise.vibration.forced import respond

@@ -19,7 +19,7 @@ from equipoise.exchange.formats import FORMATS
 from equipoise.i18n import catalogue, speaking
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.tip import surface_of
-from equipoise.mechanism.parts.force_elements import Load, LoadTable
+from equipoise.mechanism.parts.loads import Load, LoadTable
 from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
 from equipoise.web.drawing import stage_of, ties_of

@@ -9,7 +9,7 @@ a stack of their demands.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import field, fields, replace
 from functools import cached_property
 from math import copysign
 from typing import Any
@@ -17,19 +17,26 @@ from typing import Any
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.displays import Displayed
-from equipoise.errors import MassError
+from equipoise.displays import Brief, Displayed
+from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note, key_names
+from equipoise.mechanism.assembly.joints import given_properties
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import Array, p, planar, u
-from equipoise.mechanism.dynamics import applied_loads
-from equipoise.mechanism.dynamics.force_readings import ForceReadings
+from equipoise.mechanism.assembly.steps import Array, Reaction, p, planar, u
+from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.friction import (
     unit_demands,
     with_friction,
     with_given_friction,
 )
+from equipoise.mechanism.dynamics.loads import (
+    inner_demands,
+    load_demands,
+    outer_loads,
+    spring_demands,
+)
 from equipoise.mechanism.dynamics.out_of_plane import (
+    OF_FRAME,
     OutOfPlaneMoments,
     apart,
     exerted_in,
@@ -38,11 +45,15 @@ from equipoise.mechanism.dynamics.out_of_plane import (
     pushes_across,
     springs_across,
 )
-from equipoise.mechanism.dynamics.pin_bearings import PlainBearing, plain_bearings
 from equipoise.mechanism.dynamics.reactions import (
+    CouplingForces,
     Demand,
+    ForceReadings,
+    HasCouplings,
+    JointForce,
     JointFriction,
     JointReactions,
+    SliderForce,
     VectorSignal,
     demands_of,
     full,
@@ -50,13 +61,142 @@ from equipoise.mechanism.dynamics.reactions import (
     reactions,
 )
 from equipoise.mechanism.dynamics.section_loads import SectionLoads, section_loads
-from equipoise.mechanism.dynamics.shares import CAUSES, ELEMENTS, EVERYWHERE, INERTIA, Split
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.kinematics.friction_joints import rubbing_joints
+from equipoise.mechanism.kinematics.friction_joints import STILL, rubbing_joints
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.element_kinds import force_kinds
+from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.links import in_frame
 from equipoise.mechanism.parts.machine import Link, Machine, Vector
-from equipoise.mechanism.parts.places import in_frame
+
+ELEMENTS: Mapping[str, str] = {
+    kind.cause: kind.cause_label for kind in force_kinds(Machine).values()
+}
+"""Causes of force elements, which act between bodies, the frame too, with their labels; the first
+are springs, with which preloads of couplings are listed."""
+INERTIA = ("translation", "rotation")
+"""Inertia of the centres of mass, inertia of rotation about them."""
+EVERYWHERE = (*INERTIA, "weight", "load", "spring")
+"""Causes that every machine has, be they 0; loads are those from outside."""
+CAUSES = tuple(dict.fromkeys((*EVERYWHERE, *ELEMENTS, "friction")))
+"""All of them, friction in joints as the last."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Shares(HasCouplings, Brief):
+    """Shares of outputs: arrays (..., N), whose first axes are the causes, links or parameters.
+
+    drives : link -> torque of its drive, N m, of which `drive_torque` is the first.
+    shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
+    drive_force : N, of a drive that pushes.
+    joints : name -> force whose arrays have those axes; couplings : such names by list of the file.
+    across : what links beside each other do; None where they all lie in one plane.
+    """
+
+    shaking_force: Array
+    shaking_moment: Array
+    frame_force: Array
+    frame_moment: Array
+    drive_torque: Array
+    drives: Mapping[str, Array]
+    joints: Mapping[str, JointForce]
+    couplings: CouplingForces
+    across: OutOfPlaneMoments | None
+    drive_force: Array | None = field(default=None, kw_only=True)
+
+    @property
+    def of_machine(self) -> dict[str, Array]:
+        """All but the forces in joints and couplings, by name."""
+        known = {item.name: getattr(self, item.name) for item in fields(Shares)}
+        if self.across is not None:
+            known |= {name: getattr(self.across, name).value for name in OF_FRAME}
+        return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Split(Shares):
+    """Outputs by cause and link: arrays (C, L, N), links in file order.
+
+    causes : those of `CAUSES` that every machine has, and of the others those of this machine.
+
+    Teeth are taken with the flank in contact that the whole load gives, and chains with the strand
+    that pulls.
+    """
+
+    causes: tuple[str, ...]
+    links: tuple[str, ...]
+
+    def by_cause(self, output: str) -> dict[str, Array]:
+        """An output, such as ``drive_torque`` or ``joints.B``, summed over links."""
+        return dict(zip(self.causes, self._array(output).sum(axis=1), strict=True))
+
+    def by_link(self, output: str) -> dict[str, Array]:
+        """An output, such as ``drive_torque`` or ``joints.B``, summed over causes."""
+        return dict(zip(self.links, self._array(output).sum(axis=0), strict=True))
+
+    def _array(self, output: str) -> Array:
+        of_machine = self.of_machine
+        for name, joint in self.joints.items():
+            of_machine[f"joints.{name}"] = joint.value
+            if isinstance(joint, SliderForce):
+                of_machine[f"joints.{name}.moment"] = joint.moment
+        for name, effort in self.drives.items():
+            of_machine |= {f"drives.{name}.{what}": effort for what in ("torque", "force")}
+        for table, forces in self.couplings.items():
+            for name, force in forces.items():
+                of_machine[f"{table}.{name}"] = force.value
+                of_machine |= {f"{table}.{name}.{part}": item for part, item in force.parts.items()}
+        if self.across is not None:
+            of_machine |= {
+                f"bearings.{name}": bearing.value for name, bearing in self.across.bearings.items()
+            }
+        if output not in of_machine:
+            raise UsageError(unknown(output, of_machine, "output"))
+        return of_machine[output]
+
+
+def ring_speed(motion: Motion, reaction: Reaction) -> Array:
+    """Speed (N,) of one body of a pin against the other, rad/s; 0 where it rests."""
+    turns = [motion.state[f"w({body})"] for body in (reaction.on, reaction.by)]
+    rate = np.broadcast_to(np.asarray(turns[0] - turns[1], float), motion.crank_angle.shape)
+    return np.where(np.abs(rate) > STILL, rate, 0.0) * motion.speed
+
+
+def joint_properties(motion: Motion) -> dict[str, tuple[Reaction, JointProperties]]:
+    """Joints of which the file says something, by name."""
+    if not motion.machine.joints:
+        return {}
+    linkage = motion.linkage
+    names = {item.force: name for name, item in linkage.named_reactions}
+    given = given_properties(linkage.machine, linkage.joints, linkage.reactions)
+    return {names[reaction.force]: (reaction, item) for _, reaction, item in given
+            if reaction.force in names}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class PlainBearing:
+    """A plain bearing over the crank angle.
+
+    pressure : (N,) force over width times diameter, Pa.
+    pressure_speed : (N,) that times the sliding speed, Pa m/s.
+    """
+
+    pressure: Array
+    pressure_speed: Array
+
+
+def plain_bearings(motion: Motion, joints: Mapping[str, JointForce]) -> Mapping[str, PlainBearing]:
+    """Plain bearings by joint: pins whose radius and width are given."""
+    by_name: dict[str, PlainBearing] = {}
+    if all(item.width is None for item in motion.machine.joints):
+        return by_name
+    for name, (reaction, item) in joint_properties(motion).items():
+        if item.width is not None and item.radius is not None and name in joints:
+            pressure = joints[name].size / (item.width * 2 * item.radius)
+            sliding = np.abs(ring_speed(motion, reaction)) * item.radius
+            by_name[name] = PlainBearing(pressure, pressure * sliding)
+    return by_name
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -178,7 +318,7 @@ class Forces(ForceReadings, Displayed):
     @property
     def outer(self) -> Forces:
         """Forces without what links and frame exert on each other: springs, and loads between."""
-        outside = demands_of(self.motion, applied_loads.outer_loads(self.motion))
+        outside = demands_of(self.motion, outer_loads(self.motion))
         return replace(self, loads=outside, springs={}, inner={})
 
     @property
@@ -222,7 +362,7 @@ class Forces(ForceReadings, Displayed):
         motion = self.motion
         loads = loads_across(motion)
         springs = springs_across(motion)
-        outer = pushes_across(motion, applied_loads.outer_loads(motion))
+        outer = pushes_across(motion, outer_loads(motion))
         return OutOfPlaneMoments(
             motion, *masses_across(motion), loads, springs, exerted_in(self.solved), outer
         )
@@ -315,9 +455,9 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
         own = inertia_moved(machine, link, motion.linkage.anchors[link])
         inertia[link] = _needed([(rate, units[link]) for rate, units in rates], *own)
     applied = (
-        applied_loads.load_demands(motion),
-        applied_loads.spring_demands(motion),
-        applied_loads.inner_demands(motion),
+        load_demands(motion),
+        spring_demands(motion),
+        inner_demands(motion),
     )
     return Forces(motion, pole, inertia, weight_demands(motion), *applied)
 
@@ -488,11 +628,7 @@ def _split_demands(
 ) -> dict[str, Demand]:
     """Demands of each link by cause and link, (C, L, N), but for friction."""
     motion, demands = whole.motion, {}
-    elements = {
-        cause: applied_loads.spring_demands(motion, cause=cause)
-        for cause in causes
-        if cause in ELEMENTS
-    }
+    elements = {cause: spring_demands(motion, cause=cause) for cause in causes if cause in ELEMENTS}
     for k, link in enumerate(whole.inertia):
         force, moment = np.zeros(shape, complex), np.zeros(shape)
         by_cause = dict(zip(EVERYWHERE, _demands_everywhere(whole, link), strict=False))

@@ -19,9 +19,14 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics.elastic import elastic_link, other_places
 from equipoise.mechanism.dynamics.forces import Forces, WorkingState
-from equipoise.mechanism.dynamics.section_loads import FIBRES, Cut, SectionLoads
+from equipoise.mechanism.dynamics.section_loads import (
+    FIBRES,
+    Cut,
+    SectionLoads,
+    elastic_link,
+    other_places,
+)
 from equipoise.mechanism.kinematics.strokes import figure
 from equipoise.mechanism.parts.machine import Link
 from equipoise.signals import Array

@@ -27,8 +27,12 @@ from equipoise.decompositions import pinv
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.checks import FRAME, NamedItems, numbered
-from equipoise.mechanism.dynamics.applied_loads import acting_elements, acting_preloads, outer_loads
-from equipoise.mechanism.dynamics.loads import acting_load
+from equipoise.mechanism.dynamics.loads import (
+    acting_elements,
+    acting_load,
+    acting_preloads,
+    outer_loads,
+)
 from equipoise.mechanism.dynamics.reactions import (
     PUSH,
     Acting,
@@ -41,9 +45,9 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.cylinders import ends_of, pushes
 from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.parts.force_elements import Load
 from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.links import Mechanism, masses_of, moments_across
+from equipoise.mechanism.parts.loads import Load
 
 Array = np.ndarray[Any, Any]
 

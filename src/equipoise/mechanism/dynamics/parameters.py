@@ -26,23 +26,22 @@ from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import Array, planar
 from equipoise.mechanism.dynamics.forces import (
+    Shares,
     demand_of_inertia,
     forces,
     massless,
 )
-from equipoise.mechanism.dynamics.lines import direction_between, vector_between
+from equipoise.mechanism.dynamics.loads import direction_between, vector_between
 from equipoise.mechanism.dynamics.out_of_plane import (
     OutOfPlaneMoments,
     exerted_in,
     needed_by_inertia,
 )
 from equipoise.mechanism.dynamics.reactions import JointReactions, pushed, reactions
-from equipoise.mechanism.dynamics.shares import Shares
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.parts.links import moments_across
+from equipoise.mechanism.parts.links import in_frame, moments_across
 from equipoise.mechanism.parts.machine import Link, Machine, Vector, unknown
-from equipoise.mechanism.parts.places import in_frame
 from equipoise.mechanism.parts.springs import MEETING
 
 QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")

@@ -2,17 +2,19 @@
 
 The groups are run in reverse order; each hands what its outer joints must supply to the bodies
 that carry them, and the pass ends at drive and frame.  It is linear in the demands.  Loads, soil
-and springs make demands of their own.
+and springs make demands of their own.  What bodies and drives exert is read of the pass alike for a
+machine and for its parameters.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from functools import cached_property
 from itertools import compress
 from math import degrees
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -30,11 +32,10 @@ from equipoise.mechanism.kinematics.cylinders import pushes
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.joint_properties import JOINTS
-from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.machine import FRAME, Machine
 
 ANGLES = 7
 """In a cycle, at which it is looked for forces that hold each other."""
-
 
 LEAST_SQUARES = to_say(
     "the forces in {joints} are statically indeterminate, because of redundant constraints: "
@@ -554,3 +555,52 @@ def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
         before = result.get(link, (0.0, 0.0))
         result[link] = (before[0] + f, before[1] + m)
     return result
+
+
+class HasCouplings:
+    """What has `couplings`: forces by list of the file, each of which is an attribute too."""
+
+    couplings: Any
+
+    def __getattr__(self, name: str) -> Any:
+        if name in coupling_kinds(Machine):
+            return self.couplings[name]
+        raise AttributeError(f"{type(self).__name__} has no {name!r}")
+
+
+class ForceReadings(HasCouplings, ABC):
+    """What is read of a run over the joints, `solved`.
+
+    preloads : whether it has the preloads of couplings.
+    """
+
+    preloads: ClassVar[bool] = True
+
+    @property
+    @abstractmethod
+    def solved(self) -> JointReactions: ...
+
+    @property
+    def drive_torque(self) -> Array:
+        """Torque of the first drive on its link, N m; times that link's speed it is its power."""
+        return self.solved.drive_torque
+
+    @property
+    def drives(self) -> Mapping[str, Array]:
+        """Torque of each drive on its link, N m, or its force, N, by the name of the link."""
+        return self.solved.drives
+
+    @property
+    def drive_force(self) -> Array:
+        """Force with which a drive pushes its ends apart, N; of one that does."""
+        return self.solved.drive_force
+
+    @cached_property
+    def joints(self) -> Mapping[str, JointForce]:
+        """Force in each pin and slider, by name, on the later body by the earlier one."""
+        return self.solved.joints
+
+    @cached_property
+    def couplings(self) -> CouplingForces:
+        """Force of each coupling on its driven body, by list of the file and name."""
+        return self.solved.couplings(lambda item: item.preload if self.preloads else 0.0)

@@ -16,8 +16,7 @@ from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.kinematics.strokes import dead_positions
-from equipoise.mechanism.parts.force_elements import GasTable, Load
-from equipoise.mechanism.parts.indicator_diagrams import ALIKE, IndicatorDiagram
+from equipoise.mechanism.parts.loads import ALIKE, GasTable, IndicatorDiagram, Load
 from equipoise.quantities import Dimension
 from equipoise.quantities.numbers import format_quantity
 

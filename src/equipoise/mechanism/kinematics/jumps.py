@@ -21,7 +21,7 @@ from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move, move_again
 from equipoise.mechanism.kinematics.tip import crossings, roots, surface_of
 from equipoise.mechanism.parts.couplings import Coupling
-from equipoise.mechanism.parts.force_kinds import rated_elements
+from equipoise.mechanism.parts.element_kinds import rated_elements
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.signals import JumpSampling
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 Needs = Literal["motion", "masses", "planes", "rows", "support"]
 Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
-"""Statistic that reduces an output to one number; see `mechanism.parts.objectives`."""
+"""Statistic that reduces an output to one number; see `mechanism.parts.balance`."""
 Yardstick = Literal[
     "", "weight", "span", "bearings", "effort", "acting", "pressure", "transmission", "vibration"
 ]

@@ -10,10 +10,13 @@ from equipoise.i18n import Note, all_of, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import Conditions, Listing, Quantity, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
-from equipoise.mechanism.formulas.kernels import cross
-from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action, RatedElement
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints, wrong_end_points
+from equipoise.mechanism.parts.element_kinds import (
+    Action,
+    BetweenPoints,
+    Placed,
+    RatedElement,
+    wrong_end_points,
+)
 from equipoise.quantities import Dimension, format_quantity
 
 Pair = tuple[float, float]
@@ -185,9 +188,7 @@ class Bushing(BetweenPoints, RatedElement):
         """Force and torque on the link, and their opposites there on the other body."""
         arm, direction, _ = self.relative_motion(at, self.direction)
         along, across, torque = efforts
-        force = direction * along + 1j * direction * across
-        yield self.link, self.point, force, torque
-        yield self.on, self.to, -force, -cross(arm, force) - torque
+        return self.pushed(arm, direction * along + 1j * direction * across, torque)
 
     def values(self, at: Placed) -> Mapping[str, Any]:
         """Deflections, m, forces, N, and torque, N m, on the link, and power turned to heat, W."""

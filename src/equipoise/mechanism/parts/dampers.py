@@ -12,12 +12,9 @@ from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, d
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.damping import Damping
-from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action
-from equipoise.mechanism.parts.row_laws import one_law
+from equipoise.mechanism.parts.element_kinds import Action, BetweenPoints, Placed
+from equipoise.mechanism.parts.row_laws import Damping, one_law
 from equipoise.mechanism.parts.springs import wrong_ends
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints
 from equipoise.quantities import Dimension, format_quantity
 
 
@@ -150,9 +147,7 @@ class Damper(BetweenPoints, Damping):
     def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
         """Force on each end, N, complex; it has no torque."""
         _, way, _ = self._line(at)
-        force = -way * efforts[0]
-        yield self.link, self.point, force, 0.0
-        yield self.on, self.to, -force, 0.0
+        return self.pulled(-way * efforts[0])
 
     def values(self, at: Placed) -> Mapping[str, Any]:
         """Pull of a damper, N, its lengthening speed, m/s, and the power that it takes, W."""

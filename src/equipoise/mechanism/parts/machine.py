@@ -48,28 +48,25 @@ from equipoise.mechanism.checks import (
 )
 from equipoise.mechanism.parts.constraints import Constraint, changed_points
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
-from equipoise.mechanism.parts.drive_checks import wrong_drive, wrong_further, wrong_together
 from equipoise.mechanism.parts.drives import (
     TURNING,
     Drive,
     Driven,
     FurtherDrive,
+    wrong_drive,
+    wrong_further,
+    wrong_together,
 )
 from equipoise.mechanism.parts.element_kinds import (
     Element,
+    ForceElement,
     PartKind,
     declare_outputs,
     element_kinds,
+    force_kinds,
     part_kinds,
 )
 from equipoise.mechanism.parts.field import Planting, wrong_planting
-from equipoise.mechanism.parts.force_elements import (
-    Load,
-    LoadTable,
-    wrong_axes,
-    wrong_load,
-)
-from equipoise.mechanism.parts.force_kinds import ForceElement, force_kinds
 from equipoise.mechanism.parts.joint_kinds import (
     JointKind,
     Rider,
@@ -81,20 +78,27 @@ from equipoise.mechanism.parts.joint_properties import JointProperties, wrong_jo
 from equipoise.mechanism.parts.links import (
     MASS_FIELDS,
     Bearing,
+    Frame,
     Link,
+    Position,
     Slider,
     size_of,
     wrong_link,
     wrong_planes,
     wrong_points,
+    wrong_position,
     wrong_slider,
 )
+from equipoise.mechanism.parts.loads import (
+    Load,
+    LoadTable,
+    wrong_axes,
+    wrong_load,
+)
 from equipoise.mechanism.parts.part_lists import PartLists
-from equipoise.mechanism.parts.places import Frame, Position, wrong_position
-from equipoise.mechanism.parts.run_plans import DutyState, RunPlan
+from equipoise.mechanism.parts.run_plans import DutyState, RunPlan, TimedLoad, wrong_timed_load
 from equipoise.mechanism.parts.shown_units import PARAMETERS, ShownUnits
 from equipoise.mechanism.parts.support import Row, Support, wrong_support
-from equipoise.mechanism.parts.timed_loads import TimedLoad, wrong_timed_load
 from equipoise.quantities import PER_RPM, display, number
 
 if TYPE_CHECKING:

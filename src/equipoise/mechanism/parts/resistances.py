@@ -23,12 +23,16 @@ from equipoise.keys import (
 )
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
-from equipoise.mechanism.formulas.kernels import cross, positive
-from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action, RatedElement, TableArgument
-from equipoise.mechanism.parts.ramps import table_value
-from equipoise.mechanism.parts.row_laws import TableRows
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints, wrong_end_points
+from equipoise.mechanism.formulas.kernels import positive
+from equipoise.mechanism.parts.element_kinds import (
+    Action,
+    BetweenPoints,
+    Placed,
+    RatedElement,
+    TableArgument,
+    wrong_end_points,
+)
+from equipoise.mechanism.parts.row_laws import TableRows, table_value
 from equipoise.quantities import Dimension, format_quantity
 
 TINY = 1e-300
@@ -243,9 +247,7 @@ class Resistance(BetweenPoints, TableRows, RatedElement):
         """Force on the point of the link, N, and its opposite there on the other body."""
         arm, direction, _ = self._moving(at)
         along, across = efforts
-        force = direction * along + 1j * direction * across
-        yield self.link, self.point, force, 0.0
-        yield self.on, self.to, -force, -cross(arm, force)
+        return self.pushed(arm, direction * along + 1j * direction * across)
 
     def values(self, at: Placed) -> Mapping[str, Any]:
         """Size of a resistance, N, the speed that it resists, m/s, along its direction where it has

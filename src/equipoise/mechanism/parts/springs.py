@@ -22,11 +22,15 @@ from equipoise.keys import (
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action, ForceElement, TableArgument
-from equipoise.mechanism.parts.ramps import Ramps, ramp_value, ramps_of
-from equipoise.mechanism.parts.row_laws import RowLaw, one_law
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints, wrong_end_points
+from equipoise.mechanism.parts.element_kinds import (
+    Action,
+    BetweenPoints,
+    ForceElement,
+    Placed,
+    TableArgument,
+    wrong_end_points,
+)
+from equipoise.mechanism.parts.row_laws import Ramps, RowLaw, one_law, ramp_value, ramps_of
 from equipoise.quantities import Dimension, format_quantity
 
 MEETING = to_say(
@@ -186,8 +190,7 @@ class Spring(BetweenPoints, RowLaw, ForceElement):
         else:
             place, to = ends
             force = kernels.pulled(place, to, self._pull(kernels.length(to - place)))
-        yield self.link, self.point, force, 0.0
-        yield self.on, self.to, -force, 0.0
+        return self.pulled(force)
 
     def table_argument(self, at: Placed) -> TableArgument | None:
         """By its length, where it has rows of one."""

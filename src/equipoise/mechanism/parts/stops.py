@@ -11,10 +11,14 @@ from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import Number, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
-from equipoise.mechanism.formulas.kernels import cross, positive
-from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action, RatedElement
-from equipoise.mechanism.parts.two_body_elements import BetweenPoints, wrong_end_points
+from equipoise.mechanism.formulas.kernels import positive
+from equipoise.mechanism.parts.element_kinds import (
+    Action,
+    BetweenPoints,
+    Placed,
+    RatedElement,
+    wrong_end_points,
+)
 from equipoise.quantities import Dimension, format_quantity
 
 LEAST_RESTITUTION = 0.01
@@ -162,9 +166,7 @@ class Stop(BetweenPoints, RatedElement):
     def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
         """Force on the point of the link, N, and its opposite there on the other body."""
         arm, normal, _, _ = self._contact(at)
-        force = normal * efforts[0]
-        yield self.link, self.point, force, 0.0
-        yield self.on, self.to, -force, -cross(arm, force)
+        return self.pushed(arm, normal * efforts[0])
 
     def values(self, at: Placed) -> Mapping[str, Any]:
         """Force of a stop, N, its gap, m, and the power that it turns into heat, W."""

@@ -11,11 +11,8 @@ from equipoise.i18n.terms import with_meaning
 from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
-from equipoise.mechanism.parts.damping import Damping
-from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action
-from equipoise.mechanism.parts.row_laws import one_law
-from equipoise.mechanism.parts.two_body_elements import BetweenBodies
+from equipoise.mechanism.parts.element_kinds import Action, BetweenBodies, Placed
+from equipoise.mechanism.parts.row_laws import Damping, one_law
 from equipoise.quantities import Dimension, format_quantity
 
 
@@ -127,9 +124,7 @@ class TorsionDamper(BetweenBodies, Damping):
 
     def exerted(self, at: Placed, efforts: Sequence[Any]) -> Iterator[Action]:
         """Torque on each body, N m."""
-        (torque,) = efforts
-        yield self.link, None, 0j, torque
-        yield self.on, None, 0j, -torque
+        return self.turned(efforts[0])
 
     def values(self, at: Placed) -> Mapping[str, Any]:
         """Torque on the link, N m, its relative speed, rad/s, and the power that it takes, W."""

@@ -21,11 +21,21 @@ from equipoise.keys import (
 )
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
-from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.force_kinds import Action, ForceElement, TableArgument
-from equipoise.mechanism.parts.ramps import Ramps, ramp_integral, ramp_value, ramps_of
-from equipoise.mechanism.parts.row_laws import RowLaw, one_law
-from equipoise.mechanism.parts.two_body_elements import BetweenBodies
+from equipoise.mechanism.parts.element_kinds import (
+    Action,
+    BetweenBodies,
+    ForceElement,
+    Placed,
+    TableArgument,
+)
+from equipoise.mechanism.parts.row_laws import (
+    Ramps,
+    RowLaw,
+    one_law,
+    ramp_integral,
+    ramp_value,
+    ramps_of,
+)
 from equipoise.quantities import Dimension, format_quantity
 
 
@@ -136,9 +146,7 @@ class TorsionSpring(BetweenBodies, RowLaw, ForceElement):
 
     def actions(self, at: Placed) -> Iterator[Action]:
         """Torque on the link, N m, and its opposite on the other body."""
-        torque = self._torque(at.angle(self.link, self.on, self.middle))
-        yield self.link, None, 0j, torque
-        yield self.on, None, 0j, -torque
+        return self.turned(self._torque(at.angle(self.link, self.on, self.middle)))
 
     def table_argument(self, at: Placed) -> TableArgument | None:
         """By its angle, where it has rows of one."""

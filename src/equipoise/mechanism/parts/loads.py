@@ -1,8 +1,8 @@
-"""What acts on links: loads from outside and the motor, as values with their checks."""
+"""Loads from outside on links, also of gas by its pressure, as values with their checks."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
@@ -12,43 +12,37 @@ from typing import Any, ClassVar, Literal, Protocol
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
-    NO_INERTIA,
     ROW,
     Conditions,
     File,
     Frozen,
-    KeyTable,
     Listing,
-    Number,
     Quantity,
     TextKind,
     declared,
     inside,
     key,
     lacks,
-    needs,
 )
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import (
     FRAME,
     Bodies,
     Vector,
+    unknown,
     unknown_body,
     unknown_link,
     unknown_point,
 )
-from equipoise.mechanism.parts.dc_motors import DcMotor
-from equipoise.mechanism.parts.indicator_diagrams import IndicatorDiagram, wrong_diagram
-from equipoise.mechanism.parts.induction_motors import InductionMotor
-from equipoise.mechanism.parts.lines import AlongLine, wrong_line
-from equipoise.mechanism.parts.ramps import ramp_value, ramps_of
-from equipoise.mechanism.parts.servo_motors import ServoMotor
 
-MOTOR_KINDS = (
-    ("no_load_speed", "stall_torque"), ("table",), ("torque",), ("dc",), ("induction",), ("servo",),
-)  # fmt: skip
-"""Keys of a motor of which it has those of one kind."""
-MEAN_SPEEDS = ("held", "free")
+OVER = ("volume", "position")
+LEAST_ROWS = 3
+ALIKE = 0.02
+"""Share of the stroke to which the places of a recorded diagram are known: by so much its span may
+differ from the stroke, its ends miss a dead centre, and its rows go back within a stroke."""
+TINY = 1e-9
+"""Share of the range of a diagram within which places are one."""
+
 OUTSIDE = ("zero", "hold", "wrap")
 AXES = ("link", "slider")
 SIDES = ("ahead", "behind")
@@ -71,6 +65,12 @@ SAME_LOAD = 1e-6
 """Share of a table's largest value by which what is given twice may differ."""
 MOST_TURNS = 100
 """Turns of the crank in a load table."""
+
+MEETING = to_say(
+    "{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a load along their "
+    "line has no direction; give another point"
+)
+"""What is wrong where the ends of a load meet."""
 
 
 @declared
@@ -146,6 +146,139 @@ class LoadGuide(Protocol):
     def point(self) -> str: ...
     @property
     def angle(self) -> float: ...
+
+
+@declared
+class IndicatorDiagram(CsvTable):
+    """A closed loop of pressures, in the order in which the piston passes them; straight lines
+    between its rows, and from the last to the first.
+
+    places : volumes, m3, or ways of the piston, m, each from any origin.  pressure : Pa, as long.
+    over : ``volume`` or ``position``, which the places are.
+    file : name of the CSV file that it came from.
+    """
+
+    sort = "indicator"
+    forms = (("volume", "pressure"), ("position", "pressure"))
+    rises = False
+
+    places: tuple[float, ...] = inside(ROW)
+    pressure: tuple[float, ...] = inside(ROW)
+    over: Literal["volume", "position"] = inside(TextKind(OVER), default="volume")
+    file: str = inside(TextKind(), default="", compare=False)
+
+    @property
+    def span(self) -> float:
+        """Largest less smallest place, m3 or m."""
+        return max(self.places) - min(self.places)
+
+    @property
+    def loop(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Places from the smallest, and pressures, without a last row that is the first again."""
+        places, pressure = self.places, self.pressure
+        if (places[0], pressure[0]) == (places[-1], pressure[-1]):
+            places, pressure = places[:-1], pressure[:-1]
+        low = min(places)
+        return tuple(place - low for place in places), pressure
+
+    @property
+    def ends(self) -> tuple[int, ...]:
+        """Rows of the loop at which it turns back, in their order; of several there the first.
+        Where it goes back by no more than the share `ALIKE` of its span, that is noise.
+        """
+        return tuple(sorted(_turns_back(self.loop[0], self.span)))
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank in which a piston passes it, with two strokes in each."""
+        return max(1, len(self.ends) // 2)
+
+
+def _turns_back(places: Sequence[float], span: float) -> Iterator[int]:
+    """Rows of a closed loop at which its places turn back, each the outermost between two strokes,
+    from the largest place on, which comes last.
+    """
+    count, extreme, sense = len(places), places.index(max(places)), -1
+    for k in range(extreme + 1, extreme + count + 1):
+        row = k % count
+        way = sense * (places[row] - places[extreme])
+        if way < -ALIKE * span:
+            yield extreme
+            sense = -sense
+        if way < -ALIKE * span or way > TINY * span:
+            extreme = row
+    if span > 0:
+        yield extreme
+
+
+class AlongLine:
+    """A load whose force may be given along the line from its `point` to the point `toward` of the
+    body that bears its opposite.
+    """
+
+    link: str
+    point: str | None
+    axes: str | None
+    toward: str | None
+    force: Any
+
+    @property
+    def bearer(self) -> str | None:
+        """The body that bears its opposite; None if none does."""
+        raise NotImplementedError
+
+    @property
+    def force_key(self) -> str:
+        """Key that gives its force."""
+        return "force"
+
+    @property
+    def forces_across(self) -> tuple[Any, ...]:
+        """Components of its force, N, across the line in which it may act."""
+        return () if self.force is None else (self.force[1],)
+
+
+def wrong_line(where: str, load: AlongLine, bodies: Bodies) -> Iterator[ModelError]:
+    """What is wrong with the point towards which a load points."""
+    body = load.bearer
+    if load.toward is None or (body is not None and body not in bodies):
+        return
+    at = f"{where}.toward"
+    if load.point is None:
+        yield ModelError(at, Note("goes with a force; leave it out"))
+    elif load.axes is not None:
+        wrong = Note("{toward} gives the direction of the force already; leave it out",
+                     **key_names("toward"))  # fmt: skip
+        yield ModelError(f"{where}.axes", wrong)
+    elif body is None:
+        yield _without_bearer(where, load.link, load.toward, bodies)
+    elif load.toward not in bodies[body]:
+        kind = Note("point of {body}", body=body) if body != FRAME else "point of the frame"
+        yield ModelError(at, unknown(load.toward, bodies[body], kind))
+    elif load.toward in bodies.get(load.link, ()) or load.point in bodies[body]:
+        wrong = Note("{link!r} and {on!r} are pinned there; give other points",
+                     link=load.link, on=body)  # fmt: skip
+        yield ModelError(at, wrong)
+    elif any(load.forces_across):  # its opposite, at the other end, would leave a moment
+        wrong = Note("a force in the line between two points has no component across it; "
+                     "give 0 N as its y component")  # fmt: skip
+        yield ModelError(f"{where}.{load.force_key}", wrong)
+
+
+def _without_bearer(where: str, link: str, toward: str, bodies: Bodies) -> ModelError:
+    """That no body is named that bears the opposite, with one that has the point."""
+    names = [name for name, points in bodies.items()
+             if toward in points and name != link]  # fmt: skip
+    if not names:
+        points = dict.fromkeys(point for each in bodies.values() for point in each)
+        return ModelError(f"{where}.toward", unknown(toward, points, "point"))
+    name = FRAME if FRAME in names else names[0]
+    wrong = Note(
+        "missing; add {example}, the body with the point {toward!r}, which bears the opposite",
+        example=f'reaction = "{name}"',
+        toward=toward,
+    )
+    return ModelError(f"{where}.reaction", wrong)
 
 
 @declared
@@ -341,128 +474,6 @@ class Load(AlongLine, Frozen):
         return tuple(dict.fromkeys(result))
 
 
-@declared
-class MotorTable(CsvTable):
-    """Torque of a motor against its speed: linear between its rows, and beyond them as between
-    the last two.
-
-    speed : rad/s, rising.  torque : N m, as long as `speed`.
-    file : name of the CSV file that it came from.
-    """
-
-    sort = "motor"
-    forms = (("speed", "torque"),)
-
-    speed: tuple[float, ...] = inside(ROW)
-    torque: tuple[float, ...] = inside(ROW)
-    file: str = inside(TextKind(), default="", compare=False)
-
-
-@declared
-class Motor(Frozen):
-    """The motor or engine that turns the crank; its torque and speed are sizes.
-
-    Torque falls in a straight line from the one at standstill to zero at no load, is the same at
-    every speed, or follows the table.
-    """
-
-    called = to_say("{what} of the motor")
-    file_order = ("no_load_speed", "stall_torque", "torque", "table", "dc", "induction", "servo",
-                  "ratio", "inertia", "mean_speed")  # fmt: skip
-    conditions: ClassVar[Conditions] = {
-        "oneOf": [
-            needs(*kind)
-            | lacks(*(name for other in MOTOR_KINDS if other != kind for name in other))
-            for kind in MOTOR_KINDS
-        ]
-    }
-
-    no_load_speed: float | None = key(
-        "angular speed",
-        "of the motor, at which its torque is 0",
-        default=None,
-        example="3000 rpm",
-        above=0,
-        word=to_say("no-load speed"),
-    )
-    stall_torque: float | None = key(
-        "torque", "of the motor at standstill", default=None, example="2 N m", above=0
-    )
-    table: MotorTable | None = key(
-        File("motor"),
-        "CSV file beside this one, instead of these two: `speed [rpm],torque [N m]`",
-        default=None,
-        example="motor.csv",
-    )
-    ratio: float = key(
-        Number(), "turns of the motor in one turn of the driven link", default=1.0, above=0
-    )
-    inertia: float = key(
-        "inertia", "of its rotor about its own axis", default=0.0, at_least=0, why=NO_INERTIA
-    )
-    mean_speed: Literal["held", "free"] = key(
-        TextKind(MEAN_SPEEDS),
-        "`held`: the motor is so set that the mean speed is the drive's `speed`; `free`: its curve "
-        "holds as it is, and the speed follows from it",
-        default="held",
-    )
-    torque: float | None = key(
-        "torque",
-        "of the motor at every speed, instead of a curve",
-        default=None,
-        example="0.5 N m",
-        above=0,
-    )
-    dc: DcMotor | None = key(
-        KeyTable(DcMotor, headed=True), "a direct-current motor, instead of a curve", default=None
-    )
-    induction: InductionMotor | None = key(
-        KeyTable(InductionMotor, headed=True),
-        "an induction motor, instead of a curve",
-        default=None,
-    )
-    servo: ServoMotor | None = key(
-        KeyTable(ServoMotor, headed=True), "a servo motor, instead of a curve", default=None
-    )
-
-    @property
-    def reflected_inertia(self) -> float:
-        """Moment of inertia of its rotor as the driven link feels it, kg m^2."""
-        return self.ratio**2 * self.inertia
-
-    @property
-    def rows(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Speeds, rad/s, and torques, N m, between which and beyond its curve is straight; of one
-        that has no `smooth_curve`.
-        """
-        if self.table is not None:
-            return self.table.speed, self.table.torque
-        if self.torque is not None:
-            return (0.0, 1.0), (self.torque, self.torque)
-        if self.servo is not None:
-            return self.servo.rows
-        line = self.dc or self
-        assert line.no_load_speed is not None and line.stall_torque is not None
-        return (0.0, line.no_load_speed), (line.stall_torque, 0.0)
-
-    @property
-    def largest_torque(self) -> float:
-        """Largest torque, N m, at any speed in the sense in which it drives."""
-        if self.induction is not None:
-            return self.induction.breakdown_torque
-        speeds, torques = self.rows
-        at_rest = ramp_value(ramps_of(speeds, torques), 0.0)
-        forward = (torque for speed, torque in zip(speeds, torques, strict=True) if speed >= 0)
-        return float(max(at_rest, *forward))
-
-    @property
-    def smooth_curve(self) -> InductionMotor | None:
-        """Curve of a motor where that is no sequence of straight lines: ``torque`` by speed, and
-        ``speed_at`` a torque, up to ``synchronous_speed``.
-        """
-        return self.induction
-
-
 # -- checks ----------------------------------------------------------------------------------------
 
 
@@ -542,6 +553,19 @@ def _wrong_gas(where: str, load: Load) -> Iterator[ModelError]:
         yield ModelError(f"{where}.axes", wrong)
     if load.gas is not None and len(load.gas.pressure) != len(load.gas.crank_angle):
         yield ModelError(f"{where}.gas", Note("the columns differ in length"))
+
+
+def wrong_diagram(where: str, diagram: IndicatorDiagram) -> Iterator[ModelError]:
+    """Everything that is wrong with an indicator diagram."""
+    if len(diagram.places) != len(diagram.pressure):
+        yield ModelError(where, Note("the columns differ in length"))
+    elif len(diagram.places) < LEAST_ROWS:
+        rows = len(diagram.places)
+        wrong = Note("got {rows} rows; a closed diagram has {least} or more", rows=rows,
+                     least=LEAST_ROWS)  # fmt: skip
+        yield ModelError(where, wrong)
+    elif diagram.span <= 0:
+        yield ModelError(where, Note("all rows are at one place; a piston moves"))
 
 
 def wrong_axes(where: str, load: Load, sliders: Iterable[LoadGuide]) -> Iterator[ModelError]:
@@ -640,34 +664,3 @@ def _contradiction(where: str, table: LoadTable, unit: str, named: str) -> Itera
 def _from_to(table: LoadTable) -> Note:
     first, last = (f"{degrees(table.crank_angle[end]):.6g} deg" for end in (0, -1))
     return Note("from {low} to {high}", low=first, high=last)
-
-
-def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:
-    """Everything that is wrong with a motor."""
-    line, table = (motor.no_load_speed, motor.stall_torque), motor.table
-    where_table = f"{where}.table"
-    given = [any(getattr(motor, name) is not None for name in kind) for kind in MOTOR_KINDS]
-    if sum(given) != 1 or line.count(None) == 1:
-        note = Note(
-            "give either {no_load_speed} and {stall_torque}, or torque, or table, or dc, or "
-            "induction, or servo",
-            **key_names("no_load_speed", "stall_torque"),
-        )
-        yield ModelError(where, note)
-    elif motor.servo is not None and any(b <= a for a, b in pairwise(motor.servo.rows[0])):
-        yield ModelError(
-            f"{where}.servo.speed_gain",
-            Note(
-                "the speeds between which the torque falls from limit to limit are lost in "
-                "rounding; give less, or a larger {torque_limit}",
-                **key_names("torque_limit"),
-            ),
-        )
-    elif table is None:
-        return
-    elif len(table.speed) != len(table.torque):
-        yield ModelError(where_table, Note("the columns differ in length"))
-    elif len(table.speed) < 2:
-        yield ModelError(where_table, Note("the table has fewer than two rows; a curve needs two"))
-    elif any(b <= a for a, b in pairwise(table.speed)):
-        yield ModelError(where_table, Note("the speeds must rise from row to row"))

@@ -1,4 +1,4 @@
-"""Life of rolling bearings in joints, from the force in each over a whole cycle.
+"""What joints bear over a whole cycle: life of rolling bearings, plain bearings, friction losses.
 
 ISO 281: of many equal bearings 90 % turn L10 = (C / P)^p million times under a load P.  Where load
 and speed change, each part of a turn uses up its share of the life, so that
@@ -25,10 +25,11 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.steps import Array, Reaction
-from equipoise.mechanism.dynamics.forces import Forces, WorkingState
-from equipoise.mechanism.dynamics.pin_bearings import joint_properties, ring_speed
+from equipoise.mechanism.dynamics.forces import Forces, WorkingState, joint_properties, ring_speed
+from equipoise.mechanism.dynamics.reduced import generalized_force
 from equipoise.mechanism.kinematics.strokes import figure
 from equipoise.mechanism.parts.joint_properties import RollingBearing
+from equipoise.signals import Figures
 
 MILLION = 1e6
 LEAST, SCALE, SHAPE = 0.02, 4.439, 1.483
@@ -135,3 +136,115 @@ def _life_over(
         both = zip(sizes, turns, strict=True)
         load = top * (mean((size / top) ** p * turn for size, turn in both) / speed) ** (1 / p)
     return bearing_life(bearing, load, speed, top)
+
+
+@dataclass(frozen=True)
+class PlainBearingDuty:
+    """Figures of a plain bearing over the crank angles of an analysis, or those of all duty states.
+
+    pressure : largest force over width times diameter, Pa.
+    pressure_speed : largest pressure times sliding speed, Pa m/s.
+    pressure_at, pressure_speed_at : crank angles of these, rad; None where they do not vary.
+    mean_pressure_speed : mean of that over the operating time, Pa m/s.
+    """
+
+    pressure: float = figure(to_say("largest pressure"), "modulus")
+    pressure_at: float | None = figure(to_say("largest pressure at crank angle"), "angle")
+    pressure_speed: float = figure(to_say("largest pressure times speed"), "pressure times speed")
+    pressure_speed_at: float | None = figure(
+        to_say("largest pressure times speed at crank angle"), "angle"
+    )
+    mean_pressure_speed: float = figure(
+        to_say("pressure times speed in the mean"), "pressure times speed"
+    )
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data in SI units."""
+        return dict(vars(self))
+
+
+def plain_bearing_duties(forces: Forces) -> Mapping[str, PlainBearingDuty]:
+    """Figures of plain bearings by joint: over all duty states of the machine where the crank is
+    turned evenly over a whole cycle, else over these forces alone.
+    """
+    steady = forces.motion.is_steady_cycle
+    states = forces.working_states if steady else (WorkingState(1.0, forces),)
+    return {name: _over(states, name) for name in forces.plain_bearings}
+
+
+def _over(states: Sequence[WorkingState], name: str) -> PlainBearingDuty:
+    """The largest of all states, and the mean by their shares of the time."""
+    bearings = [(state, state.forces.plain_bearings[name]) for state in states]
+    pressures, speeds = (
+        [state.forces.motion.figures(getattr(item, signal)) for state, item in bearings]
+        for signal in ("pressure", "pressure_speed")
+    )
+    pressure, warming = (max(each, key=lambda item: item.max) for each in (pressures, speeds))
+    mean = sum(state.share * item.mean for (state, _), item in zip(bearings, speeds, strict=True))
+    return PlainBearingDuty(
+        pressure.max, _angle_of_largest(pressure), warming.max, _angle_of_largest(warming), mean
+    )
+
+
+def _angle_of_largest(figures: Figures) -> float | None:
+    """Crank angle of the largest value, rad; None where it is as large everywhere."""
+    return None if figures.is_constant() else figures.max_at
+
+
+NOTHING = 1e-9
+"""Share of the power that goes through a machine below which the rest is rounding."""
+
+
+@dataclass(frozen=True)
+class JointLoss:
+    """What one joint costs in the mean of a cycle.
+
+    loss : power, W.  wear_work : contact force times sliding way in a turn of the crank, J.
+    """
+
+    loss: float
+    wear_work: float
+
+
+@dataclass(frozen=True)
+class Losses:
+    """Powers of a cycle in the mean, W.
+
+    joints : by name.  drive : that all drives give.  loads : that loads and soil give; below 0
+        where they take it.
+    """
+
+    joints: Mapping[str, JointLoss]
+    drive: float
+    loads: float
+
+    @property
+    def loss(self) -> float:
+        """That all joints lose."""
+        return sum(joint.loss for joint in self.joints.values())
+
+    @property
+    def efficiency(self) -> float | None:
+        """Share of the power given that is taken at the other end, from drive to loads or from
+        loads to drive; None where nothing takes any.
+        """
+        given, taken = max(self.drive, self.loads), -min(self.drive, self.loads)
+        return taken / given if taken > NOTHING * given > 0 else None
+
+
+def losses_of(forces: Forces) -> Losses | None:
+    """Losses of a whole cycle; None where no joint has any, the crank is not turned evenly, or the
+    crank angles are not those of a whole cycle.
+    """
+    motion = forces.motion
+    if not forces.frictions or not motion.is_steady_cycle:
+        return None
+    turn = 2 * pi / abs(motion.speed)
+    joints = {
+        name: JointLoss(
+            float(motion.mean(friction.loss)), float(motion.mean(friction.sliding_power)) * turn
+        )
+        for name, friction in forces.frictions.items()
+    }
+    loads = np.asarray(generalized_force(motion, forces.loads) * motion.speed)
+    return Losses(joints, float(motion.mean(forces.power)), float(motion.mean(loads)))
