@@ -10,22 +10,22 @@ phi_k); peaks are looked for on the signal itself, as the largest of all its top
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cached_property
 from math import pi
 from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.balancing.jumping_rows import JumpingRows, smoothed
-from equipoise.balancing.objectives import lever, read_rows, signals_of_row
+from equipoise.balancing.effects import Effects
+from equipoise.balancing.jumping_rows import JumpingDesigns, JumpingRows, smoothed
+from equipoise.balancing.objectives import LinearizationPoint, of_rows_alone, read, reading_of
 from equipoise.balancing.rounding import NEARLY, TINY
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.jumps import bends_of, jumps_of
-from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.balance import (
     GAUGES,
     Measure,
@@ -35,11 +35,9 @@ from equipoise.mechanism.parts.balance import (
     wrong_objective,
 )
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.results.analysis import Analysis
 from equipoise.signals import AT_ONCE, Array, Periodic, present
 from equipoise.vibration.excitation import motion_of
 from equipoise.vibration.forced import chosen_model, steady_speed
-from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 
 Combine = Literal["sum", "squares"]
@@ -79,13 +77,6 @@ class RowSignals:
     def orders(self) -> Array:
         """Order of each amplitude, events in one turn of the crank, (K + 1,)."""
         return np.arange(self.amplitudes.shape[-1]) / self.turns
-
-    def with_orders(self, orders: Sequence[float]) -> RowSignals:
-        """Signals with these orders only; with all of them if there are none."""
-        if not orders:
-            return self
-        wanted = np.any(np.isclose(self.orders[:, None], orders, atol=NEARLY), axis=1)
-        return RowSignals(np.where(wanted, self.amplitudes, 0.0), self.turns)
 
     def turned(self, phases: Array) -> Array:
         """Amplitudes (..., V, m, C, K + 1) of each row at phases (..., m), rad."""
@@ -135,65 +126,67 @@ class PhasedRows:
                 )
             )
         if output.startswith(GAUGES):
-            row_signals = self._gauge(output.removeprefix(GAUGES), objective.speeds)
-        else:
-            rows, signal = rows_of(self.machine), self._alike(output) or self._single_row
-            levers = np.ones((len(rows), 1, 1))
-            read: Callable[[Motion], Array] = partial(self._read, output)
-            if signal is self._single_row:
-                about, motion, read = objective.about, self._motion, signals_of_row
-                levers = np.array([lever(motion, output, row, about) for row in rows])
-            amplitudes, jumping = (levers @ signal.amplitudes)[None], None
-            if len(jumps := jumps_of(self._motion.linkage)):
-
-                def at(theta: Array) -> Array:
-                    return np.asarray(levers @ read(move(self.machine, theta, acceleration=0.0)))
-
-                bends = bends_of(self._motion.linkage, signal.turns)
-                jumping = JumpingRows.of(at, jumps, signal.turns, bends)
-            row_signals = RowSignals(amplitudes, signal.turns, jumping)
-        return row_signals.with_orders(objective.orders)
+            chosen_model(self.machine, None, False)  # refuses a machine without a support
+            speeds = [steady_speed(self.machine, v, False) for v in objective.speeds or (None,)]
+            for speed in speeds:
+                self._point.linear.motion(speed)  # refuses what resonates, or drives it away
+            objective = replace(objective, speeds=tuple(speeds))
+        (amplitudes,) = of_each_row(self._effects, objective, self._point)
+        designs = jumping_designs(self._effects, objective)
+        jumping = None if designs is None else designs.each[0]
+        return RowSignals(amplitudes, self._effects.motion.turns, jumping)
 
     @cached_property
-    def _motion(self) -> Motion:
-        return motion_of(self.machine)
+    def _effects(self) -> Effects:
+        return Effects(self.machine, [], motion_of(self.machine))
 
     @cached_property
-    def _single_row(self) -> Periodic:
-        """Signals of one row (8, K + 1), each cut off where its own rounding begins."""
-        motion = self._motion
-        rows = signals_of_row(motion)
-        each = [motion.periodic(row).without_rounding().amplitudes for row in rows]
-        return Periodic(_padded(each), motion.turns)
-
-    def _alike(self, output: str) -> Periodic | None:
-        """A signal (1, K + 1) that is the same wherever its row is, such as the drive torque."""
-        declared = output_of(output, self.machine)
-        if declared.needs == "rows" or declared.about or declared.part:
-            return None
-        return self._motion.periodic(self._read(output, self._motion)).without_rounding()
-
-    def _read(self, output: str, motion: Motion) -> Array:
-        """An output (1, N) of one row that is the same wherever the row is."""
-        declared = output_of(output, self.machine)
-        return declared.values(Analysis.of(motion), declared.item_of(output) or "")[None]
-
-    def _gauge(self, name: str, speeds: Sequence[float]) -> RowSignals:
-        chosen_model(self.machine, None, False)  # refuses a machine without a support
-        linear = Linear.of(self.machine)
-        reading = linear.body.row(gauges_of(linear.body)[name])[linear.body.free]
-        steady = [steady_speed(self.machine, speed, False) for speed in (speeds or (None,))]
-        each = [read_rows(linear, reading, speed)[:, None] for speed in steady]
-        return RowSignals(_padded(each), linear.excitation.motion.turns)
+    def _point(self) -> LinearizationPoint:
+        return LinearizationPoint(self.machine)
 
 
-def _padded(each: Sequence[Array]) -> Array:
-    """Amplitudes (..., K + 1) of unequal K as one array, the short ones filled up with 0."""
-    count = max(result.shape[-1] for result in each)
-    whole = np.zeros((len(each), *each[0].shape[:-1], count), complex)
-    for row, outcome in zip(whole, each, strict=True):
-        row[..., : outcome.shape[-1]] = outcome
-    return whole
+def jumping_designs(effects: Effects, objective: Objective) -> JumpingDesigns | None:
+    """What an objective reads of every row in phase 0, by the free numbers, as functions of the
+    crank angle; None where nothing jumps, or some orders or a gauge count, of which nothing does.
+    """
+    jumps = jumps_of(effects.motion.linkage)
+    if not len(jumps) or objective.orders or objective.output.startswith(GAUGES):
+        return None
+
+    def at(theta: Array) -> Array:
+        rows = of_rows_alone(effects.at_angles(theta), objective.output, objective.about)
+        values = np.array([np.vstack([row.start, row.columns]) for row in rows])
+        parts = [values.real, values.imag] if np.iscomplexobj(values) else [values]
+        return np.moveaxis(np.stack(parts, axis=2), 1, 0)
+
+    turns = effects.motion.turns
+    return JumpingDesigns.of(at, jumps, turns, bends_of(effects.motion.linkage, turns))
+
+
+def of_each_row(effects: Effects, objective: Objective, point: LinearizationPoint) -> Array:
+    """Amplitudes (1 + K, V, m, C, N) of what an objective reads: of every row as it is, and by a
+    unit of each number, in phase 0.
+
+    point : whose mass the support has to carry.
+    """
+    if objective.output.startswith(GAUGES):
+        linear, row = reading_of(objective, point)
+        rows = [replace(place, phase=0.0) for place in rows_of(point.machine)]
+        speeds = objective.speeds or (effects.machine.drive.speed,)
+        each = [[read(effects, linear, row, v, None, [item]) for item in rows] for v in speeds]
+    else:
+        each = [of_rows_alone(effects, objective.output, objective.about)]
+    samples = np.array([[np.vstack([row.start, row.columns]) for row in rows] for rows in each])
+    parts = [samples.real, samples.imag] if np.iscomplexobj(samples) else [samples]
+    whole = np.moveaxis(np.stack(parts, axis=2), 3, 0)
+    sampling, turns = each[0][0].sampling, each[0][0].turns
+    periodic = Periodic.of(whole, turns) if sampling is None else sampling.periodic(whole)
+    periodic = periodic.without_rounding()
+    if not objective.orders:
+        return periodic.amplitudes
+    # Not of samples: between the crank angles that resolve jumps, what is left of them is smooth.
+    near = np.isclose(periodic.orders[:, None], objective.orders, atol=NEARLY)
+    return np.where(np.any(near, axis=1), periodic.amplitudes, 0.0)
 
 
 def by_orders(measure: Measure) -> bool:

@@ -24,7 +24,6 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.motion import Motion
@@ -45,11 +44,6 @@ from equipoise.signals import Array, JumpSampling, Periodic, Tops, mean, smooth_
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 
-SHAKING, FRAME, ROCKING = 0, 3, 6
-"""Among signals of one row: force x, y and moment about the drive's pivot, twice; rocking moment x
-and y."""
-UNIT = np.array([1.0, 1j, 0.0]), np.array([0.0, 0.0, 1.0])
-"""Force and moment of which force x, y and moment are 1 in turn."""
 ACROSS: Mapping[str, Callable[[Array], Array]] = {
     "roll_moment": np.real,
     "yaw_moment": np.imag,
@@ -58,33 +52,6 @@ ACROSS: Mapping[str, Callable[[Array], Array]] = {
 """Moments about x and y: what each is of the complex one."""
 OWN = dict.fromkeys(OF_ROWS, "rocking_moment")
 """What each row adds of its own to what only rows have."""
-
-
-def signals_of_row(motion: Motion) -> Array:
-    """Signals of one linkage (8, N), in the order listed above."""
-    result, nothing = forces(motion), np.zeros(len(motion.crank_angle))
-    shaking, frame = result.shaking_force, result.frame_force
-    rocking = (nothing, nothing)
-    if motion.machine.has_planes:
-        rocking = (result.across.rocking_moment.x, result.across.rocking_moment.y)
-    moments = result.shaking_moment, result.frame_moment
-    return np.stack([shaking.x, shaking.y, moments[0], frame.x, frame.y, moments[1], *rocking])
-
-
-def lever(motion: Motion, output: str, row: Row, about: str | None) -> Array:
-    """Rows (C, 8) by which an output of all rows reads the signals of one of them."""
-    if output in OF_ROWS:
-        values = np.zeros((1, ROCKING + 2))
-        values[0, :2] = moment_of_row(output, row, 0j, UNIT[0][:2], np.zeros(2))
-        values[0, ROCKING + OF_ROWS.index(output)] = 1.0
-        return values
-    first = FRAME if output.startswith("frame") else SHAKING
-    kind = output.removeprefix("frame_").removeprefix("shaking_")
-    whole = np.eye(ROCKING + 2)[first : first + 3]
-    if output.endswith("_moment"):
-        arm = arm_of(motion.machine, motion, row, about)
-        return moment_of_row(output, row, arm, *UNIT)[None] @ whole
-    return whole[{"force": [0, 1], "force.x": [0], "force.y": [1]}[kind]]
 
 
 def arm_of(machine: Machine, motion: Motion, row: Row, about: str | None) -> complex:
@@ -168,9 +135,9 @@ def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> li
     if output not in OWN or machine.has_planes:
         divided = effects.signal(OWN.get(output, output))
     if not output.endswith("_moment"):
-        return [divided] * len(machine.rows)
+        return [divided] * len(rows_of(machine))
     signals = []
-    for row in machine.rows:
+    for row in rows_of(machine):
         arm = arm_of(machine, effects.motion, row, about)
         there = moment_of_row(output, row, arm, force.start, divided.start)
         by_number = moment_of_row(output, row, arm, force.columns, divided.columns)
@@ -296,27 +263,6 @@ def _moments(effects: Effects, linear: Linear) -> Array:
     weight = effects.weight_moment(linear.excitation.pivot)
     means = effects.motion.mean(np.vstack([weight.start, weight.columns]))[:, None]
     return np.asarray(both - means)
-
-
-def read_rows(linear: Linear, reading: Array, speed: float) -> Array:
-    """What a reading (D,) of the free coordinates sees of each row, (m, K + 1), at a speed, rad/s.
-
-    (K - (n w)^2 M + i n w C) q_n = W_n, whose matrices do not depend on the phases.  They are
-    symmetric, so that the answer to the reading itself serves all rows.
-    """
-    linear.motion(speed)  # refuses what resonates, or drives the support away
-    of_one = linear.excitation.of_one(speed)
-    impedance = linear.impedance(of_one.orders[1:] * speed)
-    along = np.broadcast_to(reading[:, None], (len(impedance), len(reading), 1))
-    answer = np.zeros((6, len(of_one.orders)), complex)
-    answer[linear.body.free, 1:] = np.linalg.solve(impedance, along)[..., 0].T
-    rows = rows_of(linear.excitation.machine)
-    values = np.zeros((len(rows), len(of_one.orders)), complex)
-    for k, row in enumerate(rows):
-        wrench = of_one.amplitudes.copy()
-        wrench[3:] += np.cross((*row.offset, row.lateral), wrench[:3].T).T
-        values[k] = np.sum(answer * wrench, axis=0)
-    return values
 
 
 # -- measures --------------------------------------------------------------------------------------

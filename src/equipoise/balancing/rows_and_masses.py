@@ -17,10 +17,16 @@ import numpy as np
 from equipoise.balancing.balanced import proved_of
 from equipoise.balancing.box_bounds import Numbers, PhaseProof, prove
 from equipoise.balancing.branch_and_bound import finite
-from equipoise.balancing.cylinder_phasing import Cost, PhaseObjective, RowSignals
+from equipoise.balancing.cylinder_phasing import (
+    Cost,
+    PhaseObjective,
+    RowSignals,
+    jumping_designs,
+    of_each_row,
+)
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.jumping_rows import JumpingDesigns
-from equipoise.balancing.objectives import LinearizationPoint, of_rows_alone, read, reading_of
+from equipoise.balancing.objectives import LinearizationPoint
 from equipoise.balancing.phase_grid import distinct
 from equipoise.balancing.phase_polish import Step, most_steps, polished
 from equipoise.balancing.phase_search import (
@@ -38,10 +44,9 @@ from equipoise.balancing.solution import SAME_FRICTION, Solution, solve_problem
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.kinematics.jumps import bends_of, jumps_of
-from equipoise.mechanism.parts.balance import GAUGES, WITHIN, Objective
+from equipoise.mechanism.parts.balance import WITHIN, Objective
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.signals import Array, Periodic
+from equipoise.signals import Array
 
 BESIDE = 0.1
 """rad: phases so close lead to the same masses, so that one of them is a beginning."""
@@ -374,43 +379,3 @@ def _counting_alike(problem: Problem, search: PhaseSearch) -> Problem:
     terms = {term.objective.name: term.scale for term in search.cost.terms}
     limits = {limit.objective.name: limit.value_at(search.present) for limit in search.cost.limits}
     return replace(problem, counts={**problem.before, **limits, **terms})
-
-
-def jumping_designs(effects: Effects, objective: Objective) -> JumpingDesigns | None:
-    """What an objective reads of every row in phase 0, by the free numbers, as functions of the
-    crank angle; None where nothing jumps, or some orders or a gauge count, of which nothing does.
-    """
-    jumps = jumps_of(effects.motion.linkage)
-    if not len(jumps) or objective.orders or objective.output.startswith(GAUGES):
-        return None
-
-    def at(theta: Array) -> Array:
-        rows = of_rows_alone(effects.at_angles(theta), objective.output, objective.about)
-        values = np.array([np.vstack([row.start, row.columns]) for row in rows])
-        parts = [values.real, values.imag] if np.iscomplexobj(values) else [values]
-        return np.moveaxis(np.stack(parts, axis=2), 1, 0)
-
-    turns = effects.motion.turns
-    return JumpingDesigns.of(at, jumps, turns, bends_of(effects.motion.linkage, turns))
-
-
-def of_each_row(effects: Effects, objective: Objective, point: LinearizationPoint) -> Array:
-    """Amplitudes (1 + K, V, m, C, N) of what an objective reads: of every row as it is, and by a
-    unit of each number, in phase 0.
-
-    point : whose mass the support has to carry.
-    """
-    if objective.output.startswith(GAUGES):
-        linear, row = reading_of(objective, point)
-        rows = [replace(row, phase=0.0) for row in point.machine.rows]
-        speeds = objective.speeds or (effects.machine.drive.speed,)
-        each = [[read(effects, linear, row, v, None, [item]) for item in rows] for v in speeds]
-    else:
-        each = [of_rows_alone(effects, objective.output, objective.about)]
-    values = [[row.with_orders(objective.orders) for row in rows] for rows in each]
-    samples = np.array([[np.vstack([row.start, row.columns]) for row in rows] for rows in values])
-    parts = [samples.real, samples.imag] if np.iscomplexobj(samples) else [samples]
-    whole = np.moveaxis(np.stack(parts, axis=2), 3, 0)
-    if (sampling := values[0][0].sampling) is not None:
-        return sampling.periodic(whole).without_rounding().amplitudes
-    return Periodic.of(whole, values[0][0].turns).without_rounding().amplitudes
