@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import pytest
-
 import equipoise as eq
 from equipoise.errors import MobilityError, ModelError
 from equipoise.mechanism.assembly.joints import structure
@@ -44,19 +42,16 @@ def test_a_pin_of_three_bodies_counts_twice() -> None:
     assert structure(shared).freedom(shared.links, [FRAME]) == 1
 
 
-def refused(given: eq.Machine) -> str:
-    with pytest.raises(MobilityError) as caught:
-        eq.move(given)
-    return str(caught.value)
+def check_refusal(linkage: eq.Machine, /, **values: object) -> None:
+    """Check that a machine cannot be moved, with these values in the sentence."""
+    with refusals.refused(MobilityError, **values):
+        eq.move(linkage)
 
 
 def test_two_free_motions() -> None:
     """A four-bar with an arm that dangles from its coupler."""
     four = crank_rocker()
-    assert refused(linked(four, arm=body(C=ORIGIN, E=(1.0, 0.0)))) == (
-        "the mobility of the linkage is 2 (4 moving links, 5 pins and 0 sliding joints), "
-        "but it has one drive, which leaves 'arm' undetermined"
-    )
+    check_refusal(linked(four, arm=body(C=ORIGIN, E=(1.0, 0.0))), mobility=2, names="'arm'")
 
 
 def test_three_free_motions() -> None:
@@ -71,9 +66,7 @@ def test_three_free_motions() -> None:
             "four": body(E=ORIGIN, F=(0.8, 0.0)),
         },
     )
-    message = refused(chain)
-    assert message.startswith("the mobility of the linkage is 3 (5 moving links, 6 pins ")
-    assert message.endswith("which leaves 'one', 'two', 'three' and 'four' undetermined")
+    check_refusal(chain, mobility=3, first="'one', 'two', 'three'", last="'four'")
 
 
 def test_pins_whose_names_differ_in_case() -> None:
@@ -81,11 +74,9 @@ def test_pins_whose_names_differ_in_case() -> None:
     coupler = four.links["coupler"]
     points = {"c" if name == "C" else name: at for name, at in coupler.points.items()}
     loose = replace(four, links={**four.links, "coupler": replace(coupler, points=points)})
-    assert refused(loose).endswith(
-        "; 'c' of coupler is no pin with 'C' of rocker: did you mean 'C'?"
-    )
+    check_refusal(loose, first="c", at="coupler", point="C", body="rocker", name="C")
     traced = linked(four, arm=body(C=ORIGIN, d=(1.0, 0.0)))
-    assert refused(traced).endswith("; 'D' of frame is no pin with 'd' of arm: did you mean 'D'?")
+    check_refusal(traced, first="D", at="frame", point="d", body="arm", name="D")
 
 
 def tied(**more: eq.Link) -> eq.Machine:
@@ -99,26 +90,18 @@ def tied(**more: eq.Link) -> eq.Machine:
 
 def test_no_free_motion() -> None:
     """A four-bar whose coupler is held by a third link to the frame."""
-    told = refused(tied())
-    assert told.startswith(
-        "the linkage cannot move (mobility by count 0: 4 moving links, 6 pins "
-        "and 0 sliding joints): "
-        "P of 'tie' comes "
-    )
-    assert "its points E and P are 1000 mm apart, and the others bring the pins " in told
+    check_refusal(tied(), mobility=0, link="tie", first="E", second="P", given=1000.0)
 
 
 def test_a_single_link_that_is_held() -> None:
     given = slider_crank()
     twice = replace(given, sliders=(*given.sliders, eq.Slider("rod", "B", FRAME, "A", 0.3)))
-    assert "count -1: 3 moving links, 3 pins and 2 sliding joints" in refused(twice)
+    check_refusal(twice, mobility=-1, name="piston on frame", link="piston")
 
 
 def test_held_here_and_free_there() -> None:
     """The count is one for the whole, but one part has none and another has two."""
-    message = refused(tied(pendulum=body(E=ORIGIN, Q=(1.0, 0.0))))
-    assert "overconstrained: tie, while other links are free to move" in message
-    assert "but no drive can control it" in message
+    check_refusal(tied(pendulum=body(E=ORIGIN, Q=(1.0, 0.0))), names="tie")
 
 
 def test_a_part_that_the_drive_does_not_reach() -> None:
@@ -127,7 +110,7 @@ def test_a_part_that_the_drive_does_not_reach() -> None:
         {"A": ORIGIN, "D": (1.0, 0.0), "E": (2.0, 0.0)},
         {"crank": body(A=ORIGIN), "lever": body(D=ORIGIN)},
     )
-    assert refused(lone).endswith("which leaves 'lever' undetermined")
+    check_refusal(lone, mobility=2, names="'lever'")
 
 
 def test_the_drive_turns_about_one_point_of_the_frame() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from equipoise.studies.run import create_store
 from equipoise.studies.selection import best
 from equipoise.studies.store import Store
 from equipoise.studies.study import Output
+from support.refusals import refused
 from unit.studies.samples import LENGTH, MASS, study
 
 Array = np.ndarray[Any, Any]
@@ -150,20 +150,15 @@ def test_as_plain_values(tmp_path: Path) -> None:
 # -- refused ---------------------------------------------------------------------------------------
 
 
-def refused(store: Store, *given: Any) -> str:
-    with pytest.raises(UsageError) as error:
-        best(store, *given)
-    return str(error.value)
-
-
 def test_nothing_to_go_by(tmp_path: Path) -> None:
     outputs = tuple(Output(one.name, value=one.value) for one in OUTPUTS)
     store = stored(tmp_path, random_designs(20), outputs)
-    assert re.match("the study has no objective; name an output", refused(store))
-    assert refused(store, 5, {"lfit": None}) == (
-        "no output or varied number is called 'lfit'; did you mean 'lift'?"
-    )
-    assert refused(store, 0) == "got 0 designs; give 1 or more"
+    with refused(UsageError, by="_ways"):
+        best(store)
+    with refused(UsageError, given="lfit", name="lift"):
+        best(store, 5, {"lfit": None})
+    with refused(UsageError, count=0):
+        best(store, 0)
 
 
 def test_no_design_keeps_the_limits(tmp_path: Path) -> None:
@@ -176,28 +171,24 @@ def test_no_design_keeps_the_limits(tmp_path: Path) -> None:
     store = stored(tmp_path, block, outputs)
     low = int(np.sum(block.outcome.figures[:, 0] <= 0.1))
     computed = int(np.sum(block.outcome.reason == 0))
-    assert refused(store) == (
-        f"{store.path}: none of {computed} designs keeps every limit; designs that keep each "
-        f"limit: force <= 0.1 N: {low}, 2000 <= lift <= 3000 mm: 0; loosen a limit, or let more "
-        "vary"
-    )
+    kept = f"force <= 0.1 N: {low}, 2000 <= lift <= 3000 mm: 0"
+    with refused(UsageError, place=str(store.path), computed=computed, names=kept):
+        best(store)
 
 
 def test_every_design_failed(tmp_path: Path) -> None:
     reason = np.array([NO_FULL_TURN, NO_ASSEMBLY, NO_FULL_TURN], np.uint8)
     block = Block(np.ones((3, 2)), Outcome(np.full((3, 3), np.nan), reason))
     store = stored(tmp_path, block)
-    assert refused(store) == (
-        f"{store.path}: no design has figures (does not assemble: 1, does not turn fully: 2); let "
-        "the numbers vary closer to those of the model"
-    )
+    failed = "does not assemble: 1, does not turn fully: 2"
+    with refused(UsageError, place=str(store.path), names=failed):
+        best(store)
 
 
 def test_nothing_is_stored(tmp_path: Path) -> None:
     store = stored(tmp_path, random_designs(40), upto=0)
-    assert refused(store) == (
-        f"{store.path}: nothing is computed yet; go on with: equipoise resume {store.path}"
-    )
+    with refused(UsageError, place=str(store.path), path=str(store.path)):
+        best(store)
 
 
 # -- fronts ----------------------------------------------------------------------------------------
