@@ -31,9 +31,9 @@ def difference(at_speed: bool) -> float:
     motor = eq.mechanism.Motor(table=constant, mean_speed="free")
     machine = replace(MACHINE, drive=replace(MACHINE.drive, motor=motor))
     samples = round(DURATION / SAMPLING) + 1
-    told = eq.simulate(machine, DURATION, speed, drive=not at_speed, samples=samples)
+    simulation = eq.simulate(machine, DURATION, speed, drive=not at_speed, samples=samples)
     apart = []
-    for axis, exact in told.gauges.items():
+    for axis, exact in simulation.gauges.items():
         one, other = getattr(fine, axis), getattr(coarse, axis)
         apart.append(np.max(np.abs(one + (one - other) / 3 - exact)) / np.max(np.abs(exact)))
     return float(max(apart))

@@ -48,11 +48,11 @@ def test_steady_motion(case: Case) -> None:
     exact = solve_exact(machine, case.speed, False)
     start = exact.steady.orbit.starts[: 2 * case.rig.freedoms, 0]
     wanted = rig_mujoco.steady(case.rig, case.speed, SAMPLES, start_state=start)
-    found = respond(machine, case.speed, "exact")
+    response = respond(machine, case.speed, "exact")
     theta = case.speed * wanted.times
-    gauge = found.gauges["gauge"].displacement
-    signals = [(gauge, wanted.gauge), (found.drive.torque, wanted.motor)]
-    signals += [(found.mounts[str(k)].force, force) for k, force in enumerate(wanted.mounts.T)]
+    gauge = response.gauges["gauge"].displacement
+    signals = [(gauge, wanted.gauge), (response.drive.torque, wanted.motor)]
+    signals += [(response.mounts[str(k)].force, force) for k, force in enumerate(wanted.mounts.T)]
     for signal, values in signals:
         swing = float(np.ptp(values))
         np.testing.assert_allclose(signal.values(theta), values, rtol=0, atol=CLOSE * swing)

@@ -141,9 +141,9 @@ def spring_power(found: eq.mechanism.Forces) -> Array:
         growth = along(arm, point.velocity - to.velocity) / np.where(length > 0, length, 1.0)
         rows.append(-pull_of(spring, length) * growth)
     for torsion in machine.torsion_springs:
-        ends = [motion.links[one] for one in torsion.bodies if one != FRAME]
+        ends = [motion.links[body] for body in torsion.bodies if body != FRAME]
         turned, speed = (
-            reduce(np.subtract, (getattr(one, key) for one in ends))
+            reduce(np.subtract, (getattr(end, key) for end in ends))
             for key in ("angle", "angular_velocity")
         )
         rows.append(torque_of(torsion, turned) * speed)

@@ -108,7 +108,7 @@ def is_clear(found: Balanced) -> None:
     machine = found.original
     motion = eq.move(machine, ANGLES)
     joined = {name for name, bodies in bodies_at(machine.bodies).items() if len(bodies) > 1}
-    guided = {one.point for one in machine.sliders if one.on == "frame"}
+    guided = {slider.point for slider in machine.sliders if slider.on == "frame"}
     for link, center, piece, plane, beside in sectors(found):
         assert not beside & (guided | machine.frame.keys())
         assert not (beside and machine.has_planes)
@@ -185,7 +185,11 @@ def allowed(found: Balanced, figure: FigureAssessment, old: float, growth: float
     both over what is large of their kinds.
     """
     assert found.advice is not None
-    outputs = [name for one in found.plan.objectives for name in (one.output, f"rows.{one.output}")]
+    outputs = [
+        name
+        for objective in found.plan.objectives
+        for name in (objective.output, f"rows.{objective.output}")
+    ]
     aims = [one.excess for one in found.advice.before if one.output in outputs]
     saved = found.gain * max(aims, default=0.0)
     large = figure.yardstick * figure.ratio / figure.excess
@@ -213,9 +217,9 @@ def no_couple_is_made(found: Balanced) -> None:
     )
     gone = [
         before - after
-        for one in found.plan.objectives
-        if one.output.endswith("_moment")
-        for before, after in [found.objectives[one.name]]
+        for objective in found.plan.objectives
+        if objective.output.endswith("_moment")
+        for before, after in [found.objectives[objective.name]]
     ]
     for name in ("rows.roll_moment", "rows.yaw_moment", "rocking_moment"):
         if gone and name in new and old[name].rms < 0.1 * new[name].rms:
@@ -259,7 +263,7 @@ def check(found: Balanced) -> None:
         share = max(found.added_mass, 0.0) / found.original.mass
         assert share <= SHARE * (1 + 1e-9)
         assert found.gain >= max(GAIN, share)
-        pairs = [found.objectives[one.name] for one in found.plan.objectives]
+        pairs = [found.objectives[objective.name] for objective in found.plan.objectives]
         assert found.gain == pytest.approx(1 - np.mean([new / old for old, new in pairs]))
     else:
         assert not any(one.helps for one in found.tried)
@@ -339,8 +343,8 @@ def test_every_advised_machine_has_its_answer() -> None:
 def answer_of(found: Balanced) -> str:
     """What stands first, in a line."""
     blocks = found.headline(alone=True)
-    lines = [one.text if isinstance(one, Text) else " ".join(one.items)
-             for one in blocks if isinstance(one, Text | Facts)]  # fmt: skip
+    lines = [block.text if isinstance(block, Text) else " ".join(block.items)
+             for block in blocks if isinstance(block, Text | Facts)]  # fmt: skip
     return " ".join(lines)
 
 

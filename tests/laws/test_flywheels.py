@@ -245,10 +245,10 @@ def test_what_is_no_share_is_refused(given: float | str) -> None:
 
 
 def test_in_the_output() -> None:
-    found = eq.run(subject_of("yamashita-rig").machine, fluctuation=0.02)
-    assert isinstance(found.flywheel, Flywheel)
-    assert found.to_dict()["flywheel"] == found.flywheel.to_dict()
-    assert "textbook" in str([*run_headline(found)])
+    run = eq.run(subject_of("yamashita-rig").machine, fluctuation=0.02)
+    assert isinstance(run.flywheel, Flywheel)
+    assert run.to_dict()["flywheel"] == run.flywheel.to_dict()
+    assert "textbook" in str([*run_headline(run)])
 
 
 def with_load(machine: eq.Machine, torque: float, **motor: float) -> eq.Machine:
@@ -299,12 +299,12 @@ def test_a_flywheel_is_added_to_the_one_that_there_is() -> None:
     alone, present = size_flywheel(machine, 0.05), 0.3
     assert (alone.existing, alone.total) == (0.0, alone.inertia)
     half = present * alone.inertia
-    found = eq.run(with_flywheel(machine, half), fluctuation=0.05)
-    flywheel = found.flywheel
+    run = eq.run(with_flywheel(machine, half), fluctuation=0.05)
+    flywheel = run.flywheel
     assert flywheel is not None and flywheel.existing == half
     assert flywheel.total == pytest.approx(alone.total, rel=1e-6)
-    assert found.to_dict()["flywheel"]["total"] == flywheel.total
-    assert " in all." in str([*run_headline(found)])
+    assert run.to_dict()["flywheel"]["total"] == flywheel.total
+    assert " in all." in str([*run_headline(run)])
     running = eq.run(with_flywheel(machine, flywheel.total)).last_cycle
     assert running is not None and flywheel.speed == pytest.approx(running.mean_speed, rel=1e-4)
     assert flywheel.speed != pytest.approx(machine.drive.speed, rel=1e-2)

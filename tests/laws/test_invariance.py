@@ -222,7 +222,7 @@ def slides(name: str) -> bool:
     """Whether a link slides on another, as with all seeds of a kind or with none."""
     first = name if ":" not in name else f"{name.partition(':')[0]}:0"
     machine = model_of(first) if first in eq.examples("linkage") else machine_of(first)
-    return any(one.on != FRAME for one in machine.sliders)
+    return any(slider.on != FRAME for slider in machine.sliders)
 
 
 SLIDING = [name for name in names() if slides(name)]

@@ -285,15 +285,17 @@ def test_no_phases_and_numbers_in_a_box_are_below_its_readings(
 def test_designs_that_jump_are_those_of_their_machines() -> None:
     """Numbers of a machine's masses against the rows of the machine that has them."""
     machine = four_rows(eq.load("transplanter"))
-    found = eq.balance(machine, Balance(masses=(DISC,), objectives=(Objective("shaking_force"),)))
-    (change,) = found.changes
+    solution = eq.balance(
+        machine, Balance(masses=(DISC,), objectives=(Objective("shaking_force"),))
+    )
+    (change,) = solution.changes
     mass, center, inertia = (change.values[one] for one in ("mass", "pieces", "inertia"))
     (piece,) = center
     x, y = piece["place"]
     effects = Effects(machine, [LinkParameters("crank")])
     designs = rows_and_masses.jumping_designs(effects, TORQUE)
     assert designs is not None
-    rows = PhasedRows(found.machine).signals(TORQUE).jumping
+    rows = PhasedRows(solution.machine).signals(TORQUE).jumping
     assert rows is not None
     moved = designs.at(np.array([mass, mass * x, mass * y, inertia]))
     phases = np.array([[0.0, 0.7, 2.0, 4.4]])
@@ -309,12 +311,12 @@ def test_masses_with_phases_end_in_a_proof(most: float | None) -> None:
     limits = () if most is None else (Limit(FORCE, ratio=most),)
     machine = eq.load("transplanter").with_rows([Row(), Row(lateral=0.3)])
     plan = Balance(masses=(DISC,), phases=Phases(), objectives=(TORQUE,), limits=limits)
-    found = eq.balance(machine, plan)
-    assert 0 <= found.gap <= 1.01 * rows_and_masses.CLOSE
-    assert not any("before the optimum was proved" in str(note) for note in found.notes)
-    before, after = found.objectives[TORQUE.name]
-    phases = np.array([row.phase for row in found.machine.rows])
-    term = PhaseObjective(TORQUE, PhasedRows(found.machine).signals(TORQUE))
+    solution = eq.balance(machine, plan)
+    assert 0 <= solution.gap <= 1.01 * rows_and_masses.CLOSE
+    assert not any("before the optimum was proved" in str(note) for note in solution.notes)
+    before, after = solution.objectives[TORQUE.name]
+    phases = np.array([row.phase for row in solution.machine.rows])
+    term = PhaseObjective(TORQUE, PhasedRows(solution.machine).signals(TORQUE))
     assert after == pytest.approx(term.value_at(phases), rel=1e-6)
     chance = np.random.default_rng(5)
     for share in chance.uniform(0, 1, 12):
@@ -329,6 +331,6 @@ def test_masses_with_phases_end_in_a_proof(most: float | None) -> None:
             PhaseObjective(one, PhasedRows(changed).signals(one)).values(near)
             for one in (TORQUE, FORCE)
         )
-        at_most = np.inf if most is None else found.prices[FORCE.name].at_most
+        at_most = np.inf if most is None else solution.prices[FORCE.name].at_most
         allowed = force <= at_most
-        assert np.min(torque[allowed], initial=np.inf) >= found.bound * before * (1 - 1e-9)
+        assert np.min(torque[allowed], initial=np.inf) >= solution.bound * before * (1 - 1e-9)

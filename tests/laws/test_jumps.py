@@ -78,8 +78,8 @@ def test_work_of_a_force_is_its_way() -> None:
     """A constant force between two crank angles does its size times the way of its point."""
     machine = pulsed(Load("piston", point="C", force=(0.0, -1500.0), start=BEGIN, stop=END))
     ends = eq.move(machine, [BEGIN, END]).points["C"].y
-    found = eq.analyze(machine)
-    assert found.summary["drive_torque"].mean * 2 * pi == pytest.approx(
+    analysis = eq.analyze(machine)
+    assert analysis.summary["drive_torque"].mean * 2 * pi == pytest.approx(
         1500.0 * (ends[1] - ends[0]), rel=1e-9
     )
 
@@ -105,10 +105,10 @@ def test_orders_of_a_pulse() -> None:
 @pytest.mark.parametrize("name", few([*WORKING, "transplanter"], {*WORKING[:2], "knife-drive"}))
 def test_figures_as_of_dense_samples(name: str) -> None:
     machine = eq.load(name)
-    found = eq.analyze(machine)
+    analysis = eq.analyze(machine)
     count = 100_000
     dense = eq.analyze(machine, count).forces.drive_torque
-    torque, orders = found.summary["drive_torque"], found.by_order["drive_torque"]
+    torque, orders = analysis.summary["drive_torque"], analysis.by_order["drive_torque"]
     # the dense mean misses a jump by half of it over the count
     missed = 4 * np.ptp(dense) / count
     assert torque.mean == pytest.approx(np.mean(dense), abs=missed)
@@ -185,8 +185,8 @@ def test_a_load_for_a_whole_turn_never_jumps() -> None:
 def test_a_table_that_ends_jumps() -> None:
     """Beyond its rows nothing acts."""
     table = LoadTable((BEGIN, END), ((TORQUE, TORQUE),))
-    found = eq.analyze(pulsed(Load("crank", table=table, outside="zero")))
-    mean = found.summary["drive_torque"].mean
+    analysis = eq.analyze(pulsed(Load("crank", table=table, outside="zero")))
+    mean = analysis.summary["drive_torque"].mean
     assert mean == pytest.approx(-TORQUE * (END - BEGIN) / (2 * pi), rel=1e-12)
 
 

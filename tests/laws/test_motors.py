@@ -46,17 +46,17 @@ def test_a_step_of_voltage(inductance: float, sense: float) -> None:
     """Exactly: J dw/dt = n k i, L di/dt = U - R i - n k w by a matrix exponential; the larger
     inductance lets the motor swing about its no-load speed.
     """
-    found = eq.run(driven(replace(DC, inductance=inductance), 10.0 * sense), "2 s")
+    run = eq.run(driven(replace(DC, inductance=inductance), 10.0 * sense), "2 s")
     gear = RATIO * 0.5
     rates = np.array([[0.0, gear / WHOLE], [-gear / inductance, -0.4 / inductance]])
     end = np.linalg.solve(rates, [0.0, -24.0 / inductance])
     some = slice(None, None, 40)
-    exact = np.array([end - expm(rates * time) @ end for time in found.time[some]])
-    assert found.electric is not None
-    assert np.max(np.abs(sense * found.crank_speed[some] - exact[:, 0])) < 1e-9 * 24 / gear
-    assert np.max(np.abs(found.electric.current[some] - exact[:, 1])) < 1e-9 * 60
-    assert found.energy_error < 1e-10
-    assert np.max(np.abs(found.drive_torque - sense * gear * found.electric.current)) < 1e-9
+    exact = np.array([end - expm(rates * time) @ end for time in run.time[some]])
+    assert run.electric is not None
+    assert np.max(np.abs(sense * run.crank_speed[some] - exact[:, 0])) < 1e-9 * 24 / gear
+    assert np.max(np.abs(run.electric.current[some] - exact[:, 1])) < 1e-9 * 60
+    assert run.energy_error < 1e-10
+    assert np.max(np.abs(run.drive_torque - sense * gear * run.electric.current)) < 1e-9
 
 
 def test_without_inductance_it_is_a_straight_line() -> None:
@@ -75,8 +75,8 @@ def test_a_machine_runs_on_it_and_the_energies_balance() -> None:
     """Switched off, the field of its current turns into heat."""
     motor = Motor(dc=DcMotor("24 V", "0.2 ohm", 0.15, "2 mH"), ratio=5.0)
     machine = eq.load("transplanter").with_drive(motor=motor)
-    found = eq.run(machine)
-    assert found.end.kind == "steady" and found.energy_error < 1e-10
+    run = eq.run(machine)
+    assert run.end.kind == "steady" and run.energy_error < 1e-10
     off = eq.run(machine, "0.5 s", off="0.3 s")
     assert off.electric is not None
     after = off.time > 0.3 + 1e-12
@@ -86,11 +86,11 @@ def test_a_machine_runs_on_it_and_the_energies_balance() -> None:
 
 def test_a_weight_holds_the_crank_until_the_current_is_large_enough() -> None:
     """Level at the start; the torque n k U / R (1 - exp(-t R / L)) has to reach the weight's."""
-    found = eq.run(driven(gravity=GRAVITY), "0.4 s")
-    moves = found.time[np.argmax(found.crank_speed > 0) - 1]
+    run = eq.run(driven(gravity=GRAVITY), "0.4 s")
+    moves = run.time[np.argmax(run.crank_speed > 0) - 1]
     share = WEIGHT / (RATIO * 0.5 * 24 / 0.4)
     assert moves == pytest.approx(-0.05 / 0.4 * np.log(1 - share), rel=1e-6)
-    assert found.energy_error < 1e-10
+    assert run.energy_error < 1e-10
     held = replace(driven(), joints=(JointProperties("joints.A", drag_torque=4.0),))
     later = eq.run(held, "0.4 s")
     moves = later.time[np.argmax(later.crank_speed > 0) - 1]
@@ -118,13 +118,13 @@ def test_a_start_along_the_curve_takes_the_time_of_its_integral() -> None:
     ln(1 / s)).
     """
     machine = crank(Motor(induction=KLOSS, inertia=ROTOR), 10.0, 0.0)
-    found = eq.run(machine, turns=40)
+    run = eq.run(machine, turns=40)
     field = 1500 * 2 * np.pi / 60
-    slip = 1 - found.crank_speed[1:] / field
+    slip = 1 - run.crank_speed[1:] / field
     time = (1 - slip**2) / (2 * 0.22) + 0.22 * np.log(1 / slip)
     time = time * (INERTIA + ROTOR) * field / (2 * 42.0)
-    np.testing.assert_allclose(found.time[1:], time, rtol=1e-7, atol=1e-9)
-    assert found.energy_error < 1e-10
+    np.testing.assert_allclose(run.time[1:], time, rtol=1e-7, atol=1e-9)
+    assert run.energy_error < 1e-10
 
 
 def test_an_induction_motor_that_is_overloaded_stalls() -> None:
@@ -132,8 +132,8 @@ def test_an_induction_motor_that_is_overloaded_stalls() -> None:
     loaded = replace(
         crank(Motor(induction=KLOSS), 150.0, 0.0), loads=(Load("crank", torque=-45.0),)
     )
-    found = eq.run(loaded, speed=150.0, turns=2000)
-    assert found.end.kind == "stall"
+    run = eq.run(loaded, speed=150.0, turns=2000)
+    assert run.end.kind == "stall"
 
 
 def test_they_are_read_printed_and_written(tmp_path: Any) -> None:
@@ -144,12 +144,12 @@ def test_they_are_read_printed_and_written(tmp_path: Any) -> None:
         out = equipoise("check", str(tmp_path / "motor.toml")).out
         kinds = ("direct current, ", "induction, 1500 rpm without slip", "servo, 382.0 rpm, 6")
         assert any(kind in out for kind in kinds)
-    found = eq.run(driven(), "2 s")
-    told = json.loads(json_text(found.to_dict()))["electric"]
-    assert told["current"][-1] == found.electric.current[-1]
-    names = [f"{name} [{unit}]" for name, unit, _ in found.columns()]
+    run = eq.run(driven(), "2 s")
+    told = json.loads(json_text(run.to_dict()))["electric"]
+    assert told["current"][-1] == run.electric.current[-1]
+    names = [f"{name} [{unit}]" for name, unit, _ in run.columns()]
     assert names[-3:] == ["electric.current [A]", "electric.supply [J]", "electric.heat [J]"]
-    shown = " ".join(map(str, found.blocks()))
+    shown = " ".join(map(str, run.blocks()))
     assert "heat in the motor" in shown and "current of the motor" in shown
 
 
@@ -172,17 +172,17 @@ def braked(machine: eq.Machine, brake: float, motor: Motor | None = None) -> eq.
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_brake_stops_a_crank_and_takes_its_energy(sense: float) -> None:
     """Two turns by a constant torque T, and then 2 T / B more; evenly, as of a constant torque."""
-    found = eq.run(braked(crank(speed=sense, gravity=0.0), 3.0, Motor(torque=4.0)), off_turns=2)
+    run = eq.run(braked(crank(speed=sense, gravity=0.0), 3.0, Motor(torque=4.0)), off_turns=2)
     fastest = np.sqrt(2 * 4.0 * 4 * pi / INERTIA)
-    assert [event.kind for event in found.events] == ["off", "standstill"]
-    assert found.stopping == pytest.approx((fastest * INERTIA / 3.0, 2 * 4 / 3), rel=1e-8)
-    assert found.work["brake"][-1] == pytest.approx(-16 * pi, rel=1e-9)
-    assert found.energy_error < 1e-11
-    after = found.time >= found.events[0].time
-    left = sense * (fastest - 3.0 / INERTIA * (found.time - found.events[0].time))
-    assert np.max(np.abs(found.crank_speed - left)[after]) < 1e-7 * fastest
-    assert "it stops in 1.603 s and 2.667" in verdict(found)
-    assert found.to_dict()["stopping"]["turns"] == found.stopping[1]
+    assert [event.kind for event in run.events] == ["off", "standstill"]
+    assert run.stopping == pytest.approx((fastest * INERTIA / 3.0, 2 * 4 / 3), rel=1e-8)
+    assert run.work["brake"][-1] == pytest.approx(-16 * pi, rel=1e-9)
+    assert run.energy_error < 1e-11
+    after = run.time >= run.events[0].time
+    left = sense * (fastest - 3.0 / INERTIA * (run.time - run.events[0].time))
+    assert np.max(np.abs(run.crank_speed - left)[after]) < 1e-7 * fastest
+    assert "it stops in 1.603 s and 2.667" in verdict(run)
+    assert run.to_dict()["stopping"]["turns"] == run.stopping[1]
 
 
 def test_a_brake_does_nothing_while_a_motor_is_on() -> None:
@@ -213,12 +213,12 @@ def test_a_braked_pendulum_stops_where_its_energy_says() -> None:
     def left(way: float) -> float:
         return INERTIA * speed**2 / 2 - weak * way - WEIGHT * (1 - np.cos(way))
 
-    found = eq.run(braked(crank(), weak), speed=speed, angle=-pi / 2)
-    back = next(event for event in found.events if event.kind == "reversal")
+    run = eq.run(braked(crank(), weak), speed=speed, angle=-pi / 2)
+    back = next(event for event in run.events if event.kind == "reversal")
     assert back.crank_angle + pi / 2 == pytest.approx(brentq(left, 0.0, pi), abs=1e-8)
-    assert found.end.kind == "standstill"
-    assert WEIGHT * abs(np.sin(found.end.crank_angle + pi / 2)) < weak
-    assert found.energy_error < 1e-10
+    assert run.end.kind == "standstill"
+    assert WEIGHT * abs(np.sin(run.end.crank_angle + pi / 2)) < weak
+    assert run.energy_error < 1e-10
 
 
 def test_a_brake_presses_rubbing_joints_as_a_load_does() -> None:
@@ -227,12 +227,12 @@ def test_a_brake_presses_rubbing_joints_as_a_load_does() -> None:
     load = Load(machine.drive.link, torque=-np.sign(machine.drive.speed) * 2.0)
     fast = 10 * machine.drive.speed
     loaded = eq.run(replace(machine, loads=(*machine.loads, load)), turns=1.5, speed=fast)
-    found = eq.run(braked(machine, 2.0), turns=1.5, speed=fast)
-    assert found.end.kind == "turns"
-    assert found.end.time == pytest.approx(loaded.end.time, rel=1e-9)
-    assert found.end.speed == pytest.approx(loaded.end.speed, rel=1e-9)
-    assert found.work["friction"][-1] == pytest.approx(loaded.work["friction"][-1], rel=1e-8)
-    assert found.work["friction"][-1] < 0 > found.work["brake"][-1]
+    run = eq.run(braked(machine, 2.0), turns=1.5, speed=fast)
+    assert run.end.kind == "turns"
+    assert run.end.time == pytest.approx(loaded.end.time, rel=1e-9)
+    assert run.end.speed == pytest.approx(loaded.end.speed, rel=1e-9)
+    assert run.work["friction"][-1] == pytest.approx(loaded.work["friction"][-1], rel=1e-8)
+    assert run.work["friction"][-1] < 0 > run.work["brake"][-1]
 
 
 def test_a_brake_in_a_file() -> None:
@@ -254,14 +254,14 @@ def servoed(servo: ServoMotor, speed: float = 10.0, gravity: float = 0.0) -> eq.
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_servo_motor_starts_at_its_limit_and_then_by_its_gain(sense: float) -> None:
     """Evenly, up to the speed at which the gain gives the limit, and exponentially from there."""
-    found = eq.run(servoed(SERVO, sense), "1.2 s")
+    run = eq.run(servoed(SERVO, sense), "1.2 s")
     rate, tau = RATIO * 6.0 / WHOLE, WHOLE / (RATIO**2 * 0.5)
     corner = (40.0 - 6.0 / 0.5) / RATIO
-    late = found.time - corner / rate
-    exact = np.where(late < 0, rate * found.time, 20.0 - 6.0 * np.exp(-late / tau))
-    np.testing.assert_allclose(sense * found.crank_speed, exact, atol=1e-7)
-    assert sense * found.drive_torque[0] == RATIO * 6.0
-    assert found.energy_error < 1e-10
+    late = run.time - corner / rate
+    exact = np.where(late < 0, rate * run.time, 20.0 - 6.0 * np.exp(-late / tau))
+    np.testing.assert_allclose(sense * run.crank_speed, exact, atol=1e-7)
+    assert sense * run.drive_torque[0] == RATIO * 6.0
+    assert run.energy_error < 1e-10
 
 
 @pytest.mark.exhaustive(but=["3.0-1.0", "30.0--1.0", "0.0-1.0"])
@@ -272,7 +272,7 @@ def test_a_servo_motor_follows_a_ramp(sense: float, first: float) -> None:
     from a speed above the reference's too.
     """
     servo = replace(SERVO, torque_limit=1e3, angle_gain=4.0, acceleration=60.0)
-    found = eq.run(servoed(servo, sense), "1.5 s", speed=sense * first, angle=0.7)
+    run = eq.run(servoed(servo, sense), "1.5 s", speed=sense * first, angle=0.7)
     stiff, damp = np.array([4.0, 0.5]) * RATIO / WHOLE
     rates = np.zeros((5, 5))  # crank's angle and speed, reference's, its acceleration
     rates[[0, 2, 3], [1, 3, 4]] = 1.0
@@ -285,11 +285,11 @@ def test_a_servo_motor_follows_a_ramp(sense: float, first: float) -> None:
     some = slice(None, None, 7)
     exact = np.array([
         expm(rates * time) @ begin if time < end else expm(rates * (time - end)) @ after
-        for time in found.time[some]
+        for time in run.time[some]
     ])  # fmt: skip
-    np.testing.assert_allclose(sense * found.crank_speed[some], exact[:, 1], atol=1e-8)
-    np.testing.assert_allclose(sense * (found.crank_angle[some] - 0.7), exact[:, 0], atol=1e-8)
-    assert found.energy_error < 1e-10
+    np.testing.assert_allclose(sense * run.crank_speed[some], exact[:, 1], atol=1e-8)
+    np.testing.assert_allclose(sense * (run.crank_angle[some] - 0.7), exact[:, 0], atol=1e-8)
+    assert run.energy_error < 1e-10
 
 
 def test_a_servo_motor_drives_a_linkage_as_in_time() -> None:
@@ -299,7 +299,7 @@ def test_a_servo_motor_drives_a_linkage_as_in_time() -> None:
     servo = ServoMotor(speed=250.0, torque_limit=0.03, speed_gain=0.3, angle_gain=2.0,
                        acceleration=2500.0)  # fmt: skip
     machine = eq.load("transplanter").with_drive(motor=Motor(servo=servo, ratio=12.0))
-    found = eq.run(machine, "0.2 s")
+    run = eq.run(machine, "0.2 s")
     equation, sense = CrankEquation(machine), np.sign(machine.drive.speed)
 
     def driving(time: float, angle: float, speed: float) -> float:
@@ -313,15 +313,15 @@ def test_a_servo_motor_drives_a_linkage_as_in_time() -> None:
         inertia, slope, torques = equation.at(state[0], state[1], given, sense)
         return [state[1], (float(np.sum(torques)) + given - slope * state[1] ** 2 / 2) / inertia]
 
-    leaves = float(found.time[np.argmax(found.crank_angle != 0.0) - 1])
+    leaves = float(run.time[np.argmax(run.crank_angle != 0.0) - 1])
     acting = float(np.sum(equation.at(0.0, 0.0)[2]))
     assert driving(leaves, 0.0, 0.0) == pytest.approx(-acting, rel=1e-6)
     by_time = solve_ivp(rates, (leaves, 0.2), [0.0, 0.0], "DOP853", rtol=1e-8, atol=1e-8)
-    assert found.end.crank_angle == pytest.approx(by_time.y[0, -1], rel=1e-6)
-    assert found.end.speed == pytest.approx(by_time.y[1, -1], rel=1e-6)
-    limited = np.abs(found.drive_torque) > 0.999 * 12.0 * 0.03
+    assert run.end.crank_angle == pytest.approx(by_time.y[0, -1], rel=1e-6)
+    assert run.end.speed == pytest.approx(by_time.y[1, -1], rel=1e-6)
+    limited = np.abs(run.drive_torque) > 0.999 * 12.0 * 0.03
     assert np.any(limited) and not np.all(limited)
-    assert found.energy_error < 1e-10
+    assert run.energy_error < 1e-10
 
 
 def test_a_limit_of_torque_ends_a_piece(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -340,12 +340,12 @@ def test_a_limit_of_torque_ends_a_piece(monkeypatch: pytest.MonkeyPatch) -> None
     servo = ServoMotor(speed=250.0, torque_limit=0.03, speed_gain=0.3, angle_gain=2.0,
                        acceleration=2500.0)  # fmt: skip
     machine = eq.load("transplanter").with_drive(motor=Motor(servo=servo, ratio=12.0))
-    found = eq.run(machine, "0.6 s")
-    limited = np.abs(found.drive_torque) > (1 - 1e-9) * 12.0 * 0.03
+    run = eq.run(machine, "0.6 s")
+    limited = np.abs(run.drive_torque) > (1 - 1e-9) * 12.0 * 0.03
     assert np.count_nonzero(np.diff(limited.astype(int))) > 4
     assert len(calls) <= 2
-    assert found.energy_error < 1e-11
-    assert np.all(np.abs(found.drive_torque) <= 12.0 * 0.03 * (1 + 1e-15))
+    assert run.energy_error < 1e-11
+    assert np.all(np.abs(run.drive_torque) <= 12.0 * 0.03 * (1 + 1e-15))
 
 
 def test_a_servo_motor_that_holds_its_angle_does_not_fall_behind() -> None:
@@ -368,26 +368,26 @@ def test_the_carton_pusher_starts_and_is_stopped() -> None:
 
     The crank lags behind the ramp by half of its time, as far as the angle does not swing.
     """
-    found = eq.run(eq.load("carton-pusher"))
-    assert [event.kind for event in found.events] == ["off", "standstill"]
-    off = found.events[0]
+    run = eq.run(eq.load("carton-pusher"))
+    assert [event.kind for event in run.events] == ["off", "standstill"]
+    off = run.events[0]
     assert off.crank_angle == pytest.approx(20 * pi)
     assert off.time == pytest.approx(10.0 + 0.5 * 1800 * pi / 30 / 600, abs=0.05)
-    assert found.stopping is not None
-    assert found.work["brake"][-1] == pytest.approx(-10.0 * found.stopping[1] * 2 * pi, rel=1e-9)
-    assert found.last_cycle is not None
-    assert found.last_cycle.mean_speed == pytest.approx(2 * pi, rel=1e-3)
+    assert run.stopping is not None
+    assert run.work["brake"][-1] == pytest.approx(-10.0 * run.stopping[1] * 2 * pi, rel=1e-9)
+    assert run.last_cycle is not None
+    assert run.last_cycle.mean_speed == pytest.approx(2 * pi, rel=1e-3)
     # 120 N over the way of the pusher from 262 to 352 deg, ten times
-    ends = eq.move(found.machine, np.radians([262.0, 352.0])).points["F"].x
-    assert found.work["loads"][-1] == pytest.approx(-1200 * (ends[1] - ends[0]), rel=1e-9)
-    assert found.energy_error < 1e-9
+    ends = eq.move(run.machine, np.radians([262.0, 352.0])).points["F"].x
+    assert run.work["loads"][-1] == pytest.approx(-1200 * (ends[1] - ends[0]), rel=1e-9)
+    assert run.energy_error < 1e-9
 
 
 def test_a_servo_motor_waits_for_its_ramp() -> None:
     """A weight on a level crank holds it until the torque is large enough, or for ever."""
     ramp = replace(SERVO, acceleration=60.0, speed_gain=0.1)
-    found = eq.run(servoed(ramp, gravity=GRAVITY), "0.7 s")
-    moves = found.time[np.argmax(found.crank_speed > 0) - 1]
+    run = eq.run(servoed(ramp, gravity=GRAVITY), "0.7 s")
+    moves = run.time[np.argmax(run.crank_speed > 0) - 1]
     assert moves == pytest.approx(WEIGHT / (RATIO * 0.1 * 60.0), rel=1e-6)
     by_angle = eq.run(servoed(replace(ramp, angle_gain=1.0), gravity=GRAVITY), "0.7 s")
     moves = by_angle.time[np.argmax(by_angle.crank_speed > 0) - 1]
@@ -400,11 +400,11 @@ def test_a_servo_motor_lets_its_crank_swing_back_until_it_is_strong_enough() -> 
     """After a push, by a slow ramp: the weight turns it back first, and later it goes round."""
     slow = ServoMotor(speed=40.0, torque_limit=6.0, speed_gain=0.02, angle_gain=0.3,
                       acceleration=3.0)  # fmt: skip
-    found = eq.run(servoed(slow, gravity=GRAVITY), "6 s", speed=2.0, angle=-pi / 2)
-    kinds = [event.kind for event in found.events]
+    run = eq.run(servoed(slow, gravity=GRAVITY), "6 s", speed=2.0, angle=-pi / 2)
+    kinds = [event.kind for event in run.events]
     assert "reversal" in kinds and kinds[-1] == "time"
-    assert found.turned > 2 and found.energy_error < 1e-9
-    equation = CrankEquation(found.machine)
+    assert run.turned > 2 and run.energy_error < 1e-9
+    equation = CrankEquation(run.machine)
 
     def rates(time: float, state: np.ndarray) -> list[float]:
         ramp = min(time, 36.0 / 3.0)
@@ -414,7 +414,7 @@ def test_a_servo_motor_lets_its_crank_swing_back_until_it_is_strong_enough() -> 
         return [state[1], (weight + RATIO * float(np.clip(torque, -6.0, 6.0))) / WHOLE]
 
     by_time = solve_ivp(rates, (0.0, 6.0), [-pi / 2, 2.0], "DOP853", rtol=1e-10, atol=1e-10)
-    assert found.end.crank_angle == pytest.approx(by_time.y[0, -1], rel=1e-6)
+    assert run.end.crank_angle == pytest.approx(by_time.y[0, -1], rel=1e-6)
 
 
 def test_a_servo_motor_in_other_commands_goes_by_its_speed_alone() -> None:

@@ -47,12 +47,12 @@ def crank(motor: Motor | None = None, speed: float = 10.0, gravity: float = GRAV
 
 
 def test_a_constant_torque_without_resistance() -> None:
-    found = eq.run(crank(Motor(torque=4.0), gravity=0.0), turns=5)
+    run = eq.run(crank(Motor(torque=4.0), gravity=0.0), turns=5)
     rate = 4.0 / INERTIA
-    assert found.end.kind == "turns"
-    assert found.end.time == pytest.approx(np.sqrt(2 * 10 * pi / rate), rel=1e-9)
-    assert found.crank_speed == pytest.approx(rate * found.time, rel=1e-8)
-    assert found.work["drive"][-1] == pytest.approx(4.0 * 10 * pi, rel=1e-9)
+    assert run.end.kind == "turns"
+    assert run.end.time == pytest.approx(np.sqrt(2 * 10 * pi / rate), rel=1e-9)
+    assert run.crank_speed == pytest.approx(rate * run.time, rel=1e-8)
+    assert run.work["drive"][-1] == pytest.approx(4.0 * 10 * pi, rel=1e-9)
 
 
 def test_weight_that_does_nothing_is_tabulated_as_nothing() -> None:
@@ -72,12 +72,12 @@ def test_weight_that_does_nothing_is_tabulated_as_nothing() -> None:
 
 def test_a_motor_of_a_straight_line_starts_exponentially() -> None:
     motor = Motor(300.0, 20.0, ratio=3.0, inertia=0.01)
-    found = eq.run(crank(motor, -10.0, 0.0))
+    run = eq.run(crank(motor, -10.0, 0.0))
     tau = (INERTIA + 9 * 0.01) / (9 * 20.0 / 300.0)
-    assert found.end.kind == "steady"
-    wanted = -100.0 * (1 - np.exp(-found.time / tau))
-    assert found.crank_speed == pytest.approx(wanted, abs=1e-6)
-    assert found.starting_time == pytest.approx(-tau * np.log(0.05), rel=1e-3)
+    assert run.end.kind == "steady"
+    wanted = -100.0 * (1 - np.exp(-run.time / tau))
+    assert run.crank_speed == pytest.approx(wanted, abs=1e-6)
+    assert run.starting_time == pytest.approx(-tau * np.log(0.05), rel=1e-3)
 
 
 def test_a_stiff_start_is_followed_by_angle(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -93,12 +93,12 @@ def test_a_stiff_start_is_followed_by_angle(monkeypatch: pytest.MonkeyPatch) -> 
 
     monkeypatch.setattr(Integration, "_in_time", counted)
     machine = eq.load("transplanter").with_drive(motor=Motor(270 * pi / 30, 20.0))
-    found = eq.run(machine, turns=5)
+    run = eq.run(machine, turns=5)
     assert len(calls) == 1
     assert calls[0][0] == 0.0
     assert calls[0][1] < pi / 90
-    assert found.energy_error < 1e-11
-    assert found.crank_speed[-1] == pytest.approx(speed_by_scipy(machine, found), rel=1e-8)
+    assert run.energy_error < 1e-11
+    assert run.crank_speed[-1] == pytest.approx(speed_by_scipy(machine, run), rel=1e-8)
 
 
 # How many rounds it takes changes no figure; motion near a steady state: test_flywheels.py.
@@ -124,12 +124,12 @@ def test_near_a_steady_state_a_piece_takes_few_rounds(monkeypatch: pytest.Monkey
         monkeypatch.setattr(Integration, name, counted(name))
     machine = eq.load("transplanter").with_drive(motor=Motor(270 * pi / 30, 20.0))
     forgets = False
-    found = eq.run(machine, turns=10)
+    run = eq.run(machine, turns=10)
     assert counts["_torques"] < 3 * counts["_by_angle"]
     forgets = True
     anew = eq.run(machine, turns=10)
-    assert found.end.time == pytest.approx(anew.end.time, rel=1e-12)
-    assert found.end.speed == pytest.approx(anew.end.speed, rel=1e-11)
+    assert run.end.time == pytest.approx(anew.end.time, rel=1e-12)
+    assert run.end.speed == pytest.approx(anew.end.speed, rel=1e-11)
 
 
 def speed_by_scipy(machine: eq.Machine, found: Run) -> float:
@@ -153,30 +153,30 @@ def speed_by_scipy(machine: eq.Machine, found: Run) -> float:
 @pytest.mark.exhaustive(but=["3.0"])
 @pytest.mark.parametrize("amplitude", few([0.1, 1.5, 3.0], {0.1, 3.0}))
 def test_a_pendulum_swings_as_it_has_to(amplitude: float) -> None:
-    found = eq.run(crank(), "20 s", speed=0.0, angle=amplitude - pi / 2)
-    times = [event.time for event in found.events if event.kind == "reversal"]
+    run = eq.run(crank(), "20 s", speed=0.0, angle=amplitude - pi / 2)
+    times = [event.time for event in run.events if event.kind == "reversal"]
     half = 2 * ellipk(np.sin(amplitude / 2) ** 2) / np.sqrt(WEIGHT / INERTIA)
     assert len(times) >= 5
     assert times == pytest.approx(half * np.arange(1, len(times) + 1), rel=1e-8)
-    assert found.energy_error < 1e-9
-    assert found.last_cycle is None  # it comes by the angle where cycles begin, to and fro
-    assert found.to_dict()["last_cycle"] is None
+    assert run.energy_error < 1e-9
+    assert run.last_cycle is None  # it comes by the angle where cycles begin, to and fro
+    assert run.to_dict()["last_cycle"] is None
 
 
 def test_a_weak_motor_stalls_where_its_work_is_used_up() -> None:
     """It lifts the weight from the lowest place as far as its work goes."""
     torque = 0.6 * WEIGHT
-    found = eq.run(crank(Motor(torque=torque)), angle=-pi / 2)
-    assert found.end.kind == "stall"
-    turned = found.end.crank_angle + pi / 2
+    run = eq.run(crank(Motor(torque=torque)), angle=-pi / 2)
+    assert run.end.kind == "stall"
+    turned = run.end.crank_angle + pi / 2
     assert torque * turned == pytest.approx(WEIGHT * (1 - np.cos(turned)), rel=1e-8)
-    assert found.lacking_torque == pytest.approx((WEIGHT * np.sin(turned), torque), rel=1e-8)
+    assert run.lacking_torque == pytest.approx((WEIGHT * np.sin(turned), torque), rel=1e-8)
 
 
 def test_a_motor_that_cannot_even_begin() -> None:
-    found = eq.run(crank(Motor(torque=0.5 * WEIGHT)))
-    assert (found.end.kind, found.end.time) == ("stall", 0.0)
-    assert found.lacking_torque == pytest.approx((WEIGHT, 0.5 * WEIGHT))
+    run = eq.run(crank(Motor(torque=0.5 * WEIGHT)))
+    assert (run.end.kind, run.end.time) == ("stall", 0.0)
+    assert run.lacking_torque == pytest.approx((WEIGHT, 0.5 * WEIGHT))
 
 
 def test_nothing_sets_a_hanging_crank_in_motion() -> None:
@@ -194,11 +194,11 @@ def test_over_the_top_and_not() -> None:
 
 
 def test_switched_off_it_keeps_its_energy() -> None:
-    found = eq.run(crank(Motor(torque=5.0)), turns=6, off_turns=2.5, angle=-pi / 2)
-    assert [event.kind for event in found.events] == ["off", "turns"]
-    assert found.work["drive"][-1] == pytest.approx(5.0 * 5 * pi, rel=1e-9)
-    by_time = eq.run(crank(Motor(torque=5.0)), turns=6, off=found.events[0].time, angle=-pi / 2)
-    assert by_time.end.time == pytest.approx(found.end.time, rel=1e-8)
+    run = eq.run(crank(Motor(torque=5.0)), turns=6, off_turns=2.5, angle=-pi / 2)
+    assert [event.kind for event in run.events] == ["off", "turns"]
+    assert run.work["drive"][-1] == pytest.approx(5.0 * 5 * pi, rel=1e-9)
+    by_time = eq.run(crank(Motor(torque=5.0)), turns=6, off=run.events[0].time, angle=-pi / 2)
+    assert by_time.end.time == pytest.approx(run.end.time, rel=1e-8)
 
 
 SUBJECTS = ["crank_rocker:0", "slider_crank:1", "quick_return:0", "crank_rocker in soil:0"]
@@ -219,9 +219,9 @@ def test_energy_and_time_integration(name: str) -> None:
     no angle for a clock, comes to the same.
     """
     machine = motored(name)
-    found = eq.run(machine, turns=4)
-    assert found.end.kind == "turns"
-    assert found.energy_error < 1e-9
+    run = eq.run(machine, turns=4)
+    assert run.end.kind == "turns"
+    assert run.energy_error < 1e-9
     equation, driver = CrankEquation(machine), Driver.of(machine)
 
     def rates(_: float, y: np.ndarray) -> list[float]:
@@ -229,11 +229,11 @@ def test_energy_and_time_integration(name: str) -> None:
         torque = float(np.sum(torques) + driver.torque(np.asarray(y[1])))
         return [y[1], (torque - slope * y[1] ** 2 / 2) / inertia]
 
-    time = found.time[-1] / 4  # where soil sets in DOP853 is slow
+    time = run.time[-1] / 4  # where soil sets in DOP853 is slow
     done = solve_ivp(rates, (0.0, time), [0.0, 0.0], "DOP853", rtol=1e-9, atol=1e-11)
-    k = int(np.searchsorted(found.time, time))
-    nearest = found.crank_angle[k] - found.crank_speed[k] * (found.time[k] - time)
-    slope = abs(done.y[1, -1]) * abs(found.time[k] - found.time[k - 1])
+    k = int(np.searchsorted(run.time, time))
+    nearest = run.crank_angle[k] - run.crank_speed[k] * (run.time[k] - time)
+    slope = abs(done.y[1, -1]) * abs(run.time[k] - run.time[k - 1])
     assert abs(nearest - done.y[0, -1]) < 1e-6 * abs(done.y[0, -1]) + 0.02 * slope
 
 
@@ -309,13 +309,13 @@ def test_loads_that_drive_a_machine_backwards_are_named() -> None:
     driven = crank(Motor(no_load_speed=10.0, stall_torque=9.0), gravity=0.0)
     damped = JointProperties("joints.A", torsional_damping=0.1)
     loaded = replace(driven, loads=(eq.Load("crank", torque=-2.0),), joints=(damped,))
-    found = eq.run(loaded, off="2 s")
-    assert found.end.kind == "steady" and found.driven_back is not None
-    assert found.driven_back.kind == "reversal" and found.starting_time is None
-    words = verdict(found)
+    run = eq.run(loaded, off="2 s")
+    assert run.end.kind == "steady" and run.driven_back is not None
+    assert run.driven_back.kind == "reversal" and run.starting_time is None
+    words = verdict(run)
     assert words.startswith("Switched off at 2.000 s, the machine turns back at ")
     assert "driven backwards by the loads" in words and "[[resistances]]" in words
-    cycle = found.last_cycle
+    cycle = run.last_cycle
     assert cycle is not None and cycle.highest <= cycle.mean_speed <= cycle.lowest < 0
     assert cycle.mean_speed == pytest.approx(-2.0 / 0.1, rel=1e-4)
     assert 0 <= cycle.fluctuation < 1e-4
@@ -325,9 +325,9 @@ def test_a_machine_that_its_motor_drives_is_not_driven_back() -> None:
     """Clockwise too: its speeds have the sign of their mean."""
     motor = Motor(no_load_speed=10.0, stall_torque=9.0)
     clockwise = crank(motor, speed=-10.0, gravity=1.0)
-    found = eq.run(clockwise)
-    cycle = found.last_cycle
-    assert found.driven_back is None and cycle is not None
+    run = eq.run(clockwise)
+    cycle = run.last_cycle
+    assert run.driven_back is None and cycle is not None
     assert cycle.highest < cycle.mean_speed < cycle.lowest < 0 < cycle.fluctuation
 
 

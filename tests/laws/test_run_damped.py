@@ -38,29 +38,29 @@ def test_a_damped_pendulum_ends_at_rest_where_it_hangs() -> None:
     """Its swings shrink by the logarithmic decrement, until one is `AT_EASE` of the widest."""
     share, start = 0.2, 0.01  # so small that a swing takes as long as a small one to 6e-6 of it
     natural = sqrt(WEIGHT / INERTIA)
-    found = eq.run(pendulum(2 * share * natural * INERTIA), speed=0.0, angle=start - pi / 2)
+    run = eq.run(pendulum(2 * share * natural * INERTIA), speed=0.0, angle=start - pi / 2)
     shrinks = pi * share / sqrt(1 - share**2)
     swings = ceil(log(1 / AT_EASE) / shrinks) + 1
     half = pi / (natural * sqrt(1 - share**2))
-    assert found.end.kind == "standstill"
-    assert [event.kind for event in found.events[:-1]] == ["reversal"] * (swings - 1)
-    assert found.end.time == pytest.approx(swings * half, rel=1e-5)
+    assert run.end.kind == "standstill"
+    assert [event.kind for event in run.events[:-1]] == ["reversal"] * (swings - 1)
+    assert run.end.time == pytest.approx(swings * half, rel=1e-5)
     left = start * exp(-shrinks * swings)
-    assert abs(found.end.crank_angle + pi / 2) <= 1.1 * left
-    assert "at crank angle 270" in verdict(found)
+    assert abs(run.end.crank_angle + pi / 2) <= 1.1 * left
+    assert "at crank angle 270" in verdict(run)
 
 
 def test_a_pendulum_without_damping_never_comes_to_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("equipoise.running.integration.MOST_REVERSALS", 6)
-    found = eq.run(pendulum(0.0), speed=0.0, angle=1e-3 - pi / 2)
-    assert found.end.kind == "reversal"
-    assert "turned back 6 times" in verdict(found)
+    run = eq.run(pendulum(0.0), speed=0.0, angle=1e-3 - pi / 2)
+    assert run.end.kind == "reversal"
+    assert "turned back 6 times" in verdict(run)
 
 
 def test_a_crank_whose_weight_is_held_by_rounding_alone_stands_still() -> None:
     """Upright, where cos(pi / 2) is not quite 0."""
-    found = eq.run(pendulum(0.1), speed=0.0, angle=pi / 2)
-    assert found.end.kind == "standstill" and found.end.time == 0.0
+    run = eq.run(pendulum(0.1), speed=0.0, angle=pi / 2)
+    assert run.end.kind == "standstill" and run.end.time == 0.0
 
 
 @pytest.mark.exhaustive(but=["500.0"])
@@ -70,12 +70,12 @@ def test_a_strong_damper_lets_a_pendulum_creep_down(damping: float) -> None:
     changes that by W J / c^2 of it, and its start by as much.
     """
     begin = 2.0
-    found = eq.run(pendulum(damping), "30 s", speed=0.0, angle=begin - pi / 2)
-    assert found.end.kind == "time"
-    angle = found.crank_angle + pi / 2
-    wanted = 2 * np.arctan(tan(begin / 2) * np.exp(-WEIGHT / damping * found.time))
+    run = eq.run(pendulum(damping), "30 s", speed=0.0, angle=begin - pi / 2)
+    assert run.end.kind == "time"
+    angle = run.crank_angle + pi / 2
+    wanted = 2 * np.arctan(tan(begin / 2) * np.exp(-WEIGHT / damping * run.time))
     assert np.max(np.abs(angle - wanted)) < 3 * WEIGHT * INERTIA / damping**2
-    assert found.energy_error < 1e-9
+    assert run.energy_error < 1e-9
 
 
 def test_a_damper_at_a_point_that_stands_still_is_called_a_damper() -> None:

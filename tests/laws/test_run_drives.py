@@ -47,14 +47,14 @@ def cranks(drive: eq.Drive, other: FurtherDrive, gravity: float = 0.0) -> eq.Mac
 def test_motors_of_straight_lines_start_exponentially() -> None:
     machine = cranks(eq.Drive("left", 30.0, motor=STRAIGHT),
                      FurtherDrive("right", ratio=-0.5, motor=Motor(10.0, 6.0)))  # fmt: skip
-    found = eq.run(machine, 0.8)
-    left, right = found.drives.values()
+    run = eq.run(machine, 0.8)
+    left, right = run.drives.values()
     rates = {6.0 / 30.0: (left, 30.0), 6.0 / 10.0: (right, -10.0)}
     for slope, (course, final) in rates.items():
-        wanted = final * (1 - np.exp(-slope / INERTIA * found.time))
+        wanted = final * (1 - np.exp(-slope / INERTIA * run.time))
         np.testing.assert_allclose(course.speed, wanted, atol=1e-9 * abs(final))
         np.testing.assert_allclose(course.effort, slope * (final - course.speed), atol=1e-8)
-    assert found.end.kind == "time"
+    assert run.end.kind == "time"
 
 
 def test_each_drive_has_a_look_of_its_own_in_pictures() -> None:
@@ -72,12 +72,12 @@ def test_a_crank_that_only_swings_does_not_keep_a_run_of_turns_going() -> None:
     machine = cranks(
         eq.Drive("left", 30.0, motor=weak), FurtherDrive("right", motor=STRAIGHT), 9.81
     )
-    found = eq.run(machine, turns=1)
-    assert found.end.kind == "swings" and found.end.of == "left"
-    back = [event for event in found.events if (event.kind, event.of) == ("reversal", "left")]
-    assert len(back) == 20 and found.energy_error < 1e-9
-    assert found.end.time == pytest.approx(back[-1].time, abs=0.1)
-    (headline, *_) = drives_headline(found)
+    run = eq.run(machine, turns=1)
+    assert run.end.kind == "swings" and run.end.of == "left"
+    back = [event for event in run.events if (event.kind, event.of) == ("reversal", "left")]
+    assert len(back) == 20 and run.energy_error < 1e-9
+    assert run.end.time == pytest.approx(back[-1].time, abs=0.1)
+    (headline, *_) = drives_headline(run)
     assert "20 times" in headline.text
 
 
@@ -86,18 +86,18 @@ def test_a_crank_that_swings_until_a_load_turns_it(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(drives_integration, "MOST_RETURNS", 3)
     load = TimedLoad("left", times=(0.0, 2.5, 2.6, 9.0), factors=(0.0, 0.0, 1.0, 1.0), torque=90.0)
     machine = cranks(eq.Drive("left", 3.0, free=True), FurtherDrive("right", free=True), 9.81)
-    found = eq.run(replace(machine, timed_loads=(load,)), turns=1, speed=0.0)
-    back = [event for event in found.events if (event.kind, event.of) == ("reversal", "left")]
-    assert found.end.kind == "turns" and len(back) >= 3
+    run = eq.run(replace(machine, timed_loads=(load,)), turns=1, speed=0.0)
+    back = [event for event in run.events if (event.kind, event.of) == ("reversal", "left")]
+    assert run.end.kind == "turns" and len(back) >= 3
 
 
 def test_a_steady_state_of_two_motors() -> None:
     strong = Motor(30.0, 60.0, mean_speed="free")
     machine = cranks(eq.Drive("left", 30.0, motor=strong), FurtherDrive("right", motor=strong))
-    found = eq.run(machine)
-    assert found.end.kind == "steady"
-    assert found.drives["right"].speed[-1] == pytest.approx(30.0, rel=1e-5)
-    assert found.energy_error < 1e-9
+    run = eq.run(machine)
+    assert run.end.kind == "steady"
+    assert run.drives["right"].speed[-1] == pytest.approx(30.0, rel=1e-5)
+    assert run.energy_error < 1e-9
 
 
 def test_a_crank_that_follows_the_first_takes_nothing_from_it() -> None:
@@ -115,11 +115,11 @@ def test_a_crank_that_follows_the_first_takes_nothing_from_it() -> None:
 @pytest.mark.parametrize("speed", [20.0, -20.0])
 def test_cycles_of_a_crank_of_constant_speed(speed: float) -> None:
     machine = cranks(eq.Drive("left", speed), FurtherDrive("right", free=True))
-    found = eq.run(machine, turns=2.5)
-    assert found.end.kind == "turns" and abs(found.turned) == pytest.approx(2.5)
+    run = eq.run(machine, turns=2.5)
+    assert run.end.kind == "turns" and abs(run.turned) == pytest.approx(2.5)
     period = 2 * pi / 20.0
-    np.testing.assert_allclose(found.cycle_begins, [0.0, period, 2 * period], atol=1e-9)
-    assert found.drives["right"].speed[-1] == pytest.approx(speed)
+    np.testing.assert_allclose(run.cycle_begins, [0.0, period, 2 * period], atol=1e-9)
+    assert run.drives["right"].speed[-1] == pytest.approx(speed)
 
 
 @pytest.mark.parametrize(
@@ -128,26 +128,26 @@ def test_cycles_of_a_crank_of_constant_speed(speed: float) -> None:
 def test_a_run_ends_where_a_cycle_of_constant_speed_begins(given: dict[str, float]) -> None:
     """Both happen at once."""
     machine = cranks(eq.Drive("left", 8 * pi), FurtherDrive("right", free=True))
-    found = eq.run(machine, **given)
-    assert found.time[-1] == pytest.approx(0.5, rel=1e-12)
-    np.testing.assert_allclose(found.cycle_begins, [0.0, 0.25, 0.5], atol=1e-12)
+    run = eq.run(machine, **given)
+    assert run.time[-1] == pytest.approx(0.5, rel=1e-12)
+    np.testing.assert_allclose(run.cycle_begins, [0.0, 0.25, 0.5], atol=1e-12)
 
 
 def test_a_crank_that_stands_still_beside_a_free_one() -> None:
     machine = cranks(eq.Drive("left", 0.0), FurtherDrive("right", motor=Motor(torque=2.0)))
-    found = eq.run(machine, 0.5)
-    assert found.drives["right"].speed[-1] == pytest.approx(2.0 * 0.5 / INERTIA, rel=1e-8)
+    run = eq.run(machine, 0.5)
+    assert run.drives["right"].speed[-1] == pytest.approx(2.0 * 0.5 / INERTIA, rel=1e-8)
 
 
 def test_a_pendulum_keeps_its_energy_and_turns_back() -> None:
     machine = cranks(eq.Drive("left", 10.0), FurtherDrive("right", ratio=0.0, free=True), 9.81)
-    found = eq.run(machine, 1.5)
-    right = found.drives["right"]
+    run = eq.run(machine, 1.5)
+    right = run.drives["right"]
     energy = INERTIA * right.speed**2 / 2 + MASS * 9.81 * ARM * np.sin(right.angle)
     np.testing.assert_allclose(energy, 0.0, atol=1e-8)
-    back = [event for event in found.events if event.kind == "reversal"]
+    back = [event for event in run.events if event.kind == "reversal"]
     assert {event.of for event in back} == {"right"}
-    assert right.angle[np.searchsorted(found.time, back[0].time)] == pytest.approx(-pi, abs=1e-2)
+    assert right.angle[np.searchsorted(run.time, back[0].time)] == pytest.approx(-pi, abs=1e-2)
 
 
 def test_a_load_over_time_gives_its_impulse() -> None:
@@ -155,11 +155,11 @@ def test_a_load_over_time_gives_its_impulse() -> None:
         cranks(eq.Drive("left", 10.0, free=True), FurtherDrive("right", ratio=0.0, free=True)),
         timed_loads=(TimedLoad("left", (0.0, 0.2), (1.0, 0.0), torque=3.0),),
     )
-    found = eq.run(machine, 0.5)
-    left = found.drives["left"]
+    run = eq.run(machine, 0.5)
+    left = run.drives["left"]
     gained = INERTIA * (left.speed[-1] - 10.0)
     assert gained == pytest.approx(3.0 * 0.2 / 2, rel=1e-8)
-    assert found.work["timed_loads"][-1] == pytest.approx(
+    assert run.work["timed_loads"][-1] == pytest.approx(
         INERTIA * (left.speed[-1] ** 2 - 10.0**2) / 2, rel=1e-8
     )
 
@@ -168,15 +168,15 @@ def test_motors_are_switched_off_and_a_brake_stops_the_first() -> None:
     motor = Motor(dc=DcMotor(24.0, 1.0, 0.1, 5e-3), ratio=5.0, mean_speed="free")
     machine = cranks(eq.Drive("left", 30.0, motor=motor, brake=4.0),
                      FurtherDrive("right", motor=motor))  # fmt: skip
-    found = eq.run(machine, 2.0, off=0.5)
-    kinds = [event.kind for event in found.events]
+    run = eq.run(machine, 2.0, off=0.5)
+    kinds = [event.kind for event in run.events]
     assert kinds == ["off", "time"]
-    left, right = found.drives.values()
+    left, right = run.drives.values()
     assert abs(left.speed[-1]) < 1e-2 and right.speed[-1] > 1.0
-    after = found.time > 0.5
+    after = run.time > 0.5
     assert not np.any(right.effort[after]) and not np.any(right.electric.current[after])
-    assert found.work["brake"][-1] < 0
-    assert found.energy_error < 1e-9
+    assert run.work["brake"][-1] < 0
+    assert run.energy_error < 1e-9
 
 
 def test_motors_that_cannot_lift_a_weight_stall() -> None:
@@ -184,12 +184,12 @@ def test_motors_that_cannot_lift_a_weight_stall() -> None:
     machine = cranks(eq.Drive("left", 5.0, motor=motor), FurtherDrive("right", motor=motor), 9.81)
     machine = replace(machine, torsion_dampers=tuple(
         TorsionDamper(link, damping=8.0) for link in ("left", "right")))  # fmt: skip
-    found = eq.run(machine, "60 s")
-    assert found.end.kind == "stall"
+    run = eq.run(machine, "60 s")
+    assert run.end.kind == "stall"
     level = np.arccos(3.0 / (MASS * 9.81 * ARM))
-    for course in found.drives.values():
+    for course in run.drives.values():
         assert course.angle[-1] == pytest.approx(-level, abs=1e-4)
-    assert "stall" in drives_verdict(found)
+    assert "stall" in drives_verdict(run)
 
 
 def five_bar(**drive: Any) -> eq.Machine:
@@ -209,14 +209,14 @@ def five_bar(**drive: Any) -> eq.Machine:
 
 
 def test_a_run_ends_in_a_dead_position() -> None:
-    found = eq.run(apart(), 5.0)
-    assert (found.end.kind, found.end.of) == ("dead", "C")
-    state = found.drives["left"].angle[-1], found.drives["right"].angle[-1]
+    run = eq.run(apart(), 5.0)
+    assert (run.end.kind, run.end.of) == ("dead", "C")
+    state = run.drives["left"].angle[-1], run.drives["right"].angle[-1]
     ends = [0.05 * np.exp(1j * state[0]), 0.12 + 0.05 * np.exp(1j * state[1])]
     assert abs(ends[1] - ends[0]) == pytest.approx(0.16, rel=1e-5)
-    assert found.energy_error < 1e-9
-    assert any("dead position" in str(block) for block in drives_blocks(found))
-    assert [*drives_headline(found, alone=True)]
+    assert run.energy_error < 1e-9
+    assert any("dead position" in str(block) for block in drives_blocks(run))
+    assert [*drives_headline(run, alone=True)]
 
 
 def apart(**changes: Any) -> eq.Machine:
@@ -264,9 +264,9 @@ def test_turns_of_a_crank_that_stands_are_refused() -> None:
 def test_progress_counts_to_where_a_run_ends() -> None:
     counted: list[tuple[int, int]] = []
     machine = cranks(eq.Drive("left", 10.0, free=True), FurtherDrive("right", free=True))
-    found = eq.run(machine, progress=lambda done, most: counted.append((done, most)))
+    run = eq.run(machine, progress=lambda done, most: counted.append((done, most)))
     assert {most for _, most in counted} == {30}
-    assert found.end.kind in ("turns", "time", "steady")
+    assert run.end.kind in ("turns", "time", "steady")
 
 
 def test_links_that_reach_no_start_are_refused() -> None:
@@ -314,16 +314,16 @@ def test_dry_friction_brings_two_cranks_to_rest() -> None:
             JointProperties("joints.B", drag_torque=2.0),
         ),
     )
-    found = eq.run(machine, "60 s")
-    assert found.end.kind == "standstill"
-    assert found.end.time == pytest.approx(INERTIA * 30.0 / 2.0, rel=1e-2)
+    run = eq.run(machine, "60 s")
+    assert run.end.kind == "standstill"
+    assert run.end.time == pytest.approx(INERTIA * 30.0 / 2.0, rel=1e-2)
     for joint in ("A", "B"):
-        assert found.losses[joint][-1] == pytest.approx(INERTIA * 30.0**2 / 2, rel=1e-5)
-    left = found.drives["left"]
-    turning = found.time < 0.99 * INERTIA * 30.0 / 4.0
-    wanted = 30.0 - 4.0 / INERTIA * found.time[turning]
+        assert run.losses[joint][-1] == pytest.approx(INERTIA * 30.0**2 / 2, rel=1e-5)
+    left = run.drives["left"]
+    turning = run.time < 0.99 * INERTIA * 30.0 / 4.0
+    wanted = 30.0 - 4.0 / INERTIA * run.time[turning]
     np.testing.assert_allclose(left.speed[turning], wanted, atol=1e-8)
-    assert found.energy_error < 1e-9
+    assert run.energy_error < 1e-9
 
 
 def beside(machine: eq.Machine) -> eq.Machine:
@@ -364,16 +364,16 @@ def test_a_crank_beside_another_runs_as_it_does_alone(name: str) -> None:
     drive = replace(machine.drive, acceleration=0.0, speeds=(), motor=None)
     machine = replace(machine, drive=drive, support=None, rows=(), balance=None, run=None)
     speed = abs(drive.speed)
-    one = eq.run(machine, 2.0 / speed, speed=speed)
+    run = eq.run(machine, 2.0 / speed, speed=speed)
     both = beside(replace(machine, drive=replace(drive, free=True)))
     found = eq.run(both, 2.0 / speed, speed=speed)
     course = found.drives[machine.drive.link]
     assert found.energy_error < 1e-9
-    assert course.angle[-1] == pytest.approx(one.crank_angle[-1], rel=close)
-    assert course.speed[-1] == pytest.approx(one.crank_speed[-1], rel=10 * close)
-    assert {*found.losses} == {*one.losses}
+    assert course.angle[-1] == pytest.approx(run.crank_angle[-1], rel=close)
+    assert course.speed[-1] == pytest.approx(run.crank_speed[-1], rel=10 * close)
+    assert {*found.losses} == {*run.losses}
     for joint, lost in found.losses.items():
-        assert lost[-1] == pytest.approx(one.losses[joint][-1], rel=1e-4)
+        assert lost[-1] == pytest.approx(run.losses[joint][-1], rel=1e-4)
 
 
 def test_friction_in_meshes_that_share_their_force_is_refused() -> None:

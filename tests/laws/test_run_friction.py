@@ -65,39 +65,39 @@ def test_a_positioning_system_comes_to_rest_as_viscous_and_dry_friction_have_it(
     speed: float,
 ) -> None:
     """The offset helps one way and hinders the other."""
-    found = eq.run(emps(), speed=speed)
-    assert found.end.kind == "standstill"
+    run = eq.run(emps(), speed=speed)
+    assert run.end.kind == "standstill"
     size, way = abs(speed), speed / abs(speed)
     halt = DRY - way * OFFSET
     time = MASS / VISCOUS * log(1 + VISCOUS * size / halt)
-    assert found.end.time == pytest.approx(time, rel=1e-8)
-    wanted = (size + halt / VISCOUS) * np.exp(-found.time * VISCOUS / MASS) - halt / VISCOUS
-    np.testing.assert_allclose(way * found.crank_speed, wanted, atol=1e-9 * size)
-    assert found.energy_error < 1e-9
+    assert run.end.time == pytest.approx(time, rel=1e-8)
+    wanted = (size + halt / VISCOUS) * np.exp(-run.time * VISCOUS / MASS) - halt / VISCOUS
+    np.testing.assert_allclose(way * run.crank_speed, wanted, atol=1e-9 * size)
+    assert run.energy_error < 1e-9
     distance = MASS / VISCOUS * size - halt / VISCOUS * time
-    assert found.end.crank_angle == pytest.approx(way * distance, rel=1e-8)
+    assert run.end.crank_angle == pytest.approx(way * distance, rel=1e-8)
 
 
 def test_a_positioning_system_is_driven_to_its_steady_speed() -> None:
     force = 100.0
-    found = eq.run(emps(Motor(torque=force)), "3 s")
+    run = eq.run(emps(Motor(torque=force)), "3 s")
     steady = (force - HALT) / VISCOUS
-    wanted = steady * (1 - np.exp(-found.time * VISCOUS / MASS))
-    np.testing.assert_allclose(found.crank_speed, wanted, atol=1e-9)
-    lost = found.work["friction"][-1]
-    assert lost == pytest.approx(-np.trapezoid((DRY + VISCOUS * wanted) * wanted, found.time),
+    wanted = steady * (1 - np.exp(-run.time * VISCOUS / MASS))
+    np.testing.assert_allclose(run.crank_speed, wanted, atol=1e-9)
+    lost = run.work["friction"][-1]
+    assert lost == pytest.approx(-np.trapezoid((DRY + VISCOUS * wanted) * wanted, run.time),
                                  rel=1e-2)  # fmt: skip
-    assert found.energy_error < 1e-9
+    assert run.energy_error < 1e-9
 
 
 @pytest.mark.parametrize(("torque", "moves"), [(HALT * 0.999, False), (HALT * 1.001, True)])
 def test_it_stays_put_until_the_torque_breaks_it_away(torque: float, moves: bool) -> None:
-    found = eq.run(emps(Motor(torque=torque)), "1 s")
-    assert (found.end.kind == "time") == moves
+    run = eq.run(emps(Motor(torque=torque)), "1 s")
+    assert (run.end.kind == "time") == moves
     if not moves:
-        assert (found.end.kind, found.turned) == ("stall", 0.0)
-        assert found.lacking_torque == pytest.approx((HALT, torque))
-        assert "needs 23.55 N m to start, and has 23.53 N m" in verdict(found)
+        assert (run.end.kind, run.turned) == ("stall", 0.0)
+        assert run.lacking_torque == pytest.approx((HALT, torque))
+        assert "needs 23.55 N m to start, and has 23.53 N m" in verdict(run)
 
 
 def test_a_load_below_what_holds_it_does_not_start_a_machine() -> None:
@@ -109,16 +109,16 @@ def test_a_load_below_what_holds_it_does_not_start_a_machine() -> None:
 @pytest.mark.parametrize("machine", [WORN, replace(WORN, rows=(eq.mechanism.Row(),
                          eq.mechanism.Row(phase=pi / 2)))])  # fmt: skip
 def test_a_coast_down_loses_its_energy_in_joints(machine: eq.Machine) -> None:
-    found = eq.run(machine, speed=100.0)
-    assert found.end.kind == "standstill" and found.energy_error < 1e-9
-    energy = found.kinetic_energy
-    lost = found.work["friction"] + found.work["weight"]
+    run = eq.run(machine, speed=100.0)
+    assert run.end.kind == "standstill" and run.energy_error < 1e-9
+    energy = run.kinetic_energy
+    lost = run.work["friction"] + run.work["weight"]
     np.testing.assert_allclose(energy - energy[0], lost, atol=1e-9 * energy[0])
-    assert np.all(np.diff(found.work["friction"]) <= 1e-12 * energy[0])
-    assert found.losses.keys() == {*found.equation.rubbing}
-    for lost in found.losses.values():
+    assert np.all(np.diff(run.work["friction"]) <= 1e-12 * energy[0])
+    assert run.losses.keys() == {*run.equation.rubbing}
+    for lost in run.losses.values():
         assert np.all(np.diff(lost) >= -1e-12 * energy[0])
-    np.testing.assert_allclose(-sum(found.losses.values()), found.work["friction"], rtol=1e-12)
+    np.testing.assert_allclose(-sum(run.losses.values()), run.work["friction"], rtol=1e-12)
 
 
 @pytest.mark.exhaustive(but=["one row-stops, resistances", "one row-bushings"])
@@ -130,11 +130,11 @@ def test_the_acceleration_is_that_of_which_inverse_dynamics_needs_no_torque(
 ) -> None:
     """Inverse dynamics, whose friction knows nothing of runs, asks for what the drive gives."""
     machine = replace(WORN, rows=rows, **elements)
-    found = eq.run(machine, speed=100.0, turns=1)
-    assert found.energy_error < 1e-9
-    equation = found.equation
-    for k in np.linspace(1, len(found.time) - 2, 15).astype(int):
-        angle, speed = float(found.crank_angle[k]), float(found.crank_speed[k])
+    run = eq.run(machine, speed=100.0, turns=1)
+    assert run.energy_error < 1e-9
+    equation = run.equation
+    for k in np.linspace(1, len(run.time) - 2, 15).astype(int):
+        angle, speed = float(run.crank_angle[k]), float(run.crank_speed[k])
         if np.min(np.abs(equation.edges - angle)) < 1e-6:
             continue  # there a slider turns back, and its friction has two values
         inertia, slope, torques = equation.at(angle, speed, 0.0, 1.0)
@@ -151,13 +151,13 @@ def test_the_acceleration_is_that_of_which_inverse_dynamics_needs_no_torque(
 def test_a_motor_works_against_friction() -> None:
     motor = Motor(300.0, 30.0)
     drive = replace(WORN.drive, speed=200.0, motor=motor)
-    found = eq.run(replace(WORN, drive=drive))
-    assert found.end.kind == "steady"
-    cycle = found.last_cycle
+    run = eq.run(replace(WORN, drive=drive))
+    assert run.end.kind == "steady"
+    cycle = run.last_cycle
     assert cycle is not None and cycle.energy > 0
     free = eq.run(replace(ENGINE, drive=drive)).last_cycle
     assert free is not None and cycle.mean_speed < free.mean_speed
-    torque = Driver.of(found.machine).torque(np.array(cycle.mean_speed))
+    torque = Driver.of(run.machine).torque(np.array(cycle.mean_speed))
     assert cycle.energy_per_turn == pytest.approx(2 * pi * float(torque), rel=0.05)
 
 
@@ -196,11 +196,11 @@ def test_teeth_chains_and_soil_press_in_a_run_as_in_inverse_dynamics(name: str) 
     """
     machine = with_losses(name)
     speed = machine.drive.speed
-    found = eq.run(machine, speed=speed, turns=1)
-    assert found.energy_error < 1e-9
-    equation, compared = found.equation, 0
-    for k in np.linspace(1, len(found.time) - 2, 25).astype(int):
-        angle, now = float(found.crank_angle[k]), float(found.crank_speed[k])
+    run = eq.run(machine, speed=speed, turns=1)
+    assert run.energy_error < 1e-9
+    equation, compared = run.equation, 0
+    for k in np.linspace(1, len(run.time) - 2, 25).astype(int):
+        angle, now = float(run.crank_angle[k]), float(run.crank_speed[k])
         if np.min(np.abs(equation.edges - angle % equation.period)) < 1e-6:
             continue
         sense = float(np.sign(now))
@@ -220,11 +220,11 @@ def test_each_row_has_flanks_strands_and_soil_of_its_own(name: str) -> None:
     alone = with_losses(name)
     phases = (0.0, 1.3)
     machine = replace(alone, rows=tuple(eq.mechanism.Row(phase=phase) for phase in phases))
-    found = eq.run(machine, speed=alone.drive.speed, turns=1)
-    assert found.energy_error < 1e-9
-    equation, compared = found.equation, 0
-    for k in np.linspace(1, len(found.time) - 2, 8).astype(int):
-        angle, now = float(found.crank_angle[k]), float(found.crank_speed[k])
+    run = eq.run(machine, speed=alone.drive.speed, turns=1)
+    assert run.energy_error < 1e-9
+    equation, compared = run.equation, 0
+    for k in np.linspace(1, len(run.time) - 2, 8).astype(int):
+        angle, now = float(run.crank_angle[k]), float(run.crank_speed[k])
         if np.min(np.abs(equation.edges - angle % equation.period)) < 1e-6:
             continue
         inertia, slope, torques = equation.at(angle, now, 0.0, float(np.sign(now)))

@@ -31,34 +31,34 @@ def wheel(times: Any = TIMES, factors: Any = FACTORS, drag: float = 0.0) -> eq.M
 
 def test_a_wheel_follows_the_integral_of_its_load() -> None:
     """A ramp of a second, two seconds of full torque, then none: it waits at rest for the first."""
-    found = eq.run(wheel(), "5 s", speed=0.0)
+    run = eq.run(wheel(), "5 s", speed=0.0)
     rate = TORQUE / INERTIA
 
     def speed(time: float) -> float:
         ramp, full = np.clip(time - 1, 0, 1), np.clip(time - 2, 0, 2)
         return float(rate * (ramp**2 / 2 + full))
 
-    wanted = [speed(time) for time in found.time]
-    np.testing.assert_allclose(found.crank_speed, wanted, atol=1e-12 * max(wanted))
-    assert found.crank_angle[-1] == pytest.approx(
+    wanted = [speed(time) for time in run.time]
+    np.testing.assert_allclose(run.crank_speed, wanted, atol=1e-12 * max(wanted))
+    assert run.crank_angle[-1] == pytest.approx(
         rate * (1 / 6 + 0.5 * 3 + (2**2 / 2 + 2 * 1)), rel=1e-12
     )
-    assert found.energy_error < 1e-12
-    assert found.work["timed_loads"][-1] == pytest.approx(INERTIA * wanted[-1] ** 2 / 2)
+    assert run.energy_error < 1e-12
+    assert run.work["timed_loads"][-1] == pytest.approx(INERTIA * wanted[-1] ** 2 / 2)
 
 
 def test_friction_holds_it_until_the_load_is_large_enough() -> None:
-    found = eq.run(wheel(drag=0.6), "5 s", speed=0.0)
-    first = found.time[np.argmax(found.crank_angle > 0) - 1]
+    run = eq.run(wheel(drag=0.6), "5 s", speed=0.0)
+    first = run.time[np.argmax(run.crank_angle > 0) - 1]
     assert first == pytest.approx(1 + 0.6 / TORQUE, abs=1e-8)  # rounding of the torque at rest
     end = (TORQUE * 0.8**2 / 2 + 2 * (TORQUE - 0.6) - 0.6) / INERTIA
-    assert found.crank_speed[-1] == pytest.approx(end, rel=1e-9)
+    assert run.crank_speed[-1] == pytest.approx(end, rel=1e-9)
 
 
 def test_what_begins_suddenly_begins_at_its_time() -> None:
-    found = eq.run(wheel((0.5, 1.5), (1.0, 1.0)), "2 s", speed=0.0)
-    assert found.crank_speed[-1] == pytest.approx(TORQUE / INERTIA, rel=1e-12)
-    assert found.crank_angle[-1] == pytest.approx(TORQUE / INERTIA * (0.5 + 0.5), rel=1e-12)
+    run = eq.run(wheel((0.5, 1.5), (1.0, 1.0)), "2 s", speed=0.0)
+    assert run.crank_speed[-1] == pytest.approx(TORQUE / INERTIA, rel=1e-12)
+    assert run.crank_angle[-1] == pytest.approx(TORQUE / INERTIA * (0.5 + 0.5), rel=1e-12)
 
 
 def test_a_load_too_small_to_move_it_leaves_it_at_rest() -> None:
@@ -67,33 +67,33 @@ def test_a_load_too_small_to_move_it_leaves_it_at_rest() -> None:
 
 def test_a_load_still_growing_at_the_end_sets_it_in_motion() -> None:
     """The last row comes after the end of the run."""
-    found = eq.run(wheel((1.0, 11.0), (0.0, 10.0), drag=0.6), "3 s", speed=0.0)
+    run = eq.run(wheel((1.0, 11.0), (0.0, 10.0), drag=0.6), "3 s", speed=0.0)
     free = 1 + 0.6 / TORQUE
-    assert found.end.kind == "time" and found.end.time == 3.0
-    assert found.crank_speed[-1] == pytest.approx(TORQUE * (3 - free) ** 2 / 2 / INERTIA, rel=1e-9)
+    assert run.end.kind == "time" and run.end.time == 3.0
+    assert run.crank_speed[-1] == pytest.approx(TORQUE * (3 - free) ** 2 / 2 / INERTIA, rel=1e-9)
 
 
 def test_a_load_that_begins_at_the_end_moves_nothing() -> None:
-    found = eq.run(wheel((2.0, 3.0), (1.0, 1.0)), "2 s", speed=0.0)
-    assert found.end.kind == "standstill" and not found.turned
+    run = eq.run(wheel((2.0, 3.0), (1.0, 1.0)), "2 s", speed=0.0)
+    assert run.end.kind == "standstill" and not run.turned
 
 
 def test_a_motor_held_until_it_is_switched_off_does_not_start_later() -> None:
     """A load holds it for 2 s; it is off after 1 s."""
     machine = wheel((0.0, 2.0), (-3.0, -3.0)).with_drive(motor=Motor(10.0, 4.0, mean_speed="free"))
     assert eq.run(machine, "6 s", speed=0.0, off="3 s").crank_speed[-1] > 0
-    found = eq.run(machine, "6 s", speed=0.0, off="1 s")
-    assert found.end.kind == "stall" and not found.turned
+    run = eq.run(machine, "6 s", speed=0.0, off="1 s")
+    assert run.end.kind == "stall" and not run.turned
 
 
 def test_a_run_goes_on_as_long_as_a_load_is_to_come() -> None:
     """A motor is steady long before a load comes, which the run ends after."""
     machine = wheel((3.0, 3.5, 4.0), (0.0, -1.0, 0.0))
     machine = machine.with_drive(motor=Motor(10.0, 40.0, mean_speed="free"))
-    found = eq.run(machine)
-    assert found.end.kind == "steady" and found.time[-1] > 4.0
-    slowest = np.min(found.crank_speed[found.time > 3.0])
-    assert slowest < 0.99 * found.crank_speed[-1]
+    run = eq.run(machine)
+    assert run.end.kind == "steady" and run.time[-1] > 4.0
+    slowest = np.min(run.crank_speed[run.time > 3.0])
+    assert slowest < 0.99 * run.crank_speed[-1]
 
 
 BETWEEN = (
@@ -112,14 +112,14 @@ def test_between_links_it_is_a_load_on_each(rows: Any, joints: Any) -> None:
     of then on their links, needs no torque.
     """
     machine = replace(ENGINE, timed_loads=BETWEEN, rows=rows, joints=joints)
-    found = eq.run(machine, speed=100.0, turns=1)
-    assert found.energy_error < 1e-9
-    assert abs(found.work["timed_loads"][-1]) > 0.1
-    equation, compared = found.equation, 0
+    run = eq.run(machine, speed=100.0, turns=1)
+    assert run.energy_error < 1e-9
+    assert abs(run.work["timed_loads"][-1]) > 0.1
+    equation, compared = run.equation, 0
     alone = replace(machine, rows=(), timed_loads=())
-    for k in np.linspace(1, len(found.time) - 2, 15).astype(int):
+    for k in np.linspace(1, len(run.time) - 2, 15).astype(int):
         angle, speed, time = (float(values[k]) for values in
-                              (found.crank_angle, found.crank_speed, found.time))  # fmt: skip
+                              (run.crank_angle, run.crank_speed, run.time))  # fmt: skip
         if np.min(np.abs(equation.edges - angle)) < 1e-6:
             continue
         factors = [np.interp(time, load.times, load.factors, left=0, right=0) for load in BETWEEN]

@@ -135,14 +135,14 @@ def test_balancing_by_a_plan(name: str) -> None:
     kept = eq.load(name) if name in EXAMPLES else machine_of(name)
     small, large = both(kept, lambda one: eq.balance(one, plan_of(one)))
     # Steps towards limits of gauges end where numbers stand still to 1e-8 of their room.
-    exact = not any(one.objective.output.startswith("gauges.") for one in large.plan.limits)
+    exact = not any(limit.objective.output.startswith("gauges.") for limit in large.plan.limits)
     same_blocks(small, large, 1e-7 if exact else 1e-4)
     for link, body in in_units(large.machine, MICRO).links.items():
         assert small.machine.links[link].mass == pytest.approx(
             body.mass, rel=1e-9 if exact else 1e-6
         )
-    assert any("mass" in dict(one.values) for one in small.changes) == any(
-        "mass" in dict(one.values) for one in large.changes
+    assert any("mass" in dict(change.values) for change in small.changes) == any(
+        "mass" in dict(change.values) for change in large.changes
     )
 
 
@@ -192,8 +192,10 @@ def test_vibration(name: str, model: Any) -> None:
 
 def shapes_of(found: Any) -> list[float]:
     """What is shown of the shapes of modes."""
-    tables = [one for one in found.blocks() if isinstance(one, Table) and "hapes" in one.title]
-    return [cell.value for one in tables for row in one.rows for cell in row[1:]]
+    tables = [
+        block for block in found.blocks() if isinstance(block, Table) and "hapes" in block.title
+    ]
+    return [cell.value for table in tables for row in table.rows for cell in row[1:]]
 
 
 # Steady vibration scales alike: the test above.

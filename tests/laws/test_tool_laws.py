@@ -43,7 +43,7 @@ def integral(response: ToolResponse, function: Callable[[ShaftDeflection, Array]
     """
     tool = response.tool
     borders = np.cumsum([0.0, *(piece.length for piece in pieces_of(tool))])
-    stops = {*borders, *(one.position for one in tool.stations)}
+    stops = {*borders, *(station.position for station in tool.stations)}
     every = sorted(stops | set(np.linspace(0, tool.shaft.length, 9)))
     points, weights = np.polynomial.legendre.leggauss(12)
     rows = []
@@ -77,8 +77,8 @@ def of(pair: tuple[float, float]) -> Array:
 def shaking(response: ToolResponse) -> dict[str, Array]:
     """Force (2, K, S), N, that shakes at each station."""
     found = {
-        one.name: np.zeros((2, *response.frequency.shape), complex)
-        for one in response.tool.stations
+        station.name: np.zeros((2, *response.frequency.shape), complex)
+        for station in response.tool.stations
     }
     for shake in response.shakes:
         order = int(np.flatnonzero(response.orders == shake.order)[0])
@@ -118,16 +118,20 @@ def test_forces_and_moments_on_the_whole_tool(theory: Theory, seed: int) -> None
     force, moment = integral(found, pushed) * w2, integral(found, turned) * w2
     size = 0.0
     causes = shaking(found)
-    for one in found.tool.stations:
-        moved, x = found.displacement(one.name), one.position
+    for station in found.tool.stations:
+        moved, x = found.displacement(station.name), station.position
         slope = found.line([x]).slope[0]
-        held: Any = sum(found.forces(one.name).values(), np.zeros_like(moved))
-        across = causes[one.name] - held - absorbed(found, one) + one.mass * w2 * moved
+        held: Any = sum(found.forces(station.name).values(), np.zeros_like(moved))
+        across = causes[station.name] - held - absorbed(found, station) + station.mass * w2 * moved
         s = 1j * found.frequency
-        twist = of(one.rotational_stiffness) + of(one.rotational_damping) * s - of(one.inertia) * w2
+        twist = (
+            of(station.rotational_stiffness)
+            + of(station.rotational_damping) * s
+            - of(station.inertia) * w2
+        )
         force = force + across
         moment = moment + x * across - twist * slope
-        size = max(size, float(np.max(np.abs(held))), float(np.max(np.abs(causes[one.name]))))
+        size = max(size, float(np.max(np.abs(held))), float(np.max(np.abs(causes[station.name]))))
     assert np.max(np.abs(force)) < 1e-9 * size
     assert np.max(np.abs(moment)) < 1e-9 * size * found.tool.shaft.length
 
@@ -137,11 +141,11 @@ def test_power_fed_in_is_taken(theory: Theory, seed: int) -> None:
     """By hands, harness, ground and absorber, and by the shaft's material."""
     found = respond_tool(made(theory, seed), SPEEDS)
     taken = found.lost_in_shaft
-    for one in found.tool.stations:
-        taken = taken + sum(found.power(one.name).values(), np.zeros_like(taken))
+    for station in found.tool.stations:
+        taken = taken + sum(found.power(station.name).values(), np.zeros_like(taken))
     np.testing.assert_allclose(found.fed_in, taken, rtol=1e-9)
-    for one in found.tool.stations:
-        assert all(np.all(power >= 0) for power in found.power(one.name).values())
+    for station in found.tool.stations:
+        assert all(np.all(power >= 0) for power in found.power(station.name).values())
     assert np.all(found.lost_in_shaft > 0)
 
 
@@ -163,22 +167,26 @@ def test_power_that_the_material_takes(theory: Theory, seed: int) -> None:
 def test_power_of_each_damper(theory: Theory, seed: int) -> None:
     """c |v|^2 / 2 of its own velocity."""
     found = respond_tool(made(theory, seed), SPEEDS)
-    for one in found.tool.stations:
-        velocity = np.abs(found.velocity(one.name)) ** 2 / 2
-        told = found.power(one.name)
-        if one.hand is not None:
-            wanted = one.hand.hands * np.sum(of(one.hand.damping) * velocity, axis=0)
+    for station in found.tool.stations:
+        velocity = np.abs(found.velocity(station.name)) ** 2 / 2
+        told = found.power(station.name)
+        if station.hand is not None:
+            wanted = station.hand.hands * np.sum(of(station.hand.damping) * velocity, axis=0)
             np.testing.assert_allclose(told["hand"], wanted, rtol=1e-9)
-        if one.harness is not None:
-            wanted = np.sum(of(one.harness.damping) * velocity, axis=0)
+        if station.harness is not None:
+            wanted = np.sum(of(station.harness.damping) * velocity, axis=0)
             np.testing.assert_allclose(told["harness"], wanted, rtol=1e-9)
-        if one.absorber is not None:
-            own = 1j * found.frequency * absorbed(found, one)
-            link = of(one.absorber.stiffness) + 1j * found.frequency * of(one.absorber.damping)
-            wanted = np.sum(of(one.absorber.damping) * np.abs(own / link) ** 2 / 2, axis=0)
+        if station.absorber is not None:
+            own = 1j * found.frequency * absorbed(found, station)
+            link = of(station.absorber.stiffness) + 1j * found.frequency * of(
+                station.absorber.damping
+            )
+            wanted = np.sum(of(station.absorber.damping) * np.abs(own / link) ** 2 / 2, axis=0)
             np.testing.assert_allclose(told["absorber"], wanted, rtol=1e-9)
-        turning = np.abs(found.line([one.position]).slope[0] * found.frequency) ** 2 / 2
-        ground = np.sum(of(one.damping) * velocity + of(one.rotational_damping) * turning, axis=0)
+        turning = np.abs(found.line([station.position]).slope[0] * found.frequency) ** 2 / 2
+        ground = np.sum(
+            of(station.damping) * velocity + of(station.rotational_damping) * turning, axis=0
+        )
         np.testing.assert_allclose(told.get("ground", 0 * ground), ground, rtol=1e-9)
 
 
@@ -213,21 +221,23 @@ def energies(found: ToolResponse) -> tuple[Array, Array]:
 
     potential = integral(found, strained).real
     kinetic = integral(found, moving).real * w2
-    for one in found.tool.stations:
-        moved = found.displacement(one.name).real ** 2
-        slope = found.line([one.position]).slope[0].real ** 2
-        potential = potential + of(one.stiffness) * moved + of(one.rotational_stiffness) * slope
-        kinetic = kinetic + w2 * (one.mass * moved + of(one.inertia) * slope)
-        if one.hand is not None:
-            potential = potential + one.hand.hands * of(one.hand.stiffness) * moved
-            kinetic = kinetic + one.hand.hands * one.hand.mass * w2 * moved
-        if one.harness is not None:
-            potential = potential + of(one.harness.stiffness) * moved
-        if one.absorber is not None:
-            stretch = (absorbed(found, one) / of(one.absorber.stiffness)).real
-            own = found.displacement(one.name).real - stretch
-            potential = potential + of(one.absorber.stiffness) * stretch**2
-            kinetic = kinetic + one.absorber.mass * w2 * own**2
+    for station in found.tool.stations:
+        moved = found.displacement(station.name).real ** 2
+        slope = found.line([station.position]).slope[0].real ** 2
+        potential = (
+            potential + of(station.stiffness) * moved + of(station.rotational_stiffness) * slope
+        )
+        kinetic = kinetic + w2 * (station.mass * moved + of(station.inertia) * slope)
+        if station.hand is not None:
+            potential = potential + station.hand.hands * of(station.hand.stiffness) * moved
+            kinetic = kinetic + station.hand.hands * station.hand.mass * w2 * moved
+        if station.harness is not None:
+            potential = potential + of(station.harness.stiffness) * moved
+        if station.absorber is not None:
+            stretch = (absorbed(found, station) / of(station.absorber.stiffness)).real
+            own = found.displacement(station.name).real - stretch
+            potential = potential + of(station.absorber.stiffness) * stretch**2
+            kinetic = kinetic + station.absorber.mass * w2 * own**2
     return potential, kinetic
 
 
@@ -271,7 +281,9 @@ def test_what_shakes_adds_up(theory: Theory, seed: int) -> None:
     """At one order two causes together do what each does alone; other orders know nothing of it."""
     tool = made(theory, seed)
     whole = respond_tool(tool, SPEEDS)
-    total = {one.name: np.zeros_like(whole.displacement(one.name)) for one in tool.stations}
+    total = {
+        station.name: np.zeros_like(whole.displacement(station.name)) for station in tool.stations
+    }
     for cause in tool.excitations:
         alone = respond_tool(shaken(tool, cause), SPEEDS)
         k = int(np.flatnonzero(whole.orders == alone.orders[0])[0])
@@ -306,10 +318,12 @@ def mirrored(tool: Tool) -> Tool:
     """The tool seen from the other side: its right end is the left one."""
     length = tool.shaft.length
     segments = tuple(
-        replace(one, start=length - one.stop, stop=length - one.start)
-        for one in tool.shaft.segments
+        replace(segment, start=length - segment.stop, stop=length - segment.start)
+        for segment in tool.shaft.segments
     )
-    stations = tuple(replace(one, position=length - one.position) for one in tool.stations)
+    stations = tuple(
+        replace(station, position=length - station.position) for station in tool.stations
+    )
     return replace(tool, shaft=replace(tool.shaft, segments=segments), stations=stations)
 
 
@@ -329,9 +343,12 @@ def swapped(tool: Tool) -> Tool:
 
     stations = tuple(
         replace(
-            turn(one), hand=turn(one.hand), harness=turn(one.harness), absorber=turn(one.absorber)
+            turn(station),
+            hand=turn(station.hand),
+            harness=turn(station.harness),
+            absorber=turn(station.absorber),
         )
-        for one in tool.stations
+        for station in tool.stations
     )
     return replace(tool, stations=stations)
 
@@ -443,7 +460,7 @@ def test_stations_with_nothing_and_borders_between_equals_change_nothing(
     for one in tool.shaft.segments:
         middle = one.start + 0.3 * (one.stop - one.start)
         halves += [replace(one, stop=middle), replace(one, start=middle)]
-    first = min(one.start for one in tool.shaft.segments)
+    first = min(segment.start for segment in tool.shaft.segments)
     halves.append(Segment(0.2 * first, 0.7 * first, tool.shaft.profile))
     other = replace(
         tool,
@@ -586,7 +603,7 @@ def modal(tool: Tool) -> tuple[Array, Array, Array]:
     shapes, places = found.planes[0].shapes, found.places
     simpson = np.array([1.0, *([4.0, 2.0] * 200)[:-1], 1.0]) * (places[1] / 3)
     mass = 2.0 * shapes**2 @ simpson
-    at = [int(np.argmin(np.abs(places - one.position))) for one in tool.stations]
+    at = [int(np.argmin(np.abs(places - station.position))) for station in tool.stations]
     for one, k in zip(tool.stations, at, strict=True):
         mass = mass + one.mass * shapes[:, k] ** 2
     return found.planes[0].frequency, shapes[:, at], mass

@@ -133,10 +133,10 @@ def test_energy_with_a_mount_that_lifts_off(pivoted: bool) -> None:
         )
         for name, mount in machine.support.mounts.items()
     }
-    found = respond(machine.with_support(mounts=feet), 25.0, "exact")
-    assert found.stable
-    assert max(mount.lifts_off for mount in found.mounts.values()) > 0.2
-    balanced(found)
+    response = respond(machine.with_support(mounts=feet), 25.0, "exact")
+    assert response.stable
+    assert max(mount.lifts_off for mount in response.mounts.values()) > 0.2
+    balanced(response)
 
 
 @pytest.mark.parametrize("pivoted", [False, True], ids=["free", "pivot"])
@@ -158,19 +158,19 @@ def test_energy_with_a_motor(seed: int, mean_speed: str, sense: int) -> None:
     motor = Motor(60.0, 9.0, ratio=2.5, inertia=1e-3, mean_speed=mean_speed)  # type: ignore[arg-type]
     machine = supported(eq.load("yamashita-1"), seed, seed == 1, ROWS[seed])
     machine = machine.with_drive(motor=motor, flywheel=0.03, speed=sense * 20.0)
-    found = respond(machine, drive=True)
-    assert found.drive.fluctuation > 1e-3
-    assert np.sign(found.speed) == sense
+    response = respond(machine, drive=True)
+    assert response.drive.fluctuation > 1e-3
+    assert np.sign(response.speed) == sense
     if mean_speed == "held":
-        assert found.speed == pytest.approx(sense * 20, rel=1e-12)
-    balanced(found)
+        assert response.speed == pytest.approx(sense * 20, rel=1e-12)
+    balanced(response)
 
 
 def test_mean_torque_of_the_motor_pays_for_the_mounts() -> None:
     """At constant speed the work of a turn is 2 pi times the mean torque of the drive."""
-    found = respond(supported(eq.load("yamashita-1"), 1), model="exact")
-    assert found.energy is not None
-    assert found.drive.torque.mean * 2 * pi == pytest.approx(found.energy.lost, rel=1e-8)
+    response = respond(supported(eq.load("yamashita-1"), 1), model="exact")
+    assert response.energy is not None
+    assert response.drive.torque.mean * 2 * pi == pytest.approx(response.energy.lost, rel=1e-8)
 
 
 # -- limits ----------------------------------------------------------------------------------------
@@ -291,8 +291,8 @@ def test_a_row_in_opposite_phase_takes_odd_orders_away(machine: eq.Machine, mode
 
 def test_a_row_in_opposite_phase_takes_odd_orders_away_exactly() -> None:
     """Half a turn later the machine is the same, with its rows changed round: so is its motion."""
-    found = respond(springs().with_rows([Row(), Row(phase=pi)]), model="exact")
-    for gauge in found.gauges.values():
+    response = respond(springs().with_rows([Row(), Row(phase=pi)]), model="exact")
+    for gauge in response.gauges.values():
         odd, even = odd_and_even(gauge.displacement)
         assert odd < 1e-9 * even
 
@@ -571,14 +571,14 @@ def test_in_free_fall_the_common_centre_of_mass_stays() -> None:
     """
     nothing = {"nothing": Mount((0.0, 0.0, 0.0), damping=1e-12, preload=0.0)}
     machine = replace(springs(mounts=nothing), gravity=(0.0, 0.0)).with_rows(ROWS[1])
-    found = eq.simulate(machine, 0.6, samples=61)
-    place, rate = found.system.place_and_rate(found.states)
-    s = found.system.sums(found.crank_angle)
+    simulation = eq.simulate(machine, 0.6, samples=61)
+    place, rate = simulation.system.place_and_rate(simulation.states)
+    s = simulation.system.sums(simulation.crank_angle)
     turn = np.exp(1j * place[2])
-    first = turn * (s.first + found.system.first)
-    momentum = (found.system.mass + s.mass) * (rate[0] + 1j * rate[1])
-    momentum = momentum + 1j * rate[2] * first + found.crank_speed * turn * s.first_1
-    size = float(np.max(np.abs(found.crank_speed * s.first_1)))
+    first = turn * (s.first + simulation.system.first)
+    momentum = (simulation.system.mass + s.mass) * (rate[0] + 1j * rate[1])
+    momentum = momentum + 1j * rate[2] * first + simulation.crank_speed * turn * s.first_1
+    size = float(np.max(np.abs(simulation.crank_speed * s.first_1)))
     # 1e-9 by the integration, 1e-9 by splines through the linkages' sums.
     np.testing.assert_allclose(momentum, momentum[0], rtol=0, atol=1e-8 * size)
 

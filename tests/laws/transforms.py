@@ -74,7 +74,7 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
     return replace(
         machine,
         drive=later_drive(machine.drive, angle, start),
-        drives=tuple(later_drive(one, angle, start) for one in machine.drives),
+        drives=tuple(later_drive(drive, angle, start) for drive in machine.drives),
         frame=mapped(machine.frame, lambda z: z * turn),
         gravity=vector(lambda z: z * turn, machine.gravity),
         sliders=tuple(
@@ -303,7 +303,7 @@ def with_law(cam: Cam, law: Any) -> Cam:
 def mirrored_cam(cam: Cam) -> Cam:
     """The image of a cam, which turns the other way; the laws of segments are symmetric."""
     law = cam.law
-    ends = [law.start, *(one.to for one in law.segments)]
+    ends = [law.start, *(segment.to for segment in law.segments)]
     back = [replace(s, to=a) for s, a in zip(law.segments, ends[:-1], strict=True)][::-1]
     changed = replace(
         law,
@@ -356,7 +356,7 @@ def turned_torsion(spring: TorsionSpring, angle: float) -> TorsionSpring:
 
 def mirrored_torsion(spring: TorsionSpring) -> TorsionSpring:
     def back(values: tuple[float, ...]) -> tuple[float, ...]:
-        return tuple(-one for one in values[::-1])
+        return tuple(-value for value in values[::-1])
 
     given = spring.table
     if given is not None:
@@ -411,7 +411,9 @@ COLUMNS = {
 def in_units(thing: Any, units: Units, machine: eq.Machine | None = None) -> Any:
     """A machine, or what belongs to one, with every declared quantity in other units."""
     machine = thing if isinstance(thing, eq.Machine) else machine
-    kinds = {one.field: innermost(one.kind) for one in declarations(type(thing))}
+    kinds = {
+        declaration.field: innermost(declaration.kind) for declaration in declarations(type(thing))
+    }
     given = {name: getattr(thing, name) for name in kinds}
     factors = {name: units.of(unit) for name, unit in COLUMNS.get(type(thing).__name__, {}).items()}
     if isinstance(thing, eq.mechanism.LoadTable):
@@ -461,7 +463,7 @@ def rescaled(thing: Any, factors: Mapping[str, float]) -> Any:
         return tuple(rescaled(one, factors) for one in thing)
     if not is_dataclass(thing):
         return thing
-    values = {one.name: getattr(thing, one.name) for one in fields(thing) if one.init}
+    values = {field.name: getattr(thing, field.name) for field in fields(thing) if field.init}
     changes = {
         name: grown(value, factors[name]) if name in factors else rescaled(value, factors)
         for name, value in values.items()

@@ -52,10 +52,10 @@ def test_the_state_at_the_end() -> None:
 def test_the_file_holds_its_own_run() -> None:
     """Without options, and each option in the place of what the file says."""
     machine = eq.load("squeezing-mechanism")
-    found = eq.run(machine)
-    assert found.end.kind == "time"
-    assert found.end.time == 0.03
-    assert found.crank_angle[-1] == pytest.approx(15.81077119629904, rel=1e-9)
+    run = eq.run(machine)
+    assert run.end.kind == "time"
+    assert run.end.time == 0.03
+    assert run.crank_angle[-1] == pytest.approx(15.81077119629904, rel=1e-9)
     assert eq.run(machine, turns=0.5).turned == pytest.approx(0.5)
     assert eq.run(machine, 1e-3, angle=0.0).crank_angle[0] == 0.0
 

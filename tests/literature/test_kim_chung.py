@@ -556,7 +556,7 @@ class Vector:
         part = partial(self.part, key[-1])
         read = read_there(self.planter, self.instant, part, self.lengths)
         if slip and self.slip[1] == LOST:
-            return Cause(LOST, lambda: [-one for one in read.gives()])
+            return Cause(LOST, lambda: [-give for give in read.gives()])
         if slip:
             return Observation(self.slip[1], self.is_nowhere)
         return self.open or read

@@ -434,9 +434,9 @@ def test_direction_of_the_line_of_pivots_does_not_matter(name: str) -> None:
 @MECHANISMS
 def test_shaking_moment_grows_with_the_square_of_the_speed(name: str) -> None:
     """Conclusions: the ground on which the paper gives equivalent speeds."""
-    found = eq.forces(eq.move(mechanism(name), COUNT))
-    faster = found.at(speed=1.3 * found.motion.speed)
-    close(faster.shaking_moment, 1.69 * found.shaking_moment)
+    forces = eq.forces(eq.move(mechanism(name), COUNT))
+    faster = forces.at(speed=1.3 * forces.motion.speed)
+    close(faster.shaking_moment, 1.69 * forces.shaking_moment)
 
 
 # -- the geared counterweight ----------------------------------------------------------------------

@@ -185,14 +185,14 @@ def test_balancing_finds_it(name: str) -> None:
     """At the ratio of the scan, proved; a little slower or faster is no better."""
     least, ratio = scanned(name)
     machine = eq.load(f"balance-geared-{name}")
-    found = eq.balance(machine, geared(name, ratio, ratio))
-    assert found.cost == pytest.approx(least, abs=1e-6)
-    assert found.gap < 1e-8
+    solution = eq.balance(machine, geared(name, ratio, ratio))
+    assert solution.cost == pytest.approx(least, abs=1e-6)
+    assert solution.gap < 1e-8
     for other in (0.98 * ratio, min(1.02 * ratio, 3.0)):
         assert eq.balance(machine, geared(name, other, other)).cost > least - 1e-7
-    told = found.after["shaking_moment.area"]
-    assert energy_with(name, found, ratio, FIGURES) == pytest.approx(told, rel=1e-8)
-    weight = found.changes[1].values
+    told = solution.after["shaking_moment.area"]
+    assert energy_with(name, solution, ratio, FIGURES) == pytest.approx(told, rel=1e-8)
+    weight = solution.changes[1].values
     assert weight["mass"] <= TABLE_4[name].mass * (1 + 1e-9)
     assert all(np.hypot(*p["place"]) <= TABLE_4[name].radius + 1e-6 for p in weight["pieces"])
 
@@ -210,8 +210,8 @@ def test_at_their_ratio_theirs_is_not_the_best(name: str) -> None:
     """The same mass and radius, spread better."""
     device = TABLE_4[name]
     plan = geared(name, device.ratio, device.ratio)
-    found = eq.balance(eq.load(f"balance-geared-{name}"), plan)
-    best = energy_with(name, found, device.ratio, ANGLES)
+    solution = eq.balance(eq.load(f"balance-geared-{name}"), plan)
+    best = energy_with(name, solution, device.ratio, ANGLES)
     assert best < THEIRS[name][0] - THEIRS[name][1]
     assert best > (scanned(name)[0] - 1e-6) * mechanism(name).before
 
@@ -230,13 +230,13 @@ def test_a_wide_range_of_ratios_does_as_well(name: str, low: float, high: float)
         assert eq.balance(machine, geared(name, ratio, ratio)).cost == pytest.approx(
             least, abs=1e-6
         )
-    found = eq.balance(machine, geared(name, low, low))
-    motion = eq.move(found.machine, ANGLES, acceleration=0.0)
+    solution = eq.balance(machine, geared(name, low, low))
+    motion = eq.move(solution.machine, ANGLES, acceleration=0.0)
     moment = eq.forces(motion).shaking_moment
     changes = np.nonzero(np.diff(np.sign(np.append(moment, moment[0]))))[0]
     momentum = -np.cumsum(moment) * (2 * pi / ANGLES)  # times speed
     rises = np.abs(np.diff(momentum[np.append(changes, changes[0])]))
-    assert np.sum(rises) == pytest.approx(found.after["shaking_moment.area"], rel=0.01)
+    assert np.sum(rises) == pytest.approx(solution.after["shaking_moment.area"], rel=0.01)
 
 
 @pytest.mark.parametrize(("name", "best"), [("a", 358.3), ("b", 360.1), ("c", 313.9)])
@@ -246,7 +246,7 @@ def test_equivalent_speeds(name: str, best: float) -> None:
     300 rpm times the root of before over after; above those of their devices.
     """
     _, ratio = scanned(name)
-    found = eq.balance(eq.load(f"balance-geared-{name}"), geared(name, ratio, ratio))
-    speed = found.equivalent_speeds["shaking_moment.area"] / found.original.drive.speed * 300
+    solution = eq.balance(eq.load(f"balance-geared-{name}"), geared(name, ratio, ratio))
+    speed = solution.equivalent_speeds["shaking_moment.area"] / solution.original.drive.speed * 300
     assert speed == pytest.approx(best, abs=0.05)
     assert speed > 300 * (mechanism(name).before / THEIRS[name][0]) ** 0.5

@@ -61,7 +61,7 @@ def test_data_of_section_3_3(machine: Tool) -> None:
     assert shaft.pieces[0][2].bending_stiffness == pytest.approx(STIFFNESS, rel=1e-12)
     masses = [machine.station(name).mass / WEIGHT for name in ("engine", "handle", "cutter")]
     assert masses == pytest.approx(MU, rel=1e-12)
-    positions = [one.position / LENGTH for one in machine.stations]
+    positions = [station.position / LENGTH for station in machine.stations]
     assert positions == pytest.approx([0, ALPHA[0], ALPHA[0] + ALPHA[1], 1], rel=1e-12)
     harness, hand = machine.station("harness").harness, machine.station("handle").hand
     assert harness is not None
@@ -235,7 +235,7 @@ def test_shapes_of_fig_5(machine: Tool) -> None:
             shape[:-4] - 4 * shape[1:-3] + 6 * shape[2:-2] - 4 * shape[3:-1] + shape[4:]
         ) / step**4
         middle = found.places[2:-2]
-        gaps = np.array([one.position for one in machine.stations])
+        gaps = np.array([station.position for station in machine.stations])
         clear = np.all(np.abs(middle[:, None] - gaps) > 3 * step, axis=1)
         wanted = (parameter / LENGTH) ** 4 * shape[2:-2]
         # fourth differences of spacing h are wrong by (lambda h / L)^2 / 6, and rounding / h^4

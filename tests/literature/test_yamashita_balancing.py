@@ -411,12 +411,12 @@ def test_angles_without_effect_of_a_center_depend_on_lengths_alone() -> None:
 )  # fmt: skip
 def test_flattest_coupler_of_type_2_is_found(row: Printed) -> float:
     """The grid's is worse, by less than 1 %."""
-    found = eq.balance(eq.load("balance-coupler"))
-    center = np.array(found.machine.links["coupler"].center_of_mass) * 1e3
+    solution = eq.balance(eq.load("balance-coupler"))
+    center = np.array(solution.machine.links["coupler"].center_of_mass) * 1e3
     theirs = deviation(centered(TYPE_2.machine, "coupler", 5.8 + 27.8j))
-    assert deviation(found.machine) < theirs < 1.01 * deviation(found.machine)
-    assert deviation(found.machine) / deviation(TYPE_2.machine) == pytest.approx(found.cost)
-    return float([*center, 100 * (1 - found.cost)][row.of])
+    assert deviation(solution.machine) < theirs < 1.01 * deviation(solution.machine)
+    assert deviation(solution.machine) / deviation(TYPE_2.machine) == pytest.approx(solution.cost)
+    return float([*center, 100 * (1 - solution.cost)][row.of])
 
 
 def deviation(machine: eq.Machine) -> float:
@@ -450,12 +450,12 @@ def smallest_less_by(phase: float) -> float:
 )  # fmt: skip
 def test_counterweight_of_type_1_is_found(row: Printed) -> float:
     """X is the weight's direction while the crank lies on the line from A to D, at -psi."""
-    found = eq.balance(eq.load("balance-crank"))
-    (change,) = found.changes
+    solution = eq.balance(eq.load("balance-crank"))
+    (change,) = solution.changes
     assert change.values["mass"] == pytest.approx(sum(TYPE_1.masses) / 1e3)
     before, after = (
         -eq.analyze(machine, 7200).forces.shaking_force.y
-        for machine in (TYPE_1.machine, found.machine)
+        for machine in (TYPE_1.machine, solution.machine)
     )
     direction = np.degrees(change.values["direction"]) - TYPE_1.psi
     less = [100 * (1 - extreme(after) / extreme(before)) for extreme in (np.max, np.min)]

@@ -36,8 +36,8 @@ U = Objective("shaking_force.y", "ripple")
 
 def acceleration(axis: str = "y") -> Periodic:
     """Acceleration of the common centre of mass of one claw, m/s2."""
-    found = eq.analyze(MACHINE, 720, acceleration=0.0)
-    return found.by_order[f"mass_center.a{axis}"]
+    analysis = eq.analyze(MACHINE, 720, acceleration=0.0)
+    return analysis.by_order[f"mass_center.a{axis}"]
 
 
 def rows(*phases: float) -> eq.Machine:

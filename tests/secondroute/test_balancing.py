@@ -181,7 +181,7 @@ class Draws:
             self.move(str(name)) for name in self.rng.choice(heavy, min(moving, len(heavy)), False)
         )
         masses = tuple(self.added(str(self.rng.choice(links))) for _ in range(count - len(moves)))
-        fixed = any(one.weight.mass is not None for one in masses)
+        fixed = any(mass.weight.mass is not None for mass in masses)
         return Balance(
             moves=moves,
             masses=masses,
@@ -325,7 +325,7 @@ def test_no_other_is_better(name: str) -> None:
         if sampled <= found.cost + SEARCHED * whole:
             break
     rebuilt = problem.rebuilt(at)
-    values = [measured(rebuilt, one) for one in plan.objectives]
+    values = [measured(rebuilt, objective) for objective in plan.objectives]
     before = [goal.before for goal in problem.goals]
     real = problem.combined([np.array(v / b) for v, b in zip(values, before, strict=True)])
     assert float(real) == pytest.approx(sampled, abs=1e-9 * whole)
@@ -335,7 +335,7 @@ def test_no_other_is_better(name: str) -> None:
     assert cost >= found.cost - BEATEN * whole
     assert cost >= found.bound - BEATEN * whole
     # where the signal jumps, the search sees peaks and areas at its own crank angles only
-    peaks = any(one.measure.startswith("peak") for one in plan.objectives)
+    peaks = any(objective.measure.startswith("peak") for objective in plan.objectives)
     misses = 2e-3 if peaks and (loads_jump(machine) or has_corners(machine)) else SEARCHED
     assert cost <= found.cost + misses * whole
 
@@ -345,8 +345,8 @@ def has_corners(machine: Machine) -> bool:
     peak.
     """
     return (
-        any(one.table or one.angles for one in machine.torsion_springs)
-        or any(one.table or one.lengths for one in machine.springs)
+        any(spring.table or spring.angles for spring in machine.torsion_springs)
+        or any(spring.table or spring.lengths for spring in machine.springs)
         or any(load.table for load in machine.loads)
     )
 
@@ -390,8 +390,8 @@ def test_area_and_torque_of_a_sector() -> None:
 
 def test_each_weight_has_a_price() -> None:
     masses = (added("rocker", "D", radius=0.05, at_most=0.2), ANY)
-    found = eq.balance(eq.load("yamashita-1"), plan(MOMENT, masses=masses))
-    masses = [price for name, price in found.prices.items() if name.startswith("mass")]
+    solution = eq.balance(eq.load("yamashita-1"), plan(MOMENT, masses=masses))
+    masses = [price for name, price in solution.prices.items() if name.startswith("mass")]
     assert sorted(price.at_most for price in masses) == [0.2, 0.6]
 
 
@@ -399,9 +399,9 @@ def test_each_weight_has_a_price() -> None:
 def test_a_free_ratio(which: str) -> None:
     machine = eq.load(f"lee-kim-{which}")
     free = plan(MOMENT, geared=(geared(0.4, 1.5, at_most=0.6),))
-    found = eq.balance(machine, free)
+    solution = eq.balance(machine, free)
     cost, _ = FreeShaft(machine, free).evolved()
-    assert found.cost - BEATEN <= cost <= found.cost + 1e-6
+    assert solution.cost - BEATEN <= cost <= solution.cost + 1e-6
 
 
 # -- against convex programs -----------------------------------------------------------------------
@@ -623,10 +623,10 @@ def loosened(plan: Balance, name: str, share: float) -> Balance:
 
         masses = tuple(more(part, part.link) for part in plan.masses)
         return replace(plan, masses=masses, geared=tuple(more(g, g.name) for g in plan.geared))
-    (which,) = (one for one in plan.limits if one.name == name)
+    (which,) = (limit for limit in plan.limits if limit.name == name)
     key = "ratio" if which.ratio else "at_most"
     larger = replace(which, **{key: getattr(which, key) * share})
-    return replace(plan, limits=tuple(larger if one is which else one for one in plan.limits))
+    return replace(plan, limits=tuple(larger if limit is which else limit for limit in plan.limits))
 
 
 PRICED = {
@@ -654,19 +654,19 @@ PRICED = {
 def test_prices(name: str) -> None:
     """The objective falls by the price, and by less and less: these programs are convex."""
     machine, plan = eq.load(PRICED[name][0]), PRICED[name][1]
-    found = eq.balance(machine, plan)
-    unit = next(iter(found.objectives.values()))[0] if len(plan.objectives) == 1 else 1.0
-    for limited, price in found.prices.items():
+    solution = eq.balance(machine, plan)
+    unit = next(iter(solution.objectives.values()))[0] if len(plan.objectives) == 1 else 1.0
+    for limited, price in solution.prices.items():
         for share, near in ((1e-3, 0.15), (1e-4, 0.03)):
             after = eq.balance(machine, loosened(plan, limited, 1 + share))
-            fall = unit * (found.cost - after.cost)
+            fall = unit * (solution.cost - after.cost)
             more, slack = share * price.at_most, GAP * unit
             convex = not limited.startswith("radius")  # which counts by its square
             between = after.prices[limited].price * more - slack, price.price * more + slack
             assert not convex or between[0] <= fall <= between[1]
             assert fall == pytest.approx(price.price * more, rel=near, abs=slack), limited
         assert price.used <= price.at_most * (1 + 1e-7)
-    assert any(price.active for price in found.prices.values())
+    assert any(price.active for price in solution.prices.values())
 
 
 # -- plans that cannot be kept ---------------------------------------------------------------------
@@ -717,8 +717,8 @@ def test_a_clash_is_named(name: str) -> None:
         assert eq.balance(machine, other).gap < BEATEN
     told = re.search(r"; (.*) can become ([\d.]+) (N|N m) at the least", sentence)
     assert told
-    number = [one.name for one in plan.limits].index(told[1])
-    kept = tuple(one for one in plan.limits if one.name in named)
+    number = [limit.name for limit in plan.limits].index(told[1])
+    kept = tuple(limit for limit in plan.limits if limit.name in named)
     problem = Problem(machine, replace(plan, limits=kept))
     number = [one.name for one in kept].index(told[1])
     least = convex_optimum(problem, least=number)

@@ -40,22 +40,22 @@ def test_a_flat_tappet_by_hand() -> None:
     lift's slope beside the axis and at base radius plus lift above it, with which the camshaft
     passes under the face: T = F y' + mu F (r + y), and what is lost is mu F (r + y) w.
     """
-    found = eq.analyze(tappet(), 36)
-    motion = found.motion
+    analysis = eq.analyze(tappet(), 36)
+    motion = analysis.motion
     y = motion.points["T"].y
     rise, level = motion.points["T"].vy / SPEED, y  # the face is at base radius plus lift
     assert np.min(level) == pytest.approx(BASE) and np.max(level) == pytest.approx(BASE + LIFT)
     np.testing.assert_allclose(
-        found.forces.drive_torque, LOAD * rise + FRICTION * LOAD * level, rtol=1e-11
+        analysis.forces.drive_torque, LOAD * rise + FRICTION * LOAD * level, rtol=1e-11
     )
-    friction = found.forces.frictions["camshaft to tappet"]
+    friction = analysis.forces.frictions["camshaft to tappet"]
     np.testing.assert_allclose(friction.pressing, LOAD, rtol=1e-12)
     np.testing.assert_allclose(friction.loss, FRICTION * LOAD * level * SPEED, rtol=1e-11)
-    force = found.forces.cams["camshaft to tappet"]
+    force = analysis.forces.cams["camshaft to tappet"]
     np.testing.assert_allclose(np.abs(force.x), FRICTION * LOAD, rtol=1e-11)
     np.testing.assert_allclose(force.y, LOAD, rtol=1e-11)
-    assert found.losses is not None
-    wear = found.losses.joints["camshaft to tappet"].wear_work
+    assert analysis.losses is not None
+    wear = analysis.losses.joints["camshaft to tappet"].wear_work
     assert wear == pytest.approx(LOAD * 2 * np.pi * np.mean(level), rel=1e-9)
 
 
@@ -65,10 +65,10 @@ def test_power_that_goes_in_is_what_is_lost(kind: str) -> None:
     machine = replace(make(kind, 0).machine, balance=None, joints=())
     free = eq.analyze(machine, 24)
     joints = tuple(JointProperties(f"cams.{cam.name}", friction=FRICTION) for cam in machine.cams)
-    found = eq.analyze(replace(machine, joints=joints), 24)
+    analysis = eq.analyze(replace(machine, joints=joints), 24)
     size = np.max(np.abs(free.forces.power))
-    loss = sum(friction.loss for friction in found.forces.frictions.values())
-    np.testing.assert_allclose(found.forces.power - free.forces.power, loss, atol=1e-9 * size)
+    loss = sum(friction.loss for friction in analysis.forces.frictions.values())
+    np.testing.assert_allclose(analysis.forces.power - free.forces.power, loss, atol=1e-9 * size)
     assert np.min(loss) >= 0 and np.max(loss) > 1e-6 * size
 
 
@@ -81,11 +81,11 @@ def test_a_run_loses_the_same() -> None:
         links={**machine.links, "camshaft": camshaft,
                "tappet": eq.Link({"T": (0.0, 0.0)}, 0.3, (0.0, 0.0), 0.0)},
     )  # fmt: skip
-    found = eq.run(heavy, speed=4 * SPEED, turns=2)
-    assert found.energy_error < 1e-9 and found.work["friction"][-1] < -1.0
-    for k in np.linspace(1, len(found.time) - 2, 9).astype(int):
-        angle, speed = float(found.crank_angle[k]), float(found.crank_speed[k])
-        inertia, slope, torques = found.equation.at(angle, speed)
+    run = eq.run(heavy, speed=4 * SPEED, turns=2)
+    assert run.energy_error < 1e-9 and run.work["friction"][-1] < -1.0
+    for k in np.linspace(1, len(run.time) - 2, 9).astype(int):
+        angle, speed = float(run.crank_angle[k]), float(run.crank_speed[k])
+        inertia, slope, torques = run.equation.at(angle, speed)
         rate = (float(np.sum(torques)) - slope * speed**2 / 2) / inertia
         asked = float(eq.analyze(heavy, [angle], speed, rate).forces.drive_torque[0])
         assert abs(asked) < 1e-8 * np.max(np.abs(torques))
@@ -94,10 +94,10 @@ def test_a_run_loses_the_same() -> None:
 def test_it_is_an_output_and_in_files() -> None:
     machine = tappet()
     survives(machine)
-    found = eq.analyze(machine, 90)
-    assert found.losses is not None
-    assert found.summary["cams.camshaft to tappet.friction_loss"].mean == pytest.approx(
-        found.losses.loss
+    analysis = eq.analyze(machine, 90)
+    assert analysis.losses is not None
+    assert analysis.summary["cams.camshaft to tappet.friction_loss"].mean == pytest.approx(
+        analysis.losses.loss
     )
 
 

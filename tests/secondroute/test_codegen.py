@@ -133,7 +133,7 @@ def test_forces_that_joints_share(name: str, numpy_engine: None) -> None:
     link = next(name for name, one in base.links.items() if one.mass)
     own = (str(KeyPath(("links", link, *keys))) for keys in (("mass",), ("center_of_mass", "y")))
     numbers = named(base, *own, "drive.speed")
-    mass, y, speed = (one.value for one in numbers)
+    mass, y, speed = (number.value for number in numbers)
     joints = [*eq.analyze(base, 8).forces.joints]
     wanted = [Figure(f"joints.{joint}", "rms") for joint in joints]
     values = np.array([[mass, y, speed], [2.5 * mass, y + 0.02, -0.7 * speed]])
@@ -141,12 +141,12 @@ def test_forces_that_joints_share(name: str, numpy_engine: None) -> None:
     assert not reasons.any()
     for row, got in zip(values, figures, strict=True):
         machine = design(base, numbers, row)
-        found = eq.analyze(machine, ANGLES)
-        known = [found.summary[figure.signal].rms for figure in wanted]
+        analysis = eq.analyze(machine, ANGLES)
+        known = [analysis.summary[figure.signal].rms for figure in wanted]
         largest = max(known)
         np.testing.assert_allclose(got, known, rtol=1e-9, atol=1e-9 * largest)
-        free = free_bodies.solve(machine, from_motion(machine, found.motion)).joints
-        for joint, one in found.forces.joints.items():
+        free = free_bodies.solve(machine, from_motion(machine, analysis.motion)).joints
+        for joint, one in analysis.forces.joints.items():
             least = free[joint].force @ [1, 1j]
             np.testing.assert_allclose(one.value, np.squeeze(least), atol=1e-8 * largest)
 
@@ -218,7 +218,7 @@ BESIDE = ["slider_crank", "geared_counterweight", "belted_counterweight", "v_twi
 def test_links_beside_each_other(kind: str, numpy_engine: None) -> None:
     """Rocking moments and bearings too, where planes vary, of a point as well."""
     base = make(kind, 1).machine
-    base = replace(base, belts=tuple(replace(one, tension=20.0) for one in base.belts))
+    base = replace(base, belts=tuple(replace(belt, tension=20.0) for belt in base.belts))
     base = set_apart(base, np.random.default_rng(2), flat=True)
     loose = next(name for name, k in base.links.items() if not k.points.keys() & base.frame.keys())
     base = base.with_link(loose, planes={next(iter(base.links[loose].points)): 0.02})

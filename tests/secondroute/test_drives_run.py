@@ -102,28 +102,28 @@ def against_free_bodies(
     **start: Any,
 ) -> Any:
     """Compare all cranks' angles over time; return the run."""
-    found = eq.run(machine, duration, **start)
-    assert found.energy_error < BALANCE
-    speeds = {link: course.speed[0] for link, course in found.drives.items()}
+    run = eq.run(machine, duration, **start)
+    assert run.energy_error < BALANCE
+    speeds = {link: course.speed[0] for link, course in run.drives.items()}
     torques, more = motor_torques(machine, {item.link: 1.0 for item in machine.driven})
     whole, shafts = in_rows(machine) if machine.rows else (machine, [])
     bodies = PinnedBodies(with_rotors(whole), given, torques)
     bodies.shafts = shafts
     bodies.rubbing = friction_in_pins(machine, whole)
-    angles = angles_of_rows(machine, found)
+    angles = angles_of_rows(machine, run)
     speeds |= {other: speeds[link] for link, other in shafts}
     bodies.strokes = strokes
     bodies.slow = NEAR_REST * abs(machine.drive.speed)
     state = np.concatenate([bodies.start(angles, speeds), np.zeros(more)])
-    times = np.linspace(0.0, found.time[-1], 40)
+    times = np.linspace(0.0, run.time[-1], 40)
     wanted = bodies.follow(state, times)
-    time, places = np.unique(found.time, return_index=True)
-    for link, course in found.drives.items():
+    time, places = np.unique(run.time, return_index=True)
+    for link, course in run.drives.items():
         spline = CubicHermiteSpline(time, course.angle[places], course.speed[places])
         gone = wanted[link] - wanted[link][0]
         # the spline between instants of a step is off by less than the tolerance
         np.testing.assert_allclose(spline(times) - course.angle[0], gone, atol=CLOSE)
-    return found
+    return run
 
 
 def friction_in_pins(machine: eq.Machine, whole: eq.Machine) -> dict[str, float]:
@@ -272,10 +272,10 @@ def test_a_drive_that_follows_the_crank_feels_its_own_torque_alone() -> None:
     """Its torque changes nothing of the crank: both cranks on their own, but for their arms."""
     drive = eq.Drive("left crank", 15.0, motor=QUICK)
     machine = five_bar(drive, FurtherDrive("right crank", ratio=-1.0, start=pi / 3))
-    found = eq.run(machine, 0.2)
-    left, right = found.drives.values()
+    run = eq.run(machine, 0.2)
+    left, right = run.drives.values()
     np.testing.assert_allclose(right.angle, pi / 3 - left.angle, atol=1e-12)
-    assert found.energy_error < BALANCE
+    assert run.energy_error < BALANCE
 
 
 # -- strokes ---------------------------------------------------------------------------------------
@@ -330,15 +330,15 @@ def test_a_cylinder_turns_a_crank_as_a_given_motion_does() -> None:
         machine, frame={**machine.frame, "G": (0.2, 0.02)}, drives=(pushed,), joints=JOINTS
     )
     assert not any("points.G" in str(note) for note in linkage_remarks(assemble(machine)))
-    found = eq.run(machine, 0.05)
-    assert found.energy_error < BALANCE
-    course, crank = found.drives["right crank"], found.crank_angle
+    run = eq.run(machine, 0.05)
+    assert run.energy_error < BALANCE
+    course, crank = run.drives["right crank"], run.crank_angle
     np.testing.assert_allclose(course.length, stroke.value(crank)[0], atol=1e-12)
     turn = machine.moved(crank)["right crank"]
     np.testing.assert_allclose(course.angle, turn[0], atol=1e-11)
-    work = found.work["drives.right crank"]
-    time, places = np.unique(found.time, return_index=True)
-    power = course.effort * stroke.value(crank)[1] * found.drives["left crank"].speed
+    work = run.work["drives.right crank"]
+    time, places = np.unique(run.time, return_index=True)
+    power = course.effort * stroke.value(crank)[1] * run.drives["left crank"].speed
     done = CubicSpline(time, power[places]).antiderivative()(time)
     np.testing.assert_allclose(done - done[0], work[places], atol=1e-4 * np.max(np.abs(work)))
     # without friction, which the force adds to, a torque on the crank does the same
@@ -354,14 +354,14 @@ def test_a_cylinder_turns_a_crank_as_a_given_motion_does() -> None:
 def test_a_run_ends_where_a_stroke_has_no_lever() -> None:
     """The cylinder and the crank that it turns are then in one line."""
     drive = eq.Drive("left crank", 15.0, free=True, motion=AngleLaw(between=(0.0, 0.2)))
-    found = eq.run(pushed_five_bar(drive, (0.064, 0.068), 2.9), 1.0)
-    assert (found.end.kind, found.end.of) == ("lever", "right crank")
-    motion = found.motion_at(np.array([len(found.time) - 1]))
+    run = eq.run(pushed_five_bar(drive, (0.064, 0.068), 2.9), 1.0)
+    assert (run.end.kind, run.end.of) == ("lever", "right crank")
+    motion = run.motion_at(np.array([len(run.time) - 1]))
     end, pushed, pivot = (motion.point(name).place[0] for name in "PDE")
     across = np.imag((pushed - end) * np.conj(pushed - pivot))
     assert abs(across) < 2e-3 * abs(pushed - end) * abs(pushed - pivot)
-    assert found.energy_error < 1e-7
-    assert "right crank" in drives_verdict(found)
+    assert run.energy_error < 1e-7
+    assert "right crank" in drives_verdict(run)
 
 
 # -- the equations of motion -----------------------------------------------------------------------

@@ -79,12 +79,12 @@ def test_the_error_of_a_path_is_the_largest_of_all_points() -> None:
     points = {**rod.points, "E": (0.03, 0.0), "F": (0.05, 0.04)}
     between = replace(rod.section, between=("B", "C"))
     links = {**machine.links, "rod": replace(rod, points=points, section=between)}
-    found = eq.analyze(replace(machine, links=links))
-    elastic = elastic_link(found.resolved.forces.sections["rod"])
+    analysis = eq.analyze(replace(machine, links=links))
+    elastic = elastic_link(analysis.resolved.forces.sections["rod"])
     assert elastic is not None
     errors = [float(np.max(np.abs(elastic.moved(at)))) for at in (0.03 + 0j, 0.05 + 0.04j)]
-    assert found.sections["rod"].path_error == pytest.approx(max(errors))
-    assert found.sections["rod"].deflection == pytest.approx(np.max(np.abs(elastic.deflection)))
+    assert analysis.sections["rod"].path_error == pytest.approx(max(errors))
+    assert analysis.sections["rod"].deflection == pytest.approx(np.max(np.abs(elastic.deflection)))
 
 
 def test_deflection_against_beam_elements(tmp_path: Path) -> None:

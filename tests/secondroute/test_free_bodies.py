@@ -125,7 +125,7 @@ def test_everything_across_the_plane(name: str) -> float:
     machine, poses, across = subject.machine, subject.poses, subject.forces.across
     flat = free_bodies.solve(machine, poses, pairs(subject))
     solved = machines_planes.solve(machine, poses, flat)
-    span = max(abs(one.plane) for one in machine.bearings.values())
+    span = max(abs(bearing.plane) for bearing in machine.bearings.values())
     force = FLOOR * force_size(machine, poses)
     moment = force * span
     assert set(across.tilting_moments) == set(solved.couples)
@@ -147,7 +147,7 @@ def test_parts_across_the_plane(name: str) -> None:
     """Splits by link are what each link alone does; parameters and what acts give the whole."""
     subject = subject_of(name)
     machine, poses, forces = subject.machine, subject.poses, subject.forces
-    span = max(abs(one.plane) for one in machine.bearings.values())
+    span = max(abs(bearing.plane) for bearing in machine.bearings.values())
     force = FLOOR * force_size(machine, poses)
     split, parameters = forces.split, regressor(forces.motion)
     inertial = split.across.rocking_moment.value[:2].sum(axis=0)

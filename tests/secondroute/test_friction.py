@@ -34,9 +34,9 @@ def with_friction(name: str) -> Subject:
     machine = plain.machine
     if not plain.forces.joints:
         pytest.skip("it has no joints")
-    joints = [one for one in plain.forces.joints if one not in machine.riders]
+    joints = [joint for joint in plain.forces.joints if joint not in machine.riders]
     rng = np.random.default_rng([*name.encode()])
-    force = max(float(np.max(one.size)) for one in plain.forces.joints.values())
+    force = max(float(np.max(joint.size)) for joint in plain.forces.joints.values())
     return analysed(rubbed(machine, joints, rng, size_of_links(machine), force))
 
 

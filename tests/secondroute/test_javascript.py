@@ -58,8 +58,8 @@ def run(script: Script, numbers: Any, theta: Any, folder: Path) -> Any:
     path = folder / "states.js"
     path.write_text(script.text + RUN.format(given=json.dumps(given)), encoding="utf-8")
     assert NODE is not None
-    told = subprocess.run([NODE, str(path)], check=True, capture_output=True, timeout=300)
-    return np.frombuffer(told.stdout).reshape(len(script.names), len(theta))
+    process = subprocess.run([NODE, str(path)], check=True, capture_output=True, timeout=300)
+    return np.frombuffer(process.stdout).reshape(len(script.names), len(theta))
 
 
 def size(values: Any, names: Sequence[str]) -> Any:
@@ -89,7 +89,7 @@ def test_example(name: str, tmp_path: Path) -> None:
     ))  # fmt: skip
     same = np.array([np.broadcast_to(by_name[one], (1, len(theta)))[0] for one in names])
     assert np.all(np.abs(got - same) <= 1e-13 * size(same, names))
-    arrays = {one.name: one.values for one in analysis.outputs}
+    arrays = {output.name: output.values for output in analysis.outputs}
     known = np.array([arrays[one] for one in names])
     assert np.all(np.abs(got - known) <= 1e-9 * size(known, names))
 
@@ -106,16 +106,16 @@ def test_numbers_that_are_changed(name: str, tmp_path: Path) -> None:
     numbers = numbers_of(base, 1e-3)
     effort = "drive_torque" if "drive_torque" in signals_of(base) else "drive_force"
     signals = ["shaking_force.x", "shaking_force.y", "shaking_moment", effort]
-    script = javascript(assemble(base), signals, {one.path: one.value for one in numbers})
+    script = javascript(assemble(base), signals, {number.path: number.value for number in numbers})
     row = drawn(numbers, 1, 3)[0]
     changed = design(base, numbers, row)
     analysis = eq.analyze(changed, ANGLES)
     got = run(script, row, analysis.crank_angle, tmp_path)
-    arrays = {one.name: one.values for one in analysis.outputs}
-    known = np.array([arrays[one] for one in signals])
+    arrays = {output.name: output.values for output in analysis.outputs}
+    known = np.array([arrays[signal] for signal in signals])
     assert np.all(np.abs(got - known) <= 1e-9 * size(known, signals))
-    own = {one.name: one.values for one in eq.analyze(base, ANGLES).outputs}
-    assert not np.allclose(known, [own[one] for one in signals])
+    own = {output.name: output.values for output in eq.analyze(base, ANGLES).outputs}
+    assert not np.allclose(known, [own[signal] for signal in signals])
 
 
 @node
@@ -151,7 +151,7 @@ def test_loops_start_from_the_base_and_tell_where_they_do_not_arrive(
     (one,) = (one for one in numbers_of(base, 1e-3) if one.path == path)
     linkage = assemble(base)
     signals = ["drive_torque", "joints.B.force_x", "joints.B.force_y"]
-    watched = [one for one in pose_signals(linkage) if one.startswith("cosine")]
+    watched = [signal for signal in pose_signals(linkage) if signal.startswith("cosine")]
     assert len(watched) == 2
     script = javascript(linkage, [*signals, *watched], {path: one.value})
     for factor, arrives in ((1.0, True), (1.02, True), (3.0, False)):
@@ -160,8 +160,8 @@ def test_loops_start_from_the_base_and_tell_where_they_do_not_arrive(
         got = run(script, np.array([factor * one.value]), theta, tmp_path)
         assert bool(np.all(got[len(signals) :] >= FAR)) == arrives
         if arrives:
-            arrays = {one.name: one.values for one in eq.analyze(changed, ANGLES).outputs}
-            known = np.array([arrays[one] for one in signals])
+            arrays = {output.name: output.values for output in eq.analyze(changed, ANGLES).outputs}
+            known = np.array([arrays[signal] for signal in signals])
             assert np.all(np.abs(got[: len(signals)] - known) <= 1e-9 * size(known, signals))
 
 
@@ -184,13 +184,13 @@ def test_forces_that_joints_share_with_teeth(tmp_path: Path) -> None:
     linkage = assemble(machine)
     assert linkage.shared is not None and machine.switches
     names = signals_of(machine)
-    watched = [one for one in pose_signals(linkage) if one.startswith("cosine")]
+    watched = [signal for signal in pose_signals(linkage) if signal.startswith("cosine")]
     assert len(watched) == sum(coupling.switches for coupling in machine.couplings)
     script = javascript(linkage, [*names, *watched])
     analysis = eq.analyze(machine, ANGLES)
     got = run(script, script.numbers(linkage), analysis.crank_angle, tmp_path)
     assert np.all(got[len(names) :] >= FAR)
-    summed = {one.name: one.values for one in analysis.outputs}
-    known = np.array([summed[one] for one in names])
+    summed = {output.name: output.values for output in analysis.outputs}
+    known = np.array([summed[name] for name in names])
     got = got[: len(names)]
     assert np.all(np.abs(got - known) <= 1e-9 * size(known, names))

@@ -199,7 +199,7 @@ def test_every_link_at_every_angle(name: str, tmp_path: Path) -> None:
             machine = with_section(machine, link, between=ends)
     path = tmp_path / "link.inp"
     analysis = eq.analyze(machine, 4)
-    largest = max(np.max(one.size) for one in analysis.forces.joints.values())
+    largest = max(np.max(joint.size) for joint in analysis.forces.joints.values())
     for link, loads in analysis.forces.sections.items():
         eq.export(machine, path, link=link, angles=4)
         beams = read_beams(path.read_text("ascii"))

@@ -86,10 +86,10 @@ def test_a_force_over_the_crank_angle_gives_its_power_to_the_drive() -> None:
 def test_a_force_over_time_is_the_constant_one_while_its_factor_is_1() -> None:
     timed = TimedLoad("coupler", (0.0, 1.0), (1.0, 1.0), point="Q", on="crank", force=(PULL, 0.0),
                       toward="R")  # fmt: skip
-    found = eq.run(replace(BASE, timed_loads=(timed,)), "0.3 s", speed=8.0)
+    run = eq.run(replace(BASE, timed_loads=(timed,)), "0.3 s", speed=8.0)
     wanted = eq.run(loaded(TO_CRANK), "0.3 s", speed=8.0)
-    assert found.crank_speed[-1] == pytest.approx(wanted.crank_speed[-1], rel=1e-9)
-    assert found.energy_error < 1e-9 and abs(found.work["timed_loads"][-1]) > 0.01
+    assert run.crank_speed[-1] == pytest.approx(wanted.crank_speed[-1], rel=1e-9)
+    assert run.energy_error < 1e-9 and abs(run.work["timed_loads"][-1]) > 0.01
 
 
 def test_loops_and_scripts_have_it(tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ SHARES = (0.1, 0.7, 6.0)
 def chained(name: str = "knife-drive") -> eq.Machine:
     """Make a drive by a chain, one of whose strands hangs loose."""
     machine = eq.load(name)
-    return replace(machine, belts=tuple(replace(one, tension=None) for one in machine.belts))
+    return replace(machine, belts=tuple(replace(belt, tension=None) for belt in machine.belts))
 
 
 MACHINES = {

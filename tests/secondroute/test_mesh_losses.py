@@ -45,10 +45,10 @@ def test_torques_of_two_shafts(table: str, against: bool) -> None:
     """
     ratio = RATIO[table]
     torque = -np.sign(ratio) * TORQUE if against else np.sign(ratio) * TORQUE
-    found = eq.analyze(shafts(table, torque), 12)
+    analysis = eq.analyze(shafts(table, torque), 12)
     share = 1 - LOSS if against else 1 + LOSS
-    np.testing.assert_allclose(found.forces.drive_torque, -torque * ratio / share, rtol=1e-12)
-    losses = found.losses
+    np.testing.assert_allclose(analysis.forces.drive_torque, -torque * ratio / share, rtol=1e-12)
+    losses = analysis.losses
     assert losses is not None
     given = abs(torque * ratio * 20.0)
     drive = given / (1 - LOSS) if against else given
@@ -72,19 +72,19 @@ def test_power_and_the_law(name: str, joint: str) -> None:
     machine = eq.load(name)
     free = eq.analyze(machine, 36, acceleration=15.0)
     lossy = replace(machine, joints=(JointProperties(joint, mesh_loss=0.05),), balance=None)
-    found = eq.analyze(lossy, 36, acceleration=15.0)
+    analysis = eq.analyze(lossy, 36, acceleration=15.0)
     pair = joint.partition(".")[2]
-    friction = found.forces.frictions[pair]
-    gained = found.forces.power - free.forces.power
+    friction = analysis.forces.frictions[pair]
+    gained = analysis.forces.power - free.forces.power
     assert np.max(friction.loss) > 0 and np.min(friction.loss) >= 0
     np.testing.assert_allclose(
         gained, friction.loss, atol=1e-10 * np.max(np.abs(free.forces.power))
     )
-    push = np.abs(found.forces.couplings["gears"][pair].parts["tangential"])
+    push = np.abs(analysis.forces.couplings["gears"][pair].parts["tangential"])
     gear = next(one for one in lossy.gears if one.name == pair)
     turns = {
         "frame": np.zeros(36),
-        **{k: v.angular_velocity for k, v in found.motion.links.items()},
+        **{k: v.angular_velocity for k, v in analysis.motion.links.items()},
     }
     speed = turns[gear.driven] - turns[gear.carrier]
     np.testing.assert_allclose(
@@ -105,11 +105,11 @@ def test_gears_of_varying_ratio_lose_a_share_of_the_power_that_they_pass(ahead: 
     joint = JointProperties(f"gears.{gear.name}", mesh_loss=LOSS)
     bare = replace(machine, links=massless, joints=(joint,), balance=None, support=None,
                    loads=(eq.Load(gear.driven, torque=torque),), springs=())  # fmt: skip
-    found = eq.analyze(bare, 36)
-    turning = found.motion.links[gear.driven].angular_velocity
+    analysis = eq.analyze(bare, 36)
+    turning = analysis.motion.links[gear.driven].angular_velocity
     taken = -torque * turning
     wanted = np.where(taken > 0, taken / (1 - LOSS), taken / (1 + LOSS))
-    np.testing.assert_allclose(found.forces.power, wanted, atol=1e-10 * np.max(np.abs(wanted)))
+    np.testing.assert_allclose(analysis.forces.power, wanted, atol=1e-10 * np.max(np.abs(wanted)))
     assert np.ptp(turning) > 0.1 * np.max(np.abs(turning))
 
 
@@ -137,42 +137,46 @@ def test_a_rack_loses_a_share_of_its_force_times_its_way(drives: str) -> None:
     (rack,) = machine.racks
     free = eq.analyze(machine, 36)
     joints = (JointProperties(f"racks.{rack.name}", mesh_loss=LOSS),)
-    found = eq.analyze(replace(machine, joints=joints, balance=None), 36)
-    friction = found.forces.frictions[rack.name]
+    analysis = eq.analyze(replace(machine, joints=joints, balance=None), 36)
+    friction = analysis.forces.frictions[rack.name]
     size = np.max(np.abs(free.forces.power))
     np.testing.assert_allclose(
-        found.forces.power - free.forces.power, friction.loss, atol=1e-10 * size
+        analysis.forces.power - free.forces.power, friction.loss, atol=1e-10 * size
     )
-    push = np.abs(found.forces.couplings["racks"][rack.name].parts["tangential"])
-    speed = np.abs(found.motion.slider(machine.sliders[0]).velocity)
+    push = np.abs(analysis.forces.couplings["racks"][rack.name].parts["tangential"])
+    speed = np.abs(analysis.motion.slider(machine.sliders[0]).velocity)
     np.testing.assert_allclose(friction.loss, LOSS * push * speed, rtol=1e-9, atol=1e-12 * size)
     assert np.max(friction.loss) > 1e-3 * size
-    reported = found.outputs[f"racks.{rack.name}.friction_loss"]
+    reported = analysis.outputs[f"racks.{rack.name}.friction_loss"]
     np.testing.assert_array_equal(reported.values, friction.loss)
     if drives == "rack":
-        given = -TORQUE * found.motion.links["wheel"].angular_velocity  # power that the load takes
+        given = (
+            -TORQUE * analysis.motion.links["wheel"].angular_velocity
+        )  # power that the load takes
         wanted = np.where(given > 0, given / (1 - LOSS), given / (1 + LOSS))
-        np.testing.assert_allclose(found.forces.power, wanted, atol=1e-10 * size)
+        np.testing.assert_allclose(analysis.forces.power, wanted, atol=1e-10 * size)
 
 
 def test_in_a_whole_cycle_what_goes_in_is_lost_or_taken() -> None:
     machine = eq.load("planetary-planting-arm")
-    joints = [JointProperties(f"gears.{one.name}", mesh_loss=0.03) for one in machine.gears]
+    joints = [JointProperties(f"gears.{gear.name}", mesh_loss=0.03) for gear in machine.gears]
     losses = eq.analyze(replace(machine, joints=tuple(joints), balance=None)).losses
     assert losses is not None and len(losses.joints) == len(machine.gears)
     assert losses.drive + losses.loads == pytest.approx(losses.loss, rel=1e-6)
-    assert {one.wear_work for one in losses.joints.values()} == {0.0}  # it is no sliding way
+    assert {joint.wear_work for joint in losses.joints.values()} == {0.0}  # it is no sliding way
 
 
 def test_they_are_reported_everywhere() -> None:
     machine = shafts("gears", TORQUE)
     survives(machine)
-    found = eq.analyze(machine, 90)
+    analysis = eq.analyze(machine, 90)
     name = "gears.crank to wheel.friction_loss"
-    assert found.to_dict()["friction"]["joints"]["crank to wheel"]["loss"] == found.losses.loss
-    assert found.summary[name].mean == pytest.approx(found.losses.loss)
-    assert f"{name} [W]" in to_csv(found).partition("\n")[0]
-    assert not [one for one in found.outputs.names if one.startswith("joints.crank to wheel")]
+    assert (
+        analysis.to_dict()["friction"]["joints"]["crank to wheel"]["loss"] == analysis.losses.loss
+    )
+    assert analysis.summary[name].mean == pytest.approx(analysis.losses.loss)
+    assert f"{name} [W]" in to_csv(analysis).partition("\n")[0]
+    assert not [one for one in analysis.outputs.names if one.startswith("joints.crank to wheel")]
 
 
 @pytest.mark.parametrize(

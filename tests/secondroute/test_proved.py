@@ -50,10 +50,10 @@ def test_no_change_of_masses_is_better_than_what_is_proved(case: int) -> None:
     _, at = evolved(problem, seed=case, turns=turns, size=SIZE, polished=2)
     rebuilt = problem.rebuilt(at)
     shares = [
-        np.array(measured_exactly(rebuilt, one) / measured_exactly(machine, one))
-        for one in plan.objectives
+        np.array(measured_exactly(rebuilt, objective) / measured_exactly(machine, objective))
+        for objective in plan.objectives
     ]
-    areas = any(one.measure == "area" for one in plan.objectives)
+    areas = any(objective.measure == "area" for objective in plan.objectives)
     room = (SAMPLED if areas and loads_jump(machine) else BEATEN) * sum(problem.weights)
     assert float(problem.combined(shares)) >= found.bound - room
     assert float(problem.combined(shares)) >= found.cost - room

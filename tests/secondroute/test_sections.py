@@ -69,12 +69,12 @@ def test_each_half_of_a_cut_rod_is_in_equilibrium(aside: float) -> None:
     assert rod.center_of_mass is not None and rod.mass is not None
     center = (rod.center_of_mass[0], aside)
     machine = machine.with_link("rod", center_of_mass=center)
-    found = eq.analyze(machine, 24)
-    loads = found.forces.sections["rod"]
-    turn = np.exp(1j * found.motion.links["rod"].angle)
-    begin, end = (found.motion.points[name].acceleration_vector / turn for name in "BC")
-    parts = [(found.forces.joints[n].value / turn, n) for n in "BC"]
-    by = {n: (1 if found.forces.joints[n].on == "rod" else -1) * value for value, n in parts}
+    analysis = eq.analyze(machine, 24)
+    loads = analysis.forces.sections["rod"]
+    turn = np.exp(1j * analysis.motion.links["rod"].angle)
+    begin, end = (analysis.motion.points[name].acceleration_vector / turn for name in "BC")
+    parts = [(analysis.forces.joints[n].value / turn, n) for n in "BC"]
+    by = {n: (1 if analysis.forces.joints[n].on == "rod" else -1) * value for value, n in parts}
     gravity = complex(*machine.gravity) / turn
 
     lumps = loads.mass
@@ -139,8 +139,8 @@ def test_friction_and_a_flywheel_count() -> None:
         JointProperties("joints.piston on frame", friction=0.1),
     )
     drive = replace(machine.drive, flywheel=0.4)
-    found = eq.analyze(replace(machine, joints=joints, drive=drive), 24, acceleration=50.0)
-    assert all(map(closes, found.forces.sections.values()))
+    analysis = eq.analyze(replace(machine, joints=joints, drive=drive), 24, acceleration=50.0)
+    assert all(map(closes, analysis.forces.sections.values()))
 
 
 def test_a_rod_that_hangs_and_a_bar_that_swings() -> None:
@@ -152,8 +152,8 @@ def test_a_rod_that_hangs_and_a_bar_that_swings() -> None:
     points = {"A": (0, 0), "B": (length, 0)}
     bar = eq.Link(points, mass, (length / 2, 0), mass * length**2 / 12, section=section)
     machine = eq.Machine("bar", eq.Drive("bar", speed), {"A": (0.0, 0.0)}, {"bar": bar})
-    found = eq.analyze(machine, [0.0])
-    loads = found.forces.sections["bar"]
+    analysis = eq.analyze(machine, [0.0])
+    loads = analysis.forces.sections["bar"]
     s = loads.places[1:40, 0]
     drawn = mass * speed**2 * (length**2 - s**2) / (2 * length)
     bent = -mass * 9.80665 * (length - s) ** 2 / (2 * length)
@@ -262,18 +262,20 @@ def analysis_tables(machine: eq.Machine) -> list[Table]:
 def test_they_are_reported_everywhere() -> None:
     machine = engine()
     survives(machine)
-    found = eq.analyze(machine, 90)
-    assert found.to_dict()["sections"]["rod"]["stress"] == found.sections["rod"].stress
-    assert found.summary["links.rod.stress"].peak == pytest.approx(found.sections["rod"].stress)
-    assert "links.rod.stress [Pa]" in to_csv(found).partition("\n")[0]
+    analysis = eq.analyze(machine, 90)
+    assert analysis.to_dict()["sections"]["rod"]["stress"] == analysis.sections["rod"].stress
+    assert analysis.summary["links.rod.stress"].peak == pytest.approx(
+        analysis.sections["rod"].stress
+    )
+    assert "links.rod.stress [Pa]" in to_csv(analysis).partition("\n")[0]
     assert dimension_of(machine, "analyze", "sections.rod.stress") == "modulus"
     fields = fields_of(Design("engine", machine))
     assert fields["links.rod.section.height"].value == pytest.approx(0.022)
-    titles = [one.title for one in found.blocks() if isinstance(one, Table)]
+    titles = [block.title for block in analysis.blocks() if isinstance(block, Table)]
     assert "Loads along links, largest" in titles
     bare = replace(machine, links=eq.load("slider-crank-engine").links)
     np.testing.assert_array_equal(
-        found.forces.joints["C"].value, eq.analyze(bare, 90).forces.joints["C"].value
+        analysis.forces.joints["C"].value, eq.analyze(bare, 90).forces.joints["C"].value
     )
 
 

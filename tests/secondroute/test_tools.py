@@ -75,12 +75,12 @@ def test_eigenvalues_of_heavy_damping(theory: Theory) -> None:
     tool = made(theory, 11)
     stations = tuple(
         replace(
-            one,
-            damping=(12 * one.damping[0], 9 * one.damping[1]),
-            hand=one.hand and replace(one.hand, damping=(600.0, 900.0)),
-            harness=one.harness and replace(one.harness, damping=(400.0, 300.0)),
+            station,
+            damping=(12 * station.damping[0], 9 * station.damping[1]),
+            hand=station.hand and replace(station.hand, damping=(600.0, 900.0)),
+            harness=station.harness and replace(station.harness, damping=(400.0, 300.0)),
         )
-        for one in tool.stations
+        for station in tool.stations
     )
     heavy = replace(tool, stations=stations)
     told = vibrate_tool(heavy, 10)
@@ -99,9 +99,9 @@ def elements(found: ToolResponse, plane: int) -> Iterator[tuple[int, int, Respon
     for k, order in enumerate(found.orders):
         for i, speed in enumerate(found.speed):
             forces = [
-                (tool.station(one.station).position, one.at(np.array([speed]))[plane, 0], 0.0)
-                for one in found.shakes
-                if one.order == order and one.force[plane] != 0
+                (tool.station(shake.station).position, shake.at(np.array([speed]))[plane, 0], 0.0)
+                for shake in found.shakes
+                if shake.order == order and shake.force[plane] != 0
             ]
             yield k, i, subject.response([order * speed], forces)
 
@@ -119,15 +119,17 @@ def test_motion_and_moment_anywhere(theory: Theory, seed: int, plane: int) -> No
     """Displacement, slope of the section and bending moment, just right of where it jumps."""
     found = answered(theory, seed)
     tool = found.tool
-    stations = [one.position for one in tool.stations[:-1]]
+    stations = [station.position for station in tool.stations[:-1]]
     places = np.array([*stations, *(tool.shaft.length * np.array([0.03, 0.37, 0.58, 0.77, 0.97]))])
     line = found.line(places)
     for k, i, exact in elements(found, plane):
         close(line.displacement[:, plane, k, i], exact.displacement(places)[0])
         close(line.slope[:, plane, k, i], exact.slope(places)[0])
         close(line.moment[:, plane, k, i], exact.bending_moment(places, "right")[0])
-        ends = [one.position for one in tool.stations]
-        moved = np.array([found.displacement(one.name)[plane, k, i] for one in tool.stations])
+        ends = [station.position for station in tool.stations]
+        moved = np.array(
+            [found.displacement(station.name)[plane, k, i] for station in tool.stations]
+        )
         close(moved, exact.displacement(ends)[0])
 
 
@@ -140,12 +142,12 @@ def test_forces_on_the_ground_and_the_body(theory: Theory, seed: int, plane: int
     for k, i, exact in elements(found, plane):
         ground = exact.ground_force()[0]
         told = []
-        for one in found.tool.stations:
-            forces = found.forces(one.name)
+        for station in found.tool.stations:
+            forces = found.forces(station.name)
             total = sum(force[plane, k, i] for force in forces.values())
-            if one.hand is not None:
-                mass = one.hand.hands * one.hand.mass
-                total -= mass * found.acceleration(one.name)[plane, k, i]
+            if station.hand is not None:
+                mass = station.hand.hands * station.hand.mass
+                total -= mass * found.acceleration(station.name)[plane, k, i]
             told.append(total)
         close(np.array(told), ground)
 
@@ -157,7 +159,7 @@ def test_power(theory: Theory, seed: int) -> None:
     found = answered(theory, seed)
     shape = found.frequency.shape
     fed_in, shaft = np.zeros(shape), np.zeros(shape)
-    names = [one.name for one in found.tool.stations]
+    names = [station.name for station in found.tool.stations]
     dampers, absorbers = (np.zeros((len(names), *shape)) for _ in range(2))
     for plane in range(2):
         for k, i, exact in elements(found, plane):

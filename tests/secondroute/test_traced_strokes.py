@@ -51,8 +51,8 @@ def test_scripts(name: str, tmp_path: Path) -> None:
 
 
 def arrays(analysis: eq.Analysis, names: list[str]) -> Any:
-    by_name = {one.name: one.values for one in analysis.outputs}
-    return np.array([by_name[one] for one in names])
+    by_name = {output.name: output.values for output in analysis.outputs}
+    return np.array([by_name[name] for name in names])
 
 
 @node
@@ -61,8 +61,12 @@ def test_scripts_with_other_numbers(name: str, tmp_path: Path) -> None:
     """The links that are pushed stand elsewhere, so that lengths are as commanded."""
     base = machine_of(name)
     numbers = numbers_of(base, 1e-3)
-    names = [one for one in signals(base) if "drive" in one or one.startswith(("shaking", "links"))]
-    script = javascript(assemble(base), names, {one.path: one.value for one in numbers})
+    names = [
+        signal
+        for signal in signals(base)
+        if "drive" in signal or signal.startswith(("shaking", "links"))
+    ]
+    script = javascript(assemble(base), names, {number.path: number.value for number in numbers})
     row = drawn(numbers, 1, 3)[0]
     analysis = eq.analyze(design(base, numbers, row), ANGLES)
     got = run(script, row, analysis.crank_angle, tmp_path)
@@ -78,7 +82,9 @@ def test_compiled_loops(name: str) -> None:
     base = machine_of(name)
     numbers = numbers_of(base, 1e-3)
     names = [one for one in eq.analyze(base, 8).summary if "drive" in one or one == "frame_force"]
-    batch = Batch(base, [one.path for one in numbers], [Figure(one, "rms") for one in names], 90)
+    batch = Batch(
+        base, [number.path for number in numbers], [Figure(one, "rms") for one in names], 90
+    )
     rows = drawn(numbers, 2, 5)
     figures, reason = batch(rows)
     assert not np.any(reason)

@@ -145,9 +145,9 @@ def same_motion(pair: Pair) -> None:
 
 
 def same_gauge(pair: Pair) -> None:
-    found = respond(pair.found.machine, None, "exact", pair.case.motor is not None)
-    signal = found.gauges["gauge"].displacement
-    mean_speed = found.speed
+    response = respond(pair.found.machine, None, "exact", pair.case.motor is not None)
+    signal = response.gauges["gauge"].displacement
+    mean_speed = response.speed
     # Signals go with time: at the mean speed, this is where the crank is by then.
     pair.close(signal.values(mean_speed * pair.wanted.times), pair.wanted.gauge)
     assert float(signal.peak_to_peak) == pytest.approx(pair.wanted.peak_to_peak, rel=1e-7)
@@ -256,14 +256,14 @@ def test_steps_of_the_paper(rig: Rig, speed: float, step: int) -> None:
     to 1e-11 rad, which near resonance is 5 times as much at the gauge.
     """
     wanted = rig_reference.reduced_steady(rig, speed, step, SAMPLES)
-    found = respond(in_package(rig), speed, STEPS[step])
-    signal = found.gauges["gauge"].displacement
+    response = respond(in_package(rig), speed, STEPS[step])
+    signal = response.gauges["gauge"].displacement
     size = float(np.max(np.abs(wanted.gauge)))
     values = signal.values(wanted.crank_angle)
     np.testing.assert_allclose(values, wanted.gauge, rtol=0, atol=max(1e-9 * size, 5e-11))
     if step == 54:
-        assert found.multipliers is not None
-        one, other = (np.sort_complex(m) for m in (found.multipliers, wanted.multipliers))
+        assert response.multipliers is not None
+        one, other = (np.sort_complex(m) for m in (response.multipliers, wanted.multipliers))
         np.testing.assert_allclose(one, other, atol=1e-7)
 
 

@@ -67,7 +67,7 @@ class Subject:
 def analysed(machine: Machine, case: Case | None = None) -> Subject:
     """Analyse a machine at the crank angles of the comparison, in all turns of tables of loads."""
     tables = (load.table.crank_angle for load in machine.loads if load.table is not None)
-    turns = max((int(np.ceil(np.ptp(one) / (2 * np.pi) - 1e-9)) for one in tables), default=1)
+    turns = max((int(np.ceil(np.ptp(table) / (2 * np.pi) - 1e-9)) for table in tables), default=1)
     angles = np.concatenate([ANGLES + 2 * np.pi * k for k in range(turns)])
     analysis = eq.analyze(machine, angles=angles)
     assert analysis.motion.turns % turns == 0

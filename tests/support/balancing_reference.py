@@ -412,7 +412,7 @@ class Problem:
         self.goals, self.kept = self.affine[:count], self.affine[count:]
         # a weight multiplies the value, or in a sum of squares the square of it
         root = 0.5 if self.plan.combine == "squares" else 1.0
-        self.weights = [one.weight**root for one in self.plan.objectives]
+        self.weights = [objective.weight**root for objective in self.plan.objectives]
         self.limits = [
             limit.at_most if limit.at_most is not None else (limit.ratio or 0.0) * goal.before
             for limit, goal in zip(self.plan.limits, self.kept, strict=True)
@@ -568,7 +568,7 @@ class _Walk:
             *(goal.before for goal in problem.goals),
             *problem.limits,
         ]
-        self.rows = [self._near(one, changes) for one in self.measures]
+        self.rows = [self._near(measure, changes) for measure in self.measures]
         heights = [float(m.values(changes)[0]) / o for m, o in self._sized()]
         self.start = np.concatenate([(start - self.low) / self.scale, heights])
 

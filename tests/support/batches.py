@@ -77,7 +77,7 @@ def signals_of(design: Machine) -> list[str]:
     """Names of all signals that a batch knows of a machine."""
     analysis = eq.analyze(design, 8)
     names = {name: None for name in analysis.summary if declared(name)[0].loop}
-    for name in (one.name for one in analysis.outputs.arrays):
+    for name in (array.name for array in analysis.outputs.arrays):
         kind, part = name.partition(".")[0], name.rpartition(".")[2]
         moving = kind in ("points", "links") and part in MOTIONS
         if moving or (kind in ("joints", "gears", "bearings") and part in ("force_x", "force_y")):

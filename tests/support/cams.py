@@ -245,9 +245,9 @@ def trace(machine: Machine, angles: Array, first: Poses) -> Poses:
     """Follow a machine with cams from its poses at crank angle 0 to rising crank angles."""
     constraints = Cammed(machine)
     q = newton.coordinates(first, 0)
-    for one in machine.sliders:  # whose angles the equations take without whole turns
-        k = constraints.columns[one.link] + 2
-        asked = first.angle_of(one.on)[0] + one.direction + one.angle
+    for slider in machine.sliders:  # whose angles the equations take without whole turns
+        k = constraints.columns[slider.link] + 2
+        asked = first.angle_of(slider.on)[0] + slider.direction + slider.angle
         q[k] += 2 * np.pi * np.round((asked - q[k]) / (2 * np.pi))
     for cam in machine.cams:
         turned = first.angle_of(cam.driver)[0] - first.angle_of(cam.carrier)[0]

@@ -52,9 +52,11 @@ def drawn(examples: int) -> int:
 
 def few(values: Iterable[Any], chosen: Container[Any]) -> list[Any]:
     """All values, of which those that are not chosen are tried by `--exhaustive` alone."""
-    return [one if one in chosen else pytest.param(one, marks=EXHAUSTIVE) for one in values]
+    return [value if value in chosen else pytest.param(value, marks=EXHAUSTIVE) for value in values]
 
 
 def few_together(values: Iterable[tuple[Any, ...]], chosen: Container[Any]) -> list[Any]:
     """As `few`, of values of several parameters."""
-    return [one if one in chosen else pytest.param(*one, marks=EXHAUSTIVE) for one in values]
+    return [
+        value if value in chosen else pytest.param(*value, marks=EXHAUSTIVE) for value in values
+    ]

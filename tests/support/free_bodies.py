@@ -259,7 +259,7 @@ def driving(system: System, drive: Drive | FurtherDrive) -> Array:
 def cylinder(machine: Machine, drive: Drive | FurtherDrive, poses: Poses) -> Contact:
     """Return where a drive that pushes acts, and along which line."""
     if drive.slider:
-        one = next(one for one in machine.sliders if one.name == drive.slider)
+        one = next(slider for slider in machine.sliders if slider.name == drive.slider)
         at = poses.place(one.link, machine.links[one.link].points[one.point])
         line = (float(np.cos(one.direction)), float(np.sin(one.direction)))
         return Contact("", one.link, one.on, at, (poses.turned(one.on, line),))
@@ -274,7 +274,7 @@ def cylinder(machine: Machine, drive: Drive | FurtherDrive, poses: Poses) -> Con
 def extent(machine: Machine) -> float:
     """Return the largest distance of two joints on one body: of its pins, and of what slides."""
     on_several = Counter(point for points in machine.bodies.values() for point in points)
-    sliding = {(one.link, one.point) for one in machine.sliders}
+    sliding = {(slider.link, slider.point) for slider in machine.sliders}
     pairs = (
         (points[a], points[b])
         for body, points in machine.bodies.items()

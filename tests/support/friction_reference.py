@@ -59,8 +59,8 @@ def solve(
     machine: Machine, poses: Poses, pairs: Mapping[str, tuple[str, str]]
 ) -> tuple[FreeBodies, dict[str, Rubbing]]:
     """Solve the free bodies with friction; forces of sliders have it too."""
-    given = {one.joint.removeprefix("joints."): one for one in machine.joints}
-    sliders = {one.name: one for one in machine.sliders}
+    given = {joint.joint.removeprefix("joints."): joint for joint in machine.joints}
+    sliders = {slider.name: slider for slider in machine.sliders}
     acting: list[Acting] = []
     before, rubbing = np.zeros(1), dict[str, Rubbing]()
     for _ in range(ROUNDS):

@@ -47,10 +47,12 @@ def keep(source: str, pictures: Iterable[Kept]) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     told = []
-    for one in pictures:
-        (folder / f"{one.name}.svg").write_text(one.svg, encoding="utf-8")
-        told.append({**asdict(one), "svg": f"{folder.name}/{one.name}.svg", "source": source})
-        told[-1]["size"] = SIZE.search(one.svg).groups()  # type: ignore[union-attr]
+    for picture in pictures:
+        (folder / f"{picture.name}.svg").write_text(picture.svg, encoding="utf-8")
+        told.append(
+            {**asdict(picture), "svg": f"{folder.name}/{picture.name}.svg", "source": source}
+        )
+        told[-1]["size"] = SIZE.search(picture.svg).groups()  # type: ignore[union-attr]
     whole = folder / f"{LIST}.tmp"  # another session may read it to make its page
     whole.write_text(json.dumps(told), encoding="utf-8")
     whole.replace(folder / LIST)

@@ -102,8 +102,8 @@ def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:
             moment = about_axes(plane, force)
             asked[body] = asked[body] - moment
             on_frame = on_frame + whole * moment
-    held = {one.on for one in flat.joints.values() if one.by == FRAME}
-    held |= {one.by for one in flat.joints.values() if one.on == FRAME}
+    held = {joint.on for joint in flat.joints.values() if joint.by == FRAME}
+    held |= {joint.by for joint in flat.joints.values() if joint.on == FRAME}
     planes = {}
     coupled = {**flat.gears, **flat.racks, **flat.pulls}
     for name, one in chain(flat.joints.items(), coupled.items()):
@@ -115,7 +115,7 @@ def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:
     for body, moment in thrusts(machine, poses, flat, planes):
         asked[body] = asked[body] - moment
     couples = tilted(machine, flat, asked, held)
-    shafts = {one.link for one in machine.bearings.values()}
+    shafts = {bearing.link for bearing in machine.bearings.values()}
     bearings = {}
     for shaft in shafts:
         bearings |= borne(machine, shaft, flat, planes, couples)
@@ -170,7 +170,7 @@ def point_plane(machine: Machine, body: str, point: str) -> float:
 
 def joint_plane(machine: Machine, name: str, on: str, by: str, held: set[str]) -> float:
     """Return the plane of a joint or mesh."""
-    if name in {one.name for one in machine.couplings}:
+    if name in {coupling.name for coupling in machine.couplings}:
         return machine.links[on].plane
     ends = {body: name.split("/", maxsplit=1)[0] for body in (on, by) if body != FRAME}
     for slider in machine.sliders:

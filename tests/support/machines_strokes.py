@@ -38,7 +38,7 @@ def lengths(machine: Machine, drive: Drive) -> Array:
     """Length that a drive has over a turn of the crank, (N,)."""
     poses = from_motion(machine, move(machine, CYCLE))
     if drive.slider:
-        one = next(one for one in machine.sliders if one.name == drive.slider)
+        one = next(slider for slider in machine.sliders if slider.name == drive.slider)
         point = machine.links[one.link].points[one.point]
         way = poses.place(one.link, point) - poses.place(
             one.on, machine.points_of(one.on)[one.through]
@@ -97,7 +97,7 @@ def drives(machine: Machine, by_slider: bool) -> list[dict[str, Any]]:
     that its pinion moves, as that tells where it is at crank angle 0."""
     if by_slider:
         moved = {coupling.driven for coupling in machine.couplings}
-        return [{"slider": one.name} for one in machine.sliders if one.link not in moved]
+        return [{"slider": slider.name} for slider in machine.sliders if slider.link not in moved]
     bodies = machine.bodies
     ends = [(body, point) for body in (FRAME, *machine.links) for point in bodies[body]]
     found = []

@@ -52,8 +52,8 @@ class Totals:
 
 def totals(machine: Machine, poses: Poses) -> Totals:
     """Return what MuJoCo finds for shaking force, shaking moment and drive torque."""
-    linear = tuple(one for one in machine.torsion_springs if one.stiffness is not None)
-    others = tuple(one for one in machine.torsion_springs if one.stiffness is None)
+    linear = tuple(spring for spring in machine.torsion_springs if spring.stiffness is not None)
+    others = tuple(spring for spring in machine.torsion_springs if spring.stiffness is None)
     model = model_of(machine, machine.springs, linear)
     sprung = machine.springs or linear
     bare = demands(model_of(machine) if sprung else model, machine, poses, (0.0, 0.0))
@@ -96,7 +96,7 @@ def demands(model: mujoco.MjModel, machine: Machine, poses: Poses, gravity: Vect
     links = {name: asked(model, name, *bodies) for name in machine.links}
     arms = {name: poses.origin[name] - machine.frame[drive_pivot(machine)] for name in links}
     base = sum(one[:, :3] + about(cross(arms[name], one[:, :2])) for name, one in links.items())
-    across = sum(one[:, 3:] for one in links.values())
+    across = sum(link[:, 3:] for link in links.values())
     flat = {name: one[:, :3] for name, one in links.items()}
     return Demands(np.asarray(base), np.asarray(across), flat, work)
 

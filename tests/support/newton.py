@@ -93,7 +93,7 @@ class Constraints:
         if drive.stroke is None:
             return self._turn({drive.link: 1.0}, q, -wanted)
         if drive.slider:
-            one = next(one for one in self.machine.sliders if one.name == drive.slider)
+            one = next(slider for slider in self.machine.sliders if slider.name == drive.slider)
             way = self._travel(q, rate, one)
             return Row(way.residual - wanted, way.jacobian, way.bend)
         assert drive.between is not None
@@ -354,7 +354,7 @@ def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
     row = constraints.at(q, np.zeros_like(q), crank_angle)
     drives = constraints.machine.driven
     asked = np.zeros(len(row.jacobian))
-    asked[-len(drives) :] = [constraints.commanded(one, crank_angle)[1] for one in drives]
+    asked[-len(drives) :] = [constraints.commanded(drive, crank_angle)[1] for drive in drives]
     return solved(row.jacobian, asked)
 
 

@@ -62,7 +62,7 @@ def own_outputs(of: type[Machine]) -> Any:
 
 def with_own(of: type[Made], base: Machine, **own: Any) -> Made:
     """The base as a machine of another class, with what that has besides."""
-    return of(**{one.name: getattr(base, one.name) for one in fields(Machine)} | own)
+    return of(**{field.name: getattr(base, field.name) for field in fields(Machine)} | own)
 
 
 def read_back(
@@ -117,7 +117,7 @@ def scripted(machine: Machine, names: Sequence[str], folder: Path) -> None:
 def drawn(machine: Machine, role: str) -> tuple[Scene, list[Any]]:
     """The machine's signs, and the shapes of a role among them."""
     scene = Scene.of(eq.analyze(machine, 12).motion)
-    return scene, [one for piece in pieces(scene) for one in piece.shapes if one.role == role]
+    return scene, [shape for piece in pieces(scene) for shape in piece.shapes if shape.role == role]
 
 
 def on_the_page(machine: Machine, table: str, keys: Sequence[str], numbers: Sequence[str]) -> None:
@@ -144,7 +144,7 @@ def exported(machine: Machine, name: str, folder: Path) -> None:
 
 def found_in_the_gallery(machine: Machine, words: str) -> None:
     """The words that the gallery finds the machine by have those of its kind, and of no other."""
-    base = Machine(**{one.name: getattr(machine, one.name) for one in fields(Machine)})
+    base = Machine(**{field.name: getattr(machine, field.name) for field in fields(Machine)})
     assert words in search_words(machine)
     assert words not in search_words(base)
 

@@ -129,8 +129,8 @@ class Engine:
         lead[:n, :n] = np.eye(n)
         self.data.qpos[:n], self.data.qacc[:] = coordinates, 0.0
         for suffix, row in zip(self.rows, self.rig.rows, strict=True):
-            drawn = [one.at(row.phase - first)[0] for one in self.series]
-            turned = [one.at(angle + row.phase - first) for one in self.series]
+            drawn = [sery.at(row.phase - first)[0] for sery in self.series]
+            turned = [sery.at(angle + row.phase - first) for sery in self.series]
             follow = [(angle, 1.0, 0.0)]
             follow += [
                 (at - start, *more) for (at, *more), start in zip(turned, drawn, strict=True)
@@ -199,13 +199,13 @@ class Engine:
         mujoco.mj_fullM(self.model, self.data, matrix)
         inertia = lead.T @ matrix @ lead
         if self.speed_given:
-            found = np.linalg.solve(inertia[:n, :n], -demand[:n])
-            return found, 0.0, float(demand[n] + inertia[n, :n] @ found)
+            solution = np.linalg.solve(inertia[:n, :n], -demand[:n])
+            return solution, 0.0, float(demand[n] + inertia[n, :n] @ solution)
         assert self.rig.drive is not None
         torque = float(self.rig.drive(np.array(rate)))
         demand[n] -= torque
-        found = np.linalg.solve(inertia, -demand)
-        return found[:n], float(found[n]), torque
+        solution = np.linalg.solve(inertia, -demand)
+        return solution[:n], float(solution[n]), torque
 
     # - time -
 

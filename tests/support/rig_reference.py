@@ -550,14 +550,14 @@ def change(rig: Rig, crank_angle: float, state: Real) -> Real:
     """
     n = rig.freedoms
     now = instant(rig, crank_angle, state)
-    found = balance(rig, now)
+    solution = balance(rig, now)
     rates = np.empty_like(state)
     rates[:n] = state[n : 2 * n]
-    rates[n : 2 * n] = found.acceleration.T[3 - n :]
-    rates[2 * n] = found.crank_acceleration
+    rates[n : 2 * n] = solution.acceleration.T[3 - n :]
+    rates[2 * n] = solution.crank_acceleration
     rates[2 * n + 1] = 1.0
     if len(state) > 2 * n + 2:
-        rates[2 * n + 2] = found.motor * now.rate
+        rates[2 * n + 2] = solution.motor * now.rate
         rates[2 * n + 3] = -mount_power(rig, now)
     return rates / np.abs(state[2 * n])
 
@@ -730,7 +730,7 @@ def steady(
     work, loss = states[-1, -2:, 0]
     angle, states = forward * travel[:-1], states[:-1, :-2, 0]
     now = instant(rig, angle, states.T)
-    found = balance(rig, now)
+    solution = balance(rig, now)
     pushes, _, turns = mount_forces(rig, now)
     moved = displacement(rig, now, rig.gauge)[1]
     return Steady(
@@ -740,10 +740,10 @@ def steady(
         gauge=(np.conj(rig.gauge_direction) * moved).real,
         mounts=pushes,
         torsions=turns,
-        torque=found.torque,
-        motor=found.motor,
-        joints={name: found.joints[:, :, k] for k, name in enumerate(JOINTS)},
-        acceleration=found.acceleration,
+        torque=solution.torque,
+        motor=solution.motor,
+        joints={name: solution.joints[:, :, k] for k, name in enumerate(JOINTS)},
+        acceleration=solution.acceleration,
         work=float(work),
         loss=float(loss),
     )

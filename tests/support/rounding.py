@@ -13,7 +13,7 @@ Array = np.ndarray[Any, Any]
 
 def half_digits(numbers: Sequence[float], significant: int) -> list[float]:
     """Half of the last digit of numbers that are printed with so many significant ones."""
-    return [0.5 * 10.0 ** (floor(log10(abs(one))) - significant + 1) for one in numbers]
+    return [0.5 * 10.0 ** (floor(log10(abs(number))) - significant + 1) for number in numbers]
 
 
 def reach(
