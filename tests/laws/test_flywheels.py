@@ -14,7 +14,7 @@ import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.errors import ResponseError, UsageError
 from equipoise.mechanism.parts.motors import DcMotor, InductionMotor, Motor
-from equipoise.running import tabulated
+from equipoise.running import collocation
 from equipoise.running.blocks import drives_headline, run_headline
 from equipoise.running.collocation import Instant
 from equipoise.running.drivers import Driver
@@ -80,8 +80,8 @@ def test_scipy_goes_through_a_cycle_alike(name: str) -> None:
 
 
 RIGS = ("yamashita-rig", "balance-rig")
-NODES = np.polynomial.chebyshev.chebpts1(tabulated.NODES)
-LAST = tabulated.NODES - 1
+NODES = np.polynomial.chebyshev.chebpts1(collocation.NODES)
+LAST = collocation.NODES - 1
 
 
 @pytest.mark.parametrize("name", few(["walking-transplanter", *RIGS], {"balance-rig"}))

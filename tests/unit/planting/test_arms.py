@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.figures.planting import Paths, charts, tips
+from equipoise.figures.planting import Paths, tips, torque
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.field import PlantingArm, Soil
 from equipoise.planting.arms import machine_figures
@@ -198,7 +198,7 @@ def test_pictures() -> None:
     np.testing.assert_allclose(over, own, atol=1e-12)
     names = [chart.name for chart in tips(figures)]
     assert {"velocity", "velocity-Q", "acceleration-x-Q"} <= {*names}
-    (panel,) = charts(figures)["torque"].panels
+    (panel,) = torque(figures).panels
     assert len(panel.bands) == len(figures.visits) + len(figures.further[0].visits)
     assert [curve.label for curve in paths.of_further_arms(over_ground=True)] == ["path of Q"]
 

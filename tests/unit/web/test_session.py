@@ -322,8 +322,8 @@ def test_a_crank_that_cannot_turn_swings_and_can_be_dragged() -> None:
     moved = [{"move": "C", "to": [0.1, 0.1], "at": 3}]
     found = state(ask(session, "edit", seq=2, edits=moved, label="move C")[0]).content
     assert found["status"]["finished"] and found["angles"] == first["angles"]
-    film = ask(session, "download", kind="film")
-    assert film[1].buffer.startswith(b"GIF")
+    (film,) = ask(session, "download", kind="film")
+    assert film.buffer.startswith(b"GIF")
     told = ask(session, "balance", seq=3)[0].content
     assert told["type"] == "state" and told["notes"][0].startswith("Leave the masses as they are")
 
