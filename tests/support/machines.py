@@ -13,7 +13,6 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
-from hypothesis import strategies as st
 
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import (
@@ -781,8 +780,3 @@ def make(kind: str, seed: int) -> Case:
     if kind in machines_cams.ALL:
         return machines_cams.make(kind, seed)
     return {**KINDS, **REDUNDANT}[kind](np.random.default_rng([seed, *kind.encode()]))
-
-
-def cases(*kinds: str) -> st.SearchStrategy[Case]:
-    """Return a hypothesis strategy for machines of some kinds, or of all."""
-    return st.builds(make, st.sampled_from(kinds or tuple(KINDS)), st.integers(0, 2**32 - 1))

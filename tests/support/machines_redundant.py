@@ -15,8 +15,6 @@ from support.machines import Case, Draft, _draft, _spot, _unit, slider_crank
 from support.newton import Constraints, closed
 from support.poses import Array
 
-Places = dict[str, Array]
-
 
 @dataclass(frozen=True)
 class Laid(Case):

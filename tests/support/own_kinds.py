@@ -39,6 +39,22 @@ from support.refusals import refused
 Made = TypeVar("Made", bound=Machine)
 
 
+def crank_rocker_with(**elements: Any) -> Machine:
+    """The crank-rocker of a bundled model with force elements in place of its spring: they may act
+    at a point Q of the coupler and a point S of the frame too.
+    """
+    machine = eq.load("spring-balanced-crank")
+    coupler = machine.links["coupler"]
+    points = {**coupler.points, "Q": (0.098, -0.032)}
+    return replace(
+        machine,
+        springs=(),
+        frame={**machine.frame, "S": (0.1006, 0.0013)},
+        links={**machine.links, "coupler": replace(coupler, points=points)},
+        **elements,
+    )
+
+
 def machine_with(kind: type[PartKind]) -> type[Machine]:
     """Machines that may have parts of a kind, as `part_lists` would have them."""
     lists = key(Tables(KeyTable(kind)), kind.list_text, default=(), kw_only=True)

@@ -24,7 +24,6 @@ SLOW = LENGTHS.replace("designs = 200", "designs = 1000000").replace(
 CLOCK = "import time\nwhile time.process_time() < {}: pass"
 """A process that ends after so many seconds of a processor, later where the machine is busy, as the
 server."""
-NOTHING: dict[str, Any] = {}
 
 
 class Session:

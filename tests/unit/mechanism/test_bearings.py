@@ -215,7 +215,6 @@ def test_check_prints_them(tmp_path: Any) -> None:
     assert "joints.B, radius 12.00 mm, width 20.00 mm" in out
 
 
-RATED = "joints[1].bearing"
 WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
     ({"joint": "joints.B", "width": 0.02}, {"place": "joints[1].radius"}),
     (

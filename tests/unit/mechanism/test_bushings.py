@@ -16,7 +16,14 @@ from equipoise.errors import ModelError
 from equipoise.exchange.export import export
 from equipoise.mechanism import Bushing, Machine
 from equipoise.results.joint_blocks import elements_tables
-from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
+from support.own_kinds import (
+    crank_rocker_with,
+    designs_by_numbers,
+    drawn,
+    on_the_page,
+    read_back,
+    scripted,
+)
 from support.refusals import refused
 
 ON_LINK = Bushing(
@@ -29,16 +36,7 @@ ON_FRAME = Bushing("coupler", "Q", "S", stiffness=(500.0, 200.0), torsional_damp
 
 def held(*bushings: Bushing) -> Machine:
     """A crank-rocker whose links are held by bushings."""
-    machine = eq.load("spring-balanced-crank")
-    coupler = machine.links["coupler"]
-    points = {**coupler.points, "Q": (0.098, -0.032)}
-    return replace(
-        machine,
-        springs=(),
-        frame={**machine.frame, "S": (0.1006, 0.0013)},
-        links={**machine.links, "coupler": replace(coupler, points=points)},
-        bushings=bushings,
-    )
+    return crank_rocker_with(bushings=bushings)
 
 
 MACHINE = held(ON_LINK, ON_FRAME)

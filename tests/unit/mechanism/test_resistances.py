@@ -15,7 +15,14 @@ from equipoise.errors import ModelError
 from equipoise.exchange.export import export
 from equipoise.mechanism import Machine, Resistance, ResistanceTable
 from equipoise.schema.writing import Writer, toml_text
-from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
+from support.own_kinds import (
+    crank_rocker_with,
+    designs_by_numbers,
+    drawn,
+    on_the_page,
+    read_back,
+    scripted,
+)
 from support.refusals import refused
 from surface.running import example_text
 
@@ -28,16 +35,7 @@ ON_LINK = Resistance(
 
 def resisted(*resistances: Resistance) -> Machine:
     """A crank-rocker whose links are resisted."""
-    machine = eq.load("spring-balanced-crank")
-    coupler = machine.links["coupler"]
-    points = {**coupler.points, "Q": (0.098, -0.032)}
-    return replace(
-        machine,
-        springs=(),
-        frame={**machine.frame, "S": (0.1006, 0.0013)},
-        links={**machine.links, "coupler": replace(coupler, points=points)},
-        resistances=resistances,
-    )
+    return crank_rocker_with(resistances=resistances)
 
 
 MACHINE = resisted(ANY_WAY, ON_LINK)

@@ -15,7 +15,14 @@ from equipoise.errors import ModelError
 from equipoise.exchange.export import export
 from equipoise.mechanism import Machine, Stop
 from support.chosen import few_together
-from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
+from support.own_kinds import (
+    crank_rocker_with,
+    designs_by_numbers,
+    drawn,
+    on_the_page,
+    read_back,
+    scripted,
+)
 from support.refusals import refused
 
 ON_FRAME = Stop("rocker", "F", "S", 2e4, direction=0.4, restitution=0.6, speed=0.4)
@@ -24,16 +31,7 @@ ON_LINK = Stop("rocker", "F", "Q", 1e4, on="coupler", direction=0.5, restitution
 
 def stopped(*stops: Stop) -> Machine:
     """A crank-rocker with stops in the middle of what the rocker's F does there."""
-    machine = eq.load("spring-balanced-crank")
-    coupler = machine.links["coupler"]
-    points = {**coupler.points, "Q": (0.098, -0.032)}
-    return replace(
-        machine,
-        springs=(),
-        frame={**machine.frame, "S": (0.1006, 0.0013)},
-        links={**machine.links, "coupler": replace(coupler, points=points)},
-        stops=stops,
-    )
+    return crank_rocker_with(stops=stops)
 
 
 MACHINE = stopped(ON_FRAME, ON_LINK)
