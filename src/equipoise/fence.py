@@ -22,6 +22,8 @@ from equipoise.i18n import Note
 
 OUTSIDE = Note("lies outside of the folder that is served; name another")
 OUT = "which leads out of its folder"
+LONGEST_NAME = 200
+"""Characters of a refused name that the error repeats."""
 
 
 @dataclass(frozen=True)
@@ -44,21 +46,27 @@ class Fence:
         ------
         UsageError : it is absolute, goes up, or goes out by a symbolic link.
         """
-        given = f"{what}: got {name[:200]!r}"
         absolute = name.startswith(("/", "\\", "~")) or ntpath.isabs(name)
+        shown = name[:LONGEST_NAME]
         if absolute or ".." in re.split(r"[\\/]", name):
             raise UsageError(
-                Note(
-                    "{given}; name files from the folder that is served, without .. and not "
-                    "from the root",
-                    given=given,
+                at_place(
+                    what,
+                    Note(
+                        "got {name!r}; name files from the folder that is served, without .. and "
+                        "not from the root",
+                        name=shown,
+                    ),
                 )
             )
         if _real(self.folder / name, (self.folder,)) is None:
             raise UsageError(
-                Note(
-                    "{given}, which leads out of the folder that is served; name another",
-                    given=given,
+                at_place(
+                    what,
+                    Note(
+                        "got {name!r}, which leads out of the folder that is served; name another",
+                        name=shown,
+                    ),
                 )
             )
 

@@ -18,7 +18,7 @@ from lazy_loader import attach_stub
 from equipoise.dataclass import Constructor
 from equipoise.errors import CallError, unknown
 
-Names = tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]
+LazyAttributes = tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]
 Accepts = Callable[[Any], bool]
 
 
@@ -58,7 +58,7 @@ READ = {"Machine", "Tool", "Study"}
 ROOMS = ("", "mechanism", "handheld", "studies", "balancing", "vibration", "planting", "measured")
 
 
-def attach(package: str, file: str) -> Names:
+def attach(package: str, file: str) -> LazyAttributes:
     """The names of the stub beside a file, each imported when it is first used; see `lazy_loader`.
 
     Functions are guarded: they raise a `UsageError` where an argument is none of theirs.

@@ -11,8 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.linear_conditions import (
+    ConditionKind,
     Conditions,
-    Kind,
     conditions,
     least_moments,
     parameter_scales,
@@ -56,7 +56,7 @@ def effects(machine: eq.Machine, output: str) -> tuple[Array, Array, int]:
     return found.values, getattr(found, output), motion.turns
 
 
-def left(values: Array, columns: Array, kind: Kind, turns: int) -> float:
+def left(values: Array, columns: Array, kind: ConditionKind, turns: int) -> float:
     """Largest value of an output, without order 1 for a sine, relative to its parts."""
     signal = values @ columns
     if kind == "sine":
@@ -70,7 +70,7 @@ def left(values: Array, columns: Array, kind: Kind, turns: int) -> float:
 @every_machine
 @pytest.mark.parametrize("output", ["shaking_force", "shaking_moment"])
 @pytest.mark.parametrize("wanted", ["zero", "sine"])
-def test_conditions_suffice(kind: str, seed: int, output: str, wanted: Kind) -> None:
+def test_conditions_suffice(kind: str, seed: int, output: str, wanted: ConditionKind) -> None:
     machine = make(kind, seed).machine
     found = conditions(machine, wanted, [output])
     values, columns, turns = effects(machine, output)

@@ -18,7 +18,7 @@ import pytest
 
 from equipoise.cli import app
 from equipoise.cli.models import LinkageFile
-from equipoise.cli.options import BelongsTo, Language
+from equipoise.cli.options import BelongsTo, LanguageOption
 from equipoise.cli.outputs import Outputs
 from equipoise.cli.runner import CommandResult, command
 from equipoise.cli.tools import tools
@@ -39,7 +39,7 @@ def heft(
     *,
     times: int = 1,
     names: Annotated[bool, BelongsTo("--json")] = False,
-    language: Language = "en",
+    language: LanguageOption = "en",
 ) -> CommandResult:
     """Report how many links a machine has."""
     links = times * len(machine.links)

@@ -130,9 +130,89 @@ def test_tolerances_of_balancing_have_a_name() -> None:
     assert unnamed == []
 
 
+def aliases_of(file: Path) -> Iterator[str]:
+    """Names of types that a module declares beside its classes, such as ``Kind = Literal[...]``."""
+    body = [*tree_of(file).body]
+    for node in body:
+        if isinstance(node, ast.If):  # one for the checker, one for the command line
+            body += [*node.body, *node.orelse]
+            continue
+        target = node.targets[0] if isinstance(node, ast.Assign) else None
+        target = node.target if isinstance(node, ast.AnnAssign) else target
+        if isinstance(target, ast.Name):
+            name = target.id.lstrip("_")
+            variable = ast.unparse(node).partition("= ")[2].startswith("TypeVar(")
+            if name[:1].isupper() and not name.isupper() and not variable:
+                yield target.id
+
+
+SHARED_ALIASES = frozenset(
+    [
+        "Answer",
+        "Answers",
+        "Array",
+        "Asked",
+        "Block",
+        "Body",
+        "Change",
+        "Choice",
+        "Command",
+        "Conditions",
+        "Data",
+        "Demand",
+        "Direction",
+        "Drawings",
+        "End",
+        "Ends",
+        "Figures",
+        "FileKind",
+        "Folder",
+        "Forms",
+        "Kind",
+        "Law",
+        "Levels",
+        "Line",
+        "Links",
+        "Loop",
+        "Many",
+        "Measure",
+        "Model",
+        "Names",
+        "Number",
+        "OnProgress",
+        "Operation",
+        "Pair",
+        "Picture",
+        "Pictures",
+        "Piece",
+        "Place",
+        "Point",
+        "Progress",
+        "Read",
+        "Row",
+        "Shape",
+        "Shapes",
+        "Signal",
+        "Signals",
+        "Spread",
+        "Step",
+        "Turning",
+        "Units",
+        "Values",
+        "Vector",
+        "View",
+    ]
+)
+"""Aliases that still have the name of a class, or of an alias in another module; no further one."""
+
+
 def test_a_class_name_means_one_thing() -> None:
+    """And so does that of a type that has a name of its own."""
     names = [node.name for file in FILES for node in nodes(file) if isinstance(node, ast.ClassDef)]
     assert {name for name, count in Counter(names).items() if count > 1} == set()
+    names += [name for file in FILES for name in {*aliases_of(file)}]
+    shared = {name for name, count in Counter(names).items() if count > 1}
+    assert shared - SHARED_ALIASES == set()
 
 
 VAGUE = frozenset(

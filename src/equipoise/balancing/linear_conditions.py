@@ -157,9 +157,9 @@ def _divisor(machine: Machine, terms: list[tuple[str, str, float]]) -> float:
     return 1.0
 
 
-Kind = Literal["zero", "sine"]
+ConditionKind = Literal["zero", "sine"]
 
-KINDS: tuple[Kind, ...] = ("zero", "sine")
+KINDS: tuple[ConditionKind, ...] = ("zero", "sine")
 OUTPUTS = tuple(sorted(name for name in DECLARED if name.startswith("shaking_")))
 """What inertia alone makes: weight and loads are no part of it."""
 ANGLES, MOST_ANGLES, LEAST_ANGLES = 360, 40_000, 40
@@ -190,7 +190,7 @@ class Conditions(Result):
     blocks_in = "balancing.linear_conditions.conditions_blocks"
     records: ClassVar[str] = "conditions"
 
-    kind: Kind
+    kind: ConditionKind
     outputs: tuple[str, ...]
     parameters: tuple[tuple[str, str], ...]
     coefficients: Array
@@ -234,7 +234,7 @@ class Conditions(Result):
 
 
 def conditions(
-    machine: Machine, kind: Kind = "zero", outputs: Sequence[str] = ("shaking_force",)
+    machine: Machine, kind: ConditionKind = "zero", outputs: Sequence[str] = ("shaking_force",)
 ) -> Conditions:
     """Conditions under which outputs vanish, or are pure sines, at constant crank speed.
 
@@ -280,7 +280,7 @@ class ParameterEffects:
         motion = move(machine, max(LEAST_ANGLES, min(ANGLES, MOST_ANGLES // turns)), 1.0, 0.0)
         return cls(machine, OutputSource(motion, regressor(motion)), turns)
 
-    def conditions(self, kind: Kind, outputs: Sequence[str]) -> Conditions:
+    def conditions(self, kind: ConditionKind, outputs: Sequence[str]) -> Conditions:
         """Conditions under which outputs vanish or are pure sines, as `conditions` returns them."""
         machine = self.machine
         scale = parameter_scales(machine)
@@ -319,7 +319,7 @@ def parameter_scales(machine: Machine) -> Array:
     return np.tile([1.0, size, size, size**2], len(machine.links))
 
 
-def _must_vanish(effects: Array, turns: int, kind: Kind) -> Array:
+def _must_vanish(effects: Array, turns: int, kind: ConditionKind) -> Array:
     """What must vanish of the effects (R, P): the amplitudes of all orders that are not allowed.
 
     What rounding has left of an effect of allowed orders alone is no effect.

@@ -31,7 +31,7 @@ from equipoise.signals import Array, Periodic
 
 Step = Callable[[], None]
 """Is called after each step of what may take minutes."""
-Pieces = tuple[Array, Array]
+ValuesAndSlopes = tuple[Array, Array]
 """Values (P,) and their slopes (P, m) by the phases."""
 
 SMOOTHING = (1e-1, 1e-2, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
@@ -232,7 +232,7 @@ def _step(cost: Cost, phases: Array, region: float) -> tuple[Array, float]:
     return result.x[:free] * region, float(weights @ np.maximum(now, _least(cost)) - result.fun)
 
 
-def _below(pieces: list[Pieces], unit: Array) -> Array:
+def _below(pieces: list[ValuesAndSlopes], unit: Array) -> Array:
     """Rows (P, m - 1 + terms): slopes of each value, less that of the largest of its term."""
     slopes = np.vstack([slopes[:, 1:] for _, slopes in pieces])
     owner = np.repeat(np.arange(len(pieces)), [len(values) for values, _ in pieces])
@@ -252,7 +252,7 @@ def _curved(cost: Cost, phases: Array, after: Step) -> Array:
 
     at_phases = partial(_pieces_at, tops, {})  # values and slopes are asked for one by one
 
-    def pieces(x: Array) -> list[Pieces]:
+    def pieces(x: Array) -> list[ValuesAndSlopes]:
         return at_phases(np.concatenate([phases[:1], phases[1:] + x[:free]]))
 
     def room(x: Array) -> Array:
@@ -284,8 +284,8 @@ def _curved(cost: Cost, phases: Array, after: Step) -> Array:
 
 
 def _pieces_at(
-    tops: list[ActivePeaks], known: dict[bytes, list[Pieces]], phases: Array
-) -> list[Pieces]:
+    tops: list[ActivePeaks], known: dict[bytes, list[ValuesAndSlopes]], phases: Array
+) -> list[ValuesAndSlopes]:
     """Pieces of all tops at phases (m,); those of the last phases are `known`."""
     key = phases.tobytes()
     if key not in known:
@@ -334,7 +334,7 @@ class ActivePeaks:
             term, tuple((_looked_for(signal, 1), _looked_for(signal, -1)) for signal in signals)
         )
 
-    def pieces(self, phases: Array) -> Pieces:
+    def pieces(self, phases: Array) -> ValuesAndSlopes:
         """Values (P,) whose largest is the term's, and their slopes (P, m) by the phases (m,)."""
         if (jumping := self.term.jumping) is not None:
             ((first, second),) = self.places
@@ -345,7 +345,7 @@ class ActivePeaks:
         values = [self._of_speed(*each) for each in zip(turned, self.places, strict=True)]
         return np.concatenate([v for v, _ in values]), np.vstack([s for _, s in values])
 
-    def _of_speed(self, turned: Array, places: tuple[Array, Array]) -> Pieces:
+    def _of_speed(self, turned: Array, places: tuple[Array, Array]) -> ValuesAndSlopes:
         """Active peaks at one speed, from the amplitudes (m, C, K + 1) of all rows."""
         term = self.term
         slopes = 1j * term.signals.orders * turned
@@ -360,7 +360,9 @@ class ActivePeaks:
         )
         return self._of_ends(high, low, len(total.amplitudes) > 1)
 
-    def _of_ends(self, of_tops: Pieces, of_bottoms: Pieces, is_vector: bool) -> Pieces:
+    def _of_ends(
+        self, of_tops: ValuesAndSlopes, of_bottoms: ValuesAndSlopes, is_vector: bool
+    ) -> ValuesAndSlopes:
         """Of tops, and of bottoms with their sign turned; a vector's size has tops alone."""
         (high, rising), (low, falling) = of_tops, of_bottoms
         if self.term.measure == "peak" and is_vector:
@@ -372,13 +374,13 @@ class ActivePeaks:
         return both, (rising[:, None] + falling).reshape(len(both), -1)
 
 
-def _root(total: Array, slopes: Array, shares: Array) -> Pieces:
+def _root(total: Array, slopes: Array, shares: Array) -> ValuesAndSlopes:
     root = np.sqrt(np.sum(np.abs(total) ** 2 * shares))
     slope = np.sum((total.conj() * slopes * shares).real, axis=(1, 2)) / max(root, TINY)
     return np.array([root]), slope[None]
 
 
-def _area(total: Periodic, slopes: Array) -> Pieces:
+def _area(total: Periodic, slopes: Array) -> ValuesAndSlopes:
     count = AREA_SAMPLES * total.turns
     values = total.samples(count)[0]
     change = np.sign(values) * Periodic(slopes[:, 0], total.turns).samples(count)
@@ -386,7 +388,7 @@ def _area(total: Periodic, slopes: Array) -> Pieces:
     return area, 2 * np.pi * np.mean(change, axis=1)[None]
 
 
-def _tops_with_slopes(total: Periodic, slopes: Array, start: Array, sign: int) -> Pieces:
+def _tops_with_slopes(total: Periodic, slopes: Array, start: Array, sign: int) -> ValuesAndSlopes:
     """Tops (sign 1) of a signal, or its bottoms (-1) with their sign turned; of a vector's length.
 
     total : amplitudes (C, K + 1).  slopes : (m, C, K + 1), its derivatives by the phases.

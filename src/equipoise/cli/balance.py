@@ -12,10 +12,10 @@ from cyclopts import App, Parameter
 from equipoise.cli.models import LinkageFile, PlannedFile, at_speed
 from equipoise.cli.options import (
     CrankZero,
-    Goals,
-    Limits,
+    LimitList,
     NewFile,
     Out,
+    OutputList,
     Speed,
     count,
     error_in_option,
@@ -43,8 +43,8 @@ def balance(
     machine: PlannedFile,
     /,
     *,
-    objective: Goals = None,
-    limit: Limits = None,
+    objective: OutputList = None,
+    limit: LimitList = None,
     speed: Speed = None,
     freed: Freed = Freed(),
     out: Out = None,
@@ -163,7 +163,7 @@ def trade_off(
     /,
     *,
     points: Annotated[int, count(2, MOST_POINTS)] = 21,
-    limit: Limits = None,
+    limit: LimitList = None,
     speed: Speed = None,
     freed: Freed = Freed(),
 ) -> Result:

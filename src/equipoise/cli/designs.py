@@ -8,18 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from equipoise.cli.models import OpenedStore, StudyFile
 from equipoise.cli.options import Computers, Names, count
-from equipoise.cli.outputs import Chosen, Columns, Outputs, check_new, write_model
+from equipoise.cli.outputs import Chosen, CsvColumns, Outputs, check_new, write_model
 from equipoise.cli.progress import Watched, swept
 from equipoise.cli.runner import CommandResult, command
 from equipoise.i18n import Note
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from equipoise.figures import Picture
+    from equipoise.signals import Array
     from equipoise.studies.study import Study
 
-    Array = np.ndarray[Any, Any]
 
 MOST_LISTED, MOST_SEED = 100_000, 2**32 - 1
 
@@ -157,7 +155,7 @@ def _save(model: Any, out: str | None, number: int, of: Note) -> list[str]:
 
 def _columns(
     designs: Iterable[int], columns: Mapping[str, Array], units: Mapping[str, str]
-) -> Columns:
+) -> CsvColumns:
     """Columns of designs as name, unit and values; the form is that of `export`."""
     import numpy as np
 

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from equipoise.cli.models import NamedFile
+from equipoise.cli.models import BundledFile
 from equipoise.cli.options import (
     Angle,
-    Language,
+    LanguageOption,
     Out,
     crank_angles,
     error_in_option,
@@ -35,7 +35,7 @@ FILE = "Path of a model file or of a store, or the name of a bundled example."
 
 @command(long=True)
 def export(
-    file: Annotated[NamedFile, Parameter(name="FILE", help=FILE)],
+    file: Annotated[BundledFile, Parameter(name="FILE", help=FILE)],
     /,
     *,
     out: Out = None,
@@ -45,7 +45,7 @@ def export(
     kept: bool = False,
     link: Annotated[str | None, wants("LINK")] = None,
     angles: Annotated[Any, read_by(crank_angles)] = None,
-    language: Language = "en",
+    language: LanguageOption = "en",
 ) -> CommandResult:
     """Write a linkage for another program, or all designs of a store as one table, in SI units.
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from equipoise.cli.models import NamedFile
+from equipoise.cli.models import BundledFile
 from equipoise.cli.options import Many, Names, OtherFile, Rate, read_by, size, wants
 from equipoise.cli.outputs import Shown, check_new, wrote
 from equipoise.cli.runner import CommandResult, command
@@ -37,7 +37,7 @@ def _unit(option: str, text: str) -> float:
 
 @command(Shown)
 def import_file(
-    file: Annotated[NamedFile, Parameter(name="FILE")],
+    file: Annotated[BundledFile, Parameter(name="FILE")],
     /,
     *,
     out: Annotated[

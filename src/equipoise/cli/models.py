@@ -79,7 +79,7 @@ if TYPE_CHECKING:
     OpenedStore: TypeAlias = Store
     AnyFile: TypeAlias = str
     ModelFile: TypeAlias = str
-    NamedFile: TypeAlias = str
+    BundledFile: TypeAlias = str
 else:
     LINKAGE = LoadedFile("schema.models.load_linkage", example="yamashita-1", in_parts=True)
     PLANTING, SUPPORT = (
@@ -104,6 +104,6 @@ else:
     OpenedStore = Annotated[
         str, Parameter(name="STORE", help='Path of a store, as "equipoise sweep" makes it.'), STORE
     ]
-    NamedFile = Annotated[str, NAMED]
+    BundledFile = Annotated[str, NAMED]
     ModelFile = _file("Path of a model file", NAMED_MODEL)
     AnyFile = _file("Path of a model file or a study file", NAMED_MODEL)

@@ -249,9 +249,9 @@ class Spoken:
 
 
 if TYPE_CHECKING:
-    Language: TypeAlias = str
+    LanguageOption: TypeAlias = str
 else:
-    Language = Annotated[Literal[*LANGUAGES], Spoken()]
+    LanguageOption = Annotated[Literal[*LANGUAGES], Spoken()]
 
 
 def file_named(text: str, name: str = "FILE") -> Parameter:
@@ -267,8 +267,8 @@ NewFile = Annotated[str | None, wants("FILE"), ResultFile()]
 NewFolder = Annotated[str | None, wants("FOLDER")]
 Many = Annotated[list[str] | None, Parameter(consume_multiple=False)]
 Names = Annotated[Many, wants("NAME")]
-Goals = Annotated[Many, wants("OUTPUT")]
-Limits = Annotated[Many, wants("LIMIT")]
+OutputList = Annotated[Many, wants("OUTPUT")]
+LimitList = Annotated[Many, wants("LIMIT")]
 Rate = Annotated[float | None, size("angular speed")]
 Speed = Annotated[Rate, Parameter(help="Speed of the crank instead of the file's.")]
 OF_ANY = Parameter(help="Speed of the crank, or of the tool's engine, instead of the file's.")

@@ -32,10 +32,10 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.blocks import Block, ReportSection
 
-Kind = Literal["svg", "png", "pdf"]
-Columns = Sequence[tuple[str, str, "np.ndarray[Any, Any]"]]
-Values = Callable[[], Mapping[str, Any]]
-Blocks = Callable[[], "Iterable[Block | ReportSection]"]
+PictureFormatOption = Literal["svg", "png", "pdf"]
+CsvColumns = Sequence[tuple[str, str, "np.ndarray[Any, Any]"]]
+ValueSource = Callable[[], Mapping[str, Any]]
+BlockSource = Callable[[], "Iterable[Block | ReportSection]"]
 Drawings = Callable[[], "Mapping[str, Picture]"]
 """Results are made when they are asked for: what is not wanted is not computed."""
 
@@ -88,7 +88,7 @@ class PlottedOutput(Printed):
 
     plot: NewFolder = None
     """Save plots to this folder."""
-    format: Kind | None = None
+    format: PictureFormatOption | None = None
     """With --plot: file format of the plots. Default: svg."""
 
     def __post_init__(self) -> None:
@@ -104,7 +104,7 @@ class Pictures(Shown):
 
     out: Out = None
     """Folder for the plots. Default: FILE-pictures in the current folder."""
-    format: Kind = "svg"
+    format: PictureFormatOption = "svg"
     """Kind of the pictures."""
 
     def of(self, file: str) -> str:
@@ -188,7 +188,9 @@ def boxes(signs: str, otherwise: str) -> list[str]:
     return [missing]
 
 
-def write_pictures(figures: Mapping[str, Picture], folder: str, kind: Kind) -> list[str]:
+def write_pictures(
+    figures: Mapping[str, Picture], folder: str, kind: PictureFormatOption
+) -> list[str]:
     """Write pictures into a folder."""
     from equipoise.figures import render, unwritten
     from equipoise.schema.files import write_all

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from equipoise.cli.models import ModelFile, at_speed
 from equipoise.cli.options import (
     SIGNED,
-    Language,
+    LanguageOption,
     Many,
     Out,
     Rate,
@@ -263,7 +263,7 @@ def report(
     /,
     *,
     out: Out = None,
-    language: Language = "en",
+    language: LanguageOption = "en",
     pdf: bool = False,
     speed: SpeedText = None,
 ) -> CommandResult:

@@ -36,16 +36,16 @@ from equipoise.cli.options import (
 from equipoise.cli.outputs import (
     BRIEF,
     FULL_HINT,
-    Blocks,
+    BlockSource,
     Chosen,
-    Columns,
+    CsvColumns,
     Drawings,
     Length,
     Outputs,
     PlottedOutput,
     Printed,
     Shown,
-    Values,
+    ValueSource,
     check_result_file,
     write_pictures,
     write_text,
@@ -79,12 +79,12 @@ class CommandResult:
         work goes on.
     """
 
-    blocks: Blocks | None = None
-    values: Values = dict
+    blocks: BlockSource | None = None
+    values: ValueSource = dict
     owner: Any = None
     title: str | None = None
     headline: Callable[[bool], Iterable[Block | ReportSection]] | None = None
-    columns: Callable[[], Columns] = tuple
+    columns: Callable[[], CsvColumns] = tuple
     pictures: Drawings = dict
     save: Callable[[], Iterable[str]] = tuple
     lines: Callable[[], Iterable[str]] | None = None

@@ -29,6 +29,8 @@ from equipoise.quantities import SI
 if TYPE_CHECKING:
     from cyclopts import Argument, ArgumentCollection
 
+    from equipoise.schema.schemas import Schema
+
 HIDDEN = {"--cluster", "--workers"}
 """Options that reach beyond the folder, or are of the computer."""
 WRITTEN = {"FILE", "FOLDER", "PATH"}
@@ -42,7 +44,6 @@ USUAL = {"format": "png"}
 """Instead of what commands do by themselves: pictures that any program can show."""
 MOST = 24
 """Values in a list, and in those in it, above which only the whole object has it."""
-Schema = dict[str, Any]
 
 
 @dataclass(frozen=True)

@@ -32,9 +32,9 @@ from equipoise.codegen.extremes import (
 )
 from equipoise.codegen.figures import KINDS
 from equipoise.codegen.source import LANES, TermSource
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
-Loop = Callable[[Array, Array, Array, Array], None]
+CompiledLoop = Callable[[Array, Array, Array, Array], None]
 """Is called with table (P, T), grid (G, N) and what it fills, (P, R) and, of signals whose extremes
 are wanted, (P, S, N); it lets other threads run."""
 
@@ -136,7 +136,7 @@ def _extremes(curve: CurveTops, values: Array, columns: list[int]) -> Array:
 
 
 @cache
-def _loop_of(text: str) -> Loop:
+def _loop_of(text: str) -> CompiledLoop:
     """The compiled loop of a source."""
     path = _file_of(text)
     module = _imported(f"equipoise_{path.stem}", path)

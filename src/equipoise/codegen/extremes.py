@@ -28,6 +28,7 @@ from equipoise.signals import (
     STEPS,
     TAIL,
     TO_POWERS,
+    Array,
     JumpSampling,
     Tops,
     panel_series,
@@ -35,8 +36,7 @@ from equipoise.signals import (
     within_period,
 )
 
-Array = np.ndarray[Any, Any]
-Kernel = Callable[..., Any]
+ExtremesKernel = Callable[..., Any]
 
 WIDTH: Final = len(STEPS)
 SLOPES: Final = np.arange(WIDTH) * TO_POWERS[BESIDE_TOP:]
@@ -454,7 +454,7 @@ def panel_extremes(
 
 # -- their text ------------------------------------------------------------------------------------
 
-HELPERS: Final[Sequence[Kernel]] = (
+HELPERS: Final[Sequence[ExtremesKernel]] = (
     top_of_stencil,
     smoothest_top,
     tops_on_grid,
@@ -467,7 +467,7 @@ HELPERS: Final[Sequence[Kernel]] = (
     range_of,
     place_of_sample,
 )
-KERNELS: Final[Sequence[Kernel]] = (grid_extremes, panel_extremes)
+KERNELS: Final[Sequence[ExtremesKernel]] = (grid_extremes, panel_extremes)
 NUMBERS: Final = (
     "BESIDE_TOP", "EQUAL", "GAUSS_POINTS", "LIFT", "NEWTON_STEPS", "ROUGH", "ROUNDING", "TAIL",
     "WIDTH", "SLOPES", "INVERSE", "CLENSHAW",

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.signals import ROUNDING, Tops, place_of_peak
+from equipoise.signals import ROUNDING, Array, Tops, place_of_peak
 
 COMPUTED = 0
 NO_ASSEMBLY = 1
@@ -39,9 +38,6 @@ a figure, such as that of a tip that never reaches the soil.
 
 MOST_ANGLES = 65_536
 """Crank angles in a turn beyond which figures are given up as not standing still."""
-
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import chain, pairwise
-from typing import Any
 
 import numpy as np
 
@@ -38,8 +37,7 @@ from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import Declared, OutputSource, declared
 from equipoise.mechanism.parts.machine import Machine, size_of
 from equipoise.quantities.units import HUGE, TINY
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 FIRST = 180
 """Crank angles in a turn from which their number doubles."""

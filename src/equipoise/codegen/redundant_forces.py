@@ -53,7 +53,7 @@ MANY = Note(
 )
 SINGULAR = Note("joint forces near a singular position cannot be computed in a loop")
 
-Column = dict[int, Any]
+SparseColumn = dict[int, Any]
 
 
 def check_shared(trace: Trace) -> None:
@@ -185,12 +185,12 @@ def _is_zero(entry: Any) -> bool:
     return isinstance(entry, int | float) and entry == 0
 
 
-def _products(columns: Sequence[Column], count: int) -> list[Column]:
+def _products(columns: Sequence[SparseColumn], count: int) -> list[SparseColumn]:
     """Of each of so many rows its products with others, from its own place on.
 
     columns : of the equations, by row, without zeros.
     """
-    products = [Column() for _ in range(count)]
+    products = [SparseColumn() for _ in range(count)]
     for column in columns:
         for i, item in column.items():
             for j, other in column.items():
@@ -199,7 +199,9 @@ def _products(columns: Sequence[Column], count: int) -> list[Column]:
     return products
 
 
-def _softest(columns: Sequence[Column], soft: Sequence[float], right: Sequence[Any]) -> list[Any]:
+def _softest(
+    columns: Sequence[SparseColumn], soft: Sequence[float], right: Sequence[Any]
+) -> list[Any]:
     """Of all unknowns that meet the equations those that store the least energy.
 
     soft : energy of a unit of each; 0 of those that are rigid.
@@ -210,7 +212,7 @@ def _softest(columns: Sequence[Column], soft: Sequence[float], right: Sequence[A
         {row: entry * (energy or 1.0) ** -0.5 for row, entry in column.items()}
         for column, energy in zip(columns, soft, strict=True)
     ]
-    matrix = _products(weighed, count) + [Column() for _ in rigid]
+    matrix = _products(weighed, count) + [SparseColumn() for _ in rigid]
     for place, k in enumerate(rigid, count):
         for row, entry in columns[k].items():
             matrix[row][place] = entry
@@ -222,11 +224,11 @@ def _softest(columns: Sequence[Column], soft: Sequence[float], right: Sequence[A
     return [forces[k] for k in range(len(columns))]
 
 
-def _gain(row: Column, place: int, value: Any) -> None:
+def _gain(row: SparseColumn, place: int, value: Any) -> None:
     row[place] = row[place] + value if place in row else value
 
 
-def _eliminated(matrix: list[Column], right: Sequence[Any]) -> list[Any]:
+def _eliminated(matrix: list[SparseColumn], right: Sequence[Any]) -> list[Any]:
     """Solve symmetric equations, whose rows are there from their own place on."""
     count = len(right)
     solution = [*right]

@@ -39,12 +39,11 @@ from time import monotonic
 from types import ModuleType
 from typing import Any, Generic, NamedTuple, Self, TypeVar
 
-import numpy as np
-
 from equipoise.codegen.backends import processors
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
+from equipoise.signals import Array
 
 TRIES = 3
 """How often processes may die one after the other, with nothing finished in between."""
@@ -56,7 +55,7 @@ DEAD = Note(
     tries=TRIES,
 )
 Chunk = TypeVar("Chunk")
-Result = TypeVar("Result")
+ResultT = TypeVar("ResultT")
 MOST_PROCESSES = 61 if sys.platform == "win32" else 10_000
 
 
@@ -157,7 +156,7 @@ def computed(
                 yield chunk, block
 
 
-class Runner(Generic[Chunk, Result]):
+class Runner(Generic[Chunk, ResultT]):
     """Computes chunks; a context manager, which ends whoever computes them.
 
     Parameters
@@ -177,8 +176,8 @@ class Runner(Generic[Chunk, Result]):
 
     def __init__(
         self,
-        alone: Callable[[Chunk], Result],
-        make: Callable[[], Callable[[Chunk], Result]],
+        alone: Callable[[Chunk], ResultT],
+        make: Callable[[], Callable[[Chunk], ResultT]],
         workers: int | None = None,
         *,
         threads: bool = False,
@@ -210,7 +209,7 @@ class Runner(Generic[Chunk, Result]):
             self.pool = kind(self._task(), self.workers - self.helps)
         return self.pool
 
-    def each(self, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Result]]:
+    def each(self, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, ResultT]]:
         """Chunks, each with its result; see `computed`."""
         return computed(self.begin(), chunks, self.alone if self.helps else None)
 
@@ -331,10 +330,9 @@ def _end_with(watched: Connection) -> None:
     os._exit(1)
 
 
-Array = np.ndarray[Any, Any]
-Figures = TypeVar("Figures")
+FiguresT = TypeVar("FiguresT")
 """What is computed of some designs, in their order: an array (P, ...), or figures with reasons."""
-Evaluate = Callable[[Array], Figures]
+Evaluate = Callable[[Array], FiguresT]
 """Computes designs (P, d), values in SI units."""
 OnDesigns = Callable[[int], None]
 """Is called with the designs of a call that are computed so far."""
@@ -369,7 +367,7 @@ class DesignSlice(NamedTuple):
     values: Array
 
 
-class PooledEvaluator(Generic[Figures]):
+class PooledEvaluator(Generic[FiguresT]):
     """Computes designs; a context manager, which ends its processes.
 
     Parameters
@@ -392,9 +390,9 @@ class PooledEvaluator(Generic[Figures]):
 
     def __init__(
         self,
-        alone: Evaluate[Figures],
-        make: Callable[[], Evaluate[Figures]],
-        join: Callable[[Sequence[Figures]], Figures],
+        alone: Evaluate[FiguresT],
+        make: Callable[[], Evaluate[FiguresT]],
+        join: Callable[[Sequence[FiguresT]], FiguresT],
         workers: int | None = None,
         *,
         shared: bool = True,
@@ -404,7 +402,7 @@ class PooledEvaluator(Generic[Figures]):
     ) -> None:
         self.alone, self.join = alone, join
         self.batch_size, self.expected = batch_size, expected
-        self.runner: Runner[DesignSlice, Figures] = Runner(
+        self.runner: Runner[DesignSlice, FiguresT] = Runner(
             lambda part: alone(part.values),
             partial(_of_parts, make),
             workers,
@@ -433,7 +431,7 @@ class PooledEvaluator(Generic[Figures]):
         """Whether others compute, since computing alone has taken long or would."""
         return self.shared and self.count > 0 and (self.begun or self.spent > self.patience)
 
-    def __call__(self, values: Array, progress: OnDesigns | None = None) -> Figures:
+    def __call__(self, values: Array, progress: OnDesigns | None = None) -> FiguresT:
         """What is computed of designs (P, d), SI units, in their order.
 
         Raises
@@ -461,7 +459,7 @@ class PooledEvaluator(Generic[Figures]):
         seconds, count = self.later if self.later[1] else (self.spent, self.count)
         return seconds / count
 
-    def _computed_alone(self, part: Array, left: int) -> Figures:
+    def _computed_alone(self, part: Array, left: int) -> FiguresT:
         """Compute a part of the designs that are left of a call, and see whether others are to."""
         start = monotonic()
         outcome = self.alone(part)
@@ -477,7 +475,7 @@ class PooledEvaluator(Generic[Figures]):
             self.begun = self.begun or is_long or self.runner.pool is not None
         return outcome
 
-    def _shared_out(self, values: Array, report: OnDesigns) -> list[Figures]:
+    def _shared_out(self, values: Array, report: OnDesigns) -> list[FiguresT]:
         self.begun = True
         result, done = {}, 0
         for part, outcome in self.runner.each(self._parts(values)):

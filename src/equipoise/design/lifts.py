@@ -42,7 +42,7 @@ OF_GEARS: dict[str, Dimension] = {
 }
 """Dimensions of numbers of gears; others are plain."""
 POINTS = re.compile(r"(.+)\.([^.]+)\.(x|y|distance|direction)")
-Places = tuple[tuple[str, str], ...]
+BodyPoints = tuple[tuple[str, str], ...]
 """Bodies with a point of each."""
 
 
@@ -262,7 +262,7 @@ def _part(place: complex, part: str) -> float:
     return float(np.angle(place)) if part == "direction" else parts[part]
 
 
-def _put_part(places: Places, part: str, draft: Draft, value: float) -> None:
+def _put_part(places: BodyPoints, part: str, draft: Draft, value: float) -> None:
     body, point = places[0]
     turn = np.exp(1j * (value - float(np.angle(draft.bodies[body][point]))))
     for body, point in places:

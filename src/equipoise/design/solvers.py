@@ -21,8 +21,7 @@ from equipoise.dataclass import dataclass
 from equipoise.design.variables import Choices, Range
 from equipoise.i18n import Note, to_say
 from equipoise.sequences import sobol
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 UNPROVED = to_say("the optimum is not proved; another seed may give a better design")
 """What the result of a solver without a proof says of itself."""

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import isfinite
 from numbers import Real
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 MOST_STEPS = 1_000_000
 """Values of one number on a grid."""

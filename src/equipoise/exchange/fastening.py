@@ -165,13 +165,13 @@ def _clear(places: Sequence[complex], size: int, pins: Sequence[tuple[complex, f
     return all(abs(at - pin) >= radius + edge for at in places for pin, radius in pins)
 
 
-Polar = tuple[tuple[float, float], ...]
+ThreadPlaces = tuple[tuple[float, float], ...]
 """Radius, m, and direction, rad, of each thread."""
 
 
 def _with_room(
     piece: Mapping[str, Any], center: complex, size: int, count: int
-) -> Iterator[tuple[Polar, tuple[complex, ...]]]:
+) -> Iterator[tuple[ThreadPlaces, tuple[complex, ...]]]:
     """Places at whole millimetres and degrees, where threads keep away from edges."""
     edge = EDGE * size * MM
     if piece["shape"] == "disc":

@@ -34,7 +34,7 @@ from equipoise.mechanism.parts.bodies import Body, Points, outlines, place_of
 from equipoise.quantities import display, fixed, format_quantity
 from equipoise.results.machine_blocks import SHAPES, stuff_named
 
-Edge = tuple[complex, float]
+BulgedCorner = tuple[complex, float]
 """A corner, m, and the bulge of the edge to the next one."""
 
 
@@ -83,7 +83,7 @@ class Part:
     kind: str
     number: int
     thickness: float | None
-    edges: tuple[tuple[Edge, ...], ...]
+    edges: tuple[tuple[BulgedCorner, ...], ...]
     density: float | None = None
     screwed: bool = False
     threads: ScrewThreads | None = None
@@ -313,7 +313,7 @@ def workshop_mass(mass: float) -> str:
     return unit.with_unit(decimals(fixed(unit, mass, digits)))
 
 
-def area_of(edges: tuple[Edge, ...]) -> float:
+def area_of(edges: tuple[BulgedCorner, ...]) -> float:
     """Area of a closed outline, m2: that of its corners, and the segments below its arcs."""
     total = 0.0
     for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
@@ -330,7 +330,7 @@ def _rounded(center: complex, radius: float) -> tuple[float, ...]:
     return tuple(round(1e9 * size) for size in (center.real, center.imag, radius))
 
 
-def _curves(edges: tuple[Edge, ...]) -> Iterator[RoundEdge]:
+def _curves(edges: tuple[BulgedCorner, ...]) -> Iterator[RoundEdge]:
     """Circles and arcs of a closed outline; the halves of an arc are one."""
     by_name: dict[tuple[float, ...], list[tuple[complex, float, complex, float]]] = {}
     for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
@@ -358,7 +358,7 @@ def along(point: complex, other: complex, bulge: float, count: int) -> Any:
     return center + (point - center) * np.exp(2j * half * share)
 
 
-def _places(edges: tuple[Edge, ...]) -> Iterator[Any]:
+def _places(edges: tuple[BulgedCorner, ...]) -> Iterator[Any]:
     """Places along each edge in turn, m."""
     for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
         yield along(item, other, bulge, 181 if bulge else 2)
@@ -421,7 +421,7 @@ def _drawn_section(body: Body) -> Note | None:
     return Note("a tube of {sides} with walls of {wall}", sides=" x ".join(sides), wall=wall)
 
 
-def _edges(body: Body, points: Points) -> Iterator[tuple[Edge, ...]]:
+def _edges(body: Body, points: Points) -> Iterator[tuple[BulgedCorner, ...]]:
     """Outline and openings of a body."""
     for corners, radius in outlines(body, points):
         yield (
@@ -433,7 +433,7 @@ def _edges(body: Body, points: Points) -> Iterator[tuple[Edge, ...]]:
         yield circle(complex(place_of(hole.at, points)), hole.radius)
 
 
-def circle(center: complex, radius: float) -> tuple[Edge, ...]:
+def circle(center: complex, radius: float) -> tuple[BulgedCorner, ...]:
     """Two half circles."""
     return (center - radius, 1.0), (center + radius, 1.0)
 
@@ -468,7 +468,7 @@ def _of_changes(job: Job) -> Iterator[Part]:
             yield part
 
 
-def _edges_of_piece(piece: dict[str, Any], center: complex) -> Iterator[tuple[Edge, ...]]:
+def _edges_of_piece(piece: dict[str, Any], center: complex) -> Iterator[tuple[BulgedCorner, ...]]:
     """Outline and opening of a piece; rings and sectors lie about the centre of their room."""
     if piece["shape"] == "disc":
         yield circle(complex(*piece["place"]), piece["radius"])
@@ -480,7 +480,7 @@ def _edges_of_piece(piece: dict[str, Any], center: complex) -> Iterator[tuple[Ed
         yield _sector(piece, center)
 
 
-def _sector(piece: dict[str, Any], center: complex) -> tuple[Edge, ...]:
+def _sector(piece: dict[str, Any], center: complex) -> tuple[BulgedCorner, ...]:
     """A sector of a ring: two arcs, each in halves, so that none is longer than half a circle."""
     outer, inner, half = piece["outer_radius"], piece["inner_radius"], piece["angle"] / 2
     bulge = tan(half / 4)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from xml.etree import ElementTree as ET
 
 from equipoise.exchange.formats import Job
-from equipoise.exchange.parts import Edge, parts
+from equipoise.exchange.parts import BulgedCorner, parts
 
 MM = 1e3
 """mm in a metre."""
@@ -40,7 +40,7 @@ def export_bytes(job: Job) -> str:
     return ET.tostring(root, encoding="unicode") + "\n"
 
 
-def _way(edges: tuple[Edge, ...], shift: complex) -> str:
+def _way(edges: tuple[BulgedCorner, ...], shift: complex) -> str:
     """A closed outline as the data of a path; y points down there."""
     words = []
     for number, (corner, _) in enumerate((*edges, edges[0])):

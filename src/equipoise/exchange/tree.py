@@ -28,7 +28,7 @@ from equipoise.mechanism.parts.support import Row, Support
 from equipoise.vibration.free import modes
 from equipoise.vibration.linkages import rows_of
 
-Kind = Literal["hinge", "slide"]
+TreeJointKind = Literal["hinge", "slide"]
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Hung:
 
     name: str
     parent: str
-    kind: Kind
+    kind: TreeJointKind
     at: Vector
     along: float
     place: complex

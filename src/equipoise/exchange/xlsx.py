@@ -21,7 +21,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.outputs import AnalysisOutput
 
-Cell = str | float | None
+SheetCell = str | float | None
 HEADS, MOST_ROWS, MOST_COLUMNS = 2, 2**20, 2**14
 """Rows above the signals, with their names and units; what a sheet takes."""
 LARGE = 1_000_000
@@ -73,7 +73,7 @@ def _check_size(rows: int, columns: int, turns: int) -> None:
         )
 
 
-def _sheet(book: Any, name: str, rows: Sequence[Sequence[Cell]]) -> Any:
+def _sheet(book: Any, name: str, rows: Sequence[Sequence[SheetCell]]) -> Any:
     """A sheet whose first row is its head, and stays in sight."""
     sheet = book.add_worksheet(name)
     bold = book.add_format({"bold": True})
@@ -86,14 +86,14 @@ def _sheet(book: Any, name: str, rows: Sequence[Sequence[Cell]]) -> Any:
     return sheet
 
 
-def _write(sheet: Any, row: int, column: int, cell: Cell, *form: Any) -> None:
+def _write(sheet: Any, row: int, column: int, cell: SheetCell, *form: Any) -> None:
     if isinstance(cell, str):
         sheet.write_string(row, column, cell, *form)
     elif cell is not None and isfinite(cell):
         sheet.write_number(row, column, cell, *form)
 
 
-def _summary(analysis: Analysis) -> list[Sequence[Cell]]:
+def _summary(analysis: Analysis) -> list[Sequence[SheetCell]]:
     """A row an output: its words, its unit, its figures."""
     outputs = analysis.outputs
     rows = [
@@ -105,7 +105,7 @@ def _summary(analysis: Analysis) -> list[Sequence[Cell]]:
     return [("output", "what it is", "unit", *heads), *rows]
 
 
-def _links(machine: Machine) -> list[Sequence[Cell]]:
+def _links(machine: Machine) -> list[Sequence[SheetCell]]:
     head = ("link", "mass [kg]", "centre x [m]", "centre y [m]", "inertia [kg m^2]")
     rows = [
         (name, link.mass, *(link.center_of_mass or (None, None)), link.inertia)
@@ -114,7 +114,7 @@ def _links(machine: Machine) -> list[Sequence[Cell]]:
     return [head, *rows]
 
 
-def _points(machine: Machine) -> list[Sequence[Cell]]:
+def _points(machine: Machine) -> list[Sequence[SheetCell]]:
     rows = [(b, name, *at) for b, points in machine.bodies.items() for name, at in points.items()]
     return [("body", "point", "x [m]", "y [m]"), *rows]
 

@@ -27,7 +27,7 @@ from equipoise.exposure.weighting import (
     BAND_TOLERANCE,
     EDGES,
     NUMBERS,
-    Kind,
+    RecordingKind,
     Weighted,
     amplitudes,
     exact_middles,
@@ -266,7 +266,7 @@ def weigh_spectrum(
             )
         )
     squares = amplitudes("acceleration", acceleration, len(lines)) ** 2
-    kind: Kind = "bands" if bands else "spectrum"
+    kind: RecordingKind = "bands" if bands else "spectrum"
     middles = exact_middles(lines) if bands else lines
     return _weigh(kind, middles, squares, axes, single_axis, weighted, _on_bands(lines, bands))
 
@@ -310,7 +310,7 @@ def weigh_orders(
 
 
 def _weigh(
-    kind: Kind,
+    kind: RecordingKind,
     frequency: Array,
     squares: Array,
     axes: Sequence[str] | None,
@@ -392,7 +392,7 @@ def _on_axes(axes: tuple[str, ...], single_axis: bool) -> Iterator[str]:
         )
 
 
-def _on_drift(kind: Kind, frequency: Array, after: Array) -> Iterator[str]:
+def _on_drift(kind: RecordingKind, frequency: Array, after: Array) -> Iterator[str]:
     """Whether slow motion takes part that no handle makes."""
     whole = float(np.sum(after))
     slow = float(np.sum(after[:, frequency < EDGES[0]]))

@@ -244,7 +244,7 @@ def rms_in_bands(frequency: Array, squares: Array) -> Array:
     return np.sqrt(np.array(sums).reshape(len(squares), len(NUMBERS)))
 
 
-Kind = Literal["signal", "spectrum", "bands", "orders"]
+RecordingKind = Literal["signal", "spectrum", "bands", "orders"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -262,7 +262,7 @@ class Weighted(Result):
     notes : what deserves a second look, as sentences.
     """
 
-    kind: Kind
+    kind: RecordingKind
     axes: tuple[str, ...]
     a_h: Array | None
     a_hw: Array

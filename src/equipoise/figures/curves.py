@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.figures.sheet import MIDDLE, Array, Box, Canvas, CanvasStroke, Labels, Markers, Words
+from equipoise.figures.sheet import MIDDLE, Box, Canvas, CanvasStroke, Labels, Markers, Words
 from equipoise.figures.style import INK, SMALL, DrawingStyle, look_of, mixed
 from equipoise.figures.view import AxisScale, View, corners_of, ends_of, ticks_of
 from equipoise.results.charts import Area, Bars, Cells, Curve, Panel, Rule
+from equipoise.signals import Array
 from equipoise.symbols import looks
 from equipoise.symbols.carrier import gauge
 from equipoise.symbols.constraints import LEGENDS, SIGNS

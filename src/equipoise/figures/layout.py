@@ -141,7 +141,7 @@ VARIES = 1e-9
 
 
 @dataclass(eq=False)
-class Cell:
+class PanelCell:
     """A panel and the room it needs, points: beside, above and below its axes."""
 
     panel: Panel
@@ -170,7 +170,7 @@ class Cell:
     x_label: tuple[str, ...] = ()
 
 
-def cell_of(panel: Panel, height: float) -> Cell:
+def cell_of(panel: Panel, height: float) -> PanelCell:
     """A panel with the ends of its axes, that hold what is drawn."""
     curves = panel.curves
     x: list[Any] = [*(curve.x for curve in curves), *(area.x for area in panel.areas)]
@@ -197,7 +197,7 @@ def cell_of(panel: Panel, height: float) -> Cell:
     ends = ends_of(panel.x, x), ends_of(panel.y, y)
     spans = [high - low for low, high in ends] if panel.equal else [ends[1][1] - ends[1][0]]
     varying = _vary(y) or (panel.equal and _vary(x)) or panel.y.low is not None
-    return Cell(panel, *ends, height, max(spans) if varying and not panel.message else 0.0)
+    return PanelCell(panel, *ends, height, max(spans) if varying and not panel.message else 0.0)
 
 
 def _vary(parts: list[Any]) -> bool:
@@ -210,9 +210,9 @@ def _vary(parts: list[Any]) -> bool:
 # -- one scale -------------------------------------------------------------------------------------
 
 
-def share(cells: list[Cell], columns: int) -> None:
+def share(cells: list[PanelCell], columns: int) -> None:
     """One scale for panels of one unit over like axes; what that would flatten is drawn larger."""
-    groups: dict[tuple[str, str, bool], list[Cell]] = {}
+    groups: dict[tuple[str, str, bool], list[PanelCell]] = {}
     for cell in cells:
         panel = cell.panel
         span = cell.span or panel.message  # what is constant may be far from the others
@@ -238,7 +238,7 @@ def share(cells: list[Cell], columns: int) -> None:
                 _stretch(cell, columns)
 
 
-def _enlarged(cell: Cell, most: float) -> float:
+def _enlarged(cell: PanelCell, most: float) -> float:
     """Scale of a panel over that of the others, which span `most`; 1 unless stated on the panel."""
     if not cell.span or most < LIKE * cell.span:
         return 1.0
@@ -249,7 +249,7 @@ def _enlarged(cell: Cell, most: float) -> float:
     return larger
 
 
-def _align(cells: list[Cell], rate: float) -> float:
+def _align(cells: list[PanelCell], rate: float) -> float:
     """Give axes equal ends, where these need not be much longer for that.
 
     rate : of one scale, a point in the unit of the axes.  Returns that which all of them have then.
@@ -266,7 +266,7 @@ def _align(cells: list[Cell], rate: float) -> float:
     return max(rate, least)
 
 
-def _stretch(cell: Cell, columns: int) -> None:
+def _stretch(cell: PanelCell, columns: int) -> None:
     """An axis as long as its scale has it: in both senses, or from where it begins.
 
     One that begins somewhere, with no other beside it, gets less high before it gets longer.
@@ -289,7 +289,7 @@ UPWARD = 45.0
 """deg from straight up or down, within which a text stands above or below its place."""
 
 
-def make_room(row: list[Cell], over: float) -> None:
+def make_room(row: list[PanelCell], over: float) -> None:
     """Higher axes of the same scale, where numbers at bars, extremes or a word of their name need
     that; alike for cells side by side.
 
@@ -313,7 +313,7 @@ def _is_fixed(panel: Panel) -> bool:
     return panel.equal or panel.bare or given
 
 
-def _room_for_words(cell: Cell, over: float) -> tuple[float, float]:
+def _room_for_words(cell: PanelCell, over: float) -> tuple[float, float]:
     """Points that are missing above and below what is drawn."""
     panel, factor = cell.panel, cell.panel.y.unit.factor
     if _is_fixed(panel):
@@ -396,7 +396,7 @@ def lay_out_rows(chart: Chart, wide: float) -> Iterator[Canvas]:
         yield _sheet(row, cells[begin:end], wide, headed=False)
 
 
-def _sheet(chart: Chart, cells: list[Cell], wide: float, headed: bool) -> Canvas:
+def _sheet(chart: Chart, cells: list[PanelCell], wide: float, headed: bool) -> Canvas:
     sheet = Canvas(wide, 0.0, localized(chart.title))
     top = _heading(sheet, chart) if headed else TOP
     keys = [LegendKey(role, name, kind_of(role)) for role, name in chart.keys]
@@ -441,7 +441,7 @@ def _inner(wide: float, columns: int) -> float:
 
 def _cells(
     chart: Chart, wide: float, parted: bool = False, low: bool = False, scrolled: bool = False
-) -> list[Cell]:
+) -> list[PanelCell]:
     """Panels with their axes, in one scale.
 
     parted : whether each row stands alone, so that all axes have numbers.
@@ -482,7 +482,7 @@ def _cells(
     return cells
 
 
-def _panels(sheet: Canvas, cells: list[Cell], columns: int, top: float) -> float:
+def _panels(sheet: Canvas, cells: list[PanelCell], columns: int, top: float) -> float:
     """Draw cells below a place, in so many columns; where they end."""
     inner = _inner(sheet.width, columns)
     for number in range(0, len(cells), columns):
@@ -497,7 +497,7 @@ def _panels(sheet: Canvas, cells: list[Cell], columns: int, top: float) -> float
     return top
 
 
-def _widths(cells: list[Cell], columns: int, inner: float, most: float) -> None:
+def _widths(cells: list[PanelCell], columns: int, inner: float, most: float) -> None:
     """What stands beside the axes, alike in each column, and the axes' ends and heights."""
     one_scale = cells[0].panel.equal  # and so one width
     for cell in cells:
@@ -510,12 +510,12 @@ def _widths(cells: list[Cell], columns: int, inner: float, most: float) -> None:
             _settle(cell, inner - left - right, most, small=columns > 1)
 
 
-def _same_x(cell: Cell, other: Cell) -> bool:
+def _same_x(cell: PanelCell, other: PanelCell) -> bool:
     alike = cell.panel.x.text == other.panel.x.text and cell.panel.x.scale == other.panel.x.scale
     return alike and bool(np.allclose(cell.x_ends, other.x_ends)) and not cell.panel.equal
 
 
-def _sides(cell: Cell) -> None:
+def _sides(cell: PanelCell) -> None:
     """What stands at the left, at the right and below of the axes."""
     panel = cell.panel
     if panel.bare:
@@ -545,7 +545,7 @@ def _sides(cell: Cell) -> None:
     cell.below = 14.0 + (LINE if panel.x.label else 0.0) if cell.numbered else 4.0
 
 
-def _settle(cell: Cell, width: float, most: float, small: bool) -> None:
+def _settle(cell: PanelCell, width: float, most: float, small: bool) -> None:
     """Ends of axes of one scale, so that they hold what is drawn with room for its words."""
     if not cell.panel.equal:
         return
@@ -571,7 +571,7 @@ def _settle(cell: Cell, width: float, most: float, small: bool) -> None:
     cell.y_ends = (float(np.mean(y)) - half_y, float(np.mean(y)) + half_y)
 
 
-def _level(row: list[Cell]) -> None:
+def _level(row: list[PanelCell]) -> None:
     """Give curves of one scale side by side the height of the highest, each on its own scale."""
     if not all(cell.panel.equal and cell.panel.always_shown is None for cell in row):
         return
@@ -603,7 +603,7 @@ def _hold_signs(panel: Panel, x: Any, y: Any, width: float) -> float:
     return float(np.ptp(y) / (np.ptp(x) / width))
 
 
-def _above(cell: Cell, width: float) -> None:
+def _above(cell: PanelCell, width: float) -> None:
     """What stands above the axes: words at lines, a title, a legend; and the name below them."""
     panel = cell.panel
     cell.keys = tuple(keys_of(panel, chart_level=False))
@@ -626,7 +626,7 @@ def _above(cell: Cell, width: float) -> None:
         cell.below += LINE * (len(cell.x_label) - 1)
 
 
-def _draw(sheet: Canvas, cell: Cell, left: float, top: float, inner: float) -> None:
+def _draw(sheet: Canvas, cell: PanelCell, left: float, top: float, inner: float) -> None:
     """A panel whose axes begin at some height, in its room from the left."""
     panel = cell.panel
     start, end = left + cell.left, left + inner - cell.right
@@ -653,7 +653,7 @@ def _draw(sheet: Canvas, cell: Cell, left: float, top: float, inner: float) -> N
     _name_axes(sheet, cell, view, left)
 
 
-def _titles(sheet: Canvas, cell: Cell, start: float, end: float, foot: float) -> None:
+def _titles(sheet: Canvas, cell: PanelCell, start: float, end: float, foot: float) -> None:
     for line in reversed(cell.remarks):
         sheet.add(Words(end, foot - 4, line, SMALL, LINES, "end"), 7)
         foot -= LINE
@@ -677,7 +677,7 @@ def _tied_lines(text: str, unit: str, room: float, size: float) -> tuple[str, ..
     return tuple(line.replace(TIED, " ") for line in lines_of(whole, room, size))
 
 
-def _name_axes(sheet: Canvas, cell: Cell, view: View, left: float) -> None:
+def _name_axes(sheet: Canvas, cell: PanelCell, view: View, left: float) -> None:
     panel = cell.panel
     start, top, end, bottom = view.box
     for number, line in enumerate(cell.y_label):

@@ -21,7 +21,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 
-from equipoise.figures.sheet import Canvas, CanvasStroke, Item, Markers, Words, box_of
+from equipoise.figures.sheet import Canvas, CanvasStroke, Markers, SheetItem, Words, box_of
 from equipoise.figures.style import PAPER
 from equipoise.figures.vector import BACK, SHAPES
 
@@ -189,7 +189,7 @@ def _saved(figure: Figure, kind: Kind, sheet: Canvas | None = None) -> bytes:
     return file.getvalue()
 
 
-def _paint(axes: Axes, item: Item, order: int, scale: float) -> None:
+def _paint(axes: Axes, item: SheetItem, order: int, scale: float) -> None:
     """An item; its widths and letters are points, its places units of the axes."""
     artist: Any
     if isinstance(item, Words):

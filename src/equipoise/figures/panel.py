@@ -20,7 +20,7 @@ from equipoise.figures.curves import (
     signs_at,
     thinned,
 )
-from equipoise.figures.sheet import MIDDLE, Array, CanvasStroke, CanvasText, Words, spread, width_of
+from equipoise.figures.sheet import MIDDLE, CanvasStroke, CanvasText, Words, spread, width_of
 from equipoise.figures.style import (
     FAINT,
     GRID,
@@ -37,6 +37,7 @@ from equipoise.figures.style import (
 from equipoise.figures.view import View, aside, corners_of, round_above
 from equipoise.i18n import decimals
 from equipoise.results.charts import Bars, Mark, Outline, Panel, Surface
+from equipoise.signals import Array
 
 LEVELS = 12
 """Lines at most."""
@@ -168,7 +169,7 @@ def _label_line(view: View, text: str, line: Array) -> None:
             return
 
 
-Number = tuple[str, float, float, str]
+BarNumber = tuple[str, float, float, str]
 """At a bar: text, place on the sheet, colour."""
 RINGS = 4
 """Circles of a polar diagram at most, out to its farthest corner."""
@@ -421,11 +422,11 @@ def _bar_numbers(view: View) -> None:
         view.write(x, y, text, "middle", color=color)
 
 
-Span = tuple[float, float, float, float]
+BarSpan = tuple[float, float, float, float]
 """Of a bar on the sheet: left, right, top and foot."""
 
 
-def _spans(view: View, bars: Bars) -> Iterator[Span]:
+def _spans(view: View, bars: Bars) -> Iterator[BarSpan]:
     """Where each bar is, of those that go down none of it."""
     half = np.broadcast_to(np.asarray(bars.width, float) / 2, bars.at.shape)
     ends = (view.x.at(bars.at - half), view.x.at(bars.at + half), view.y.at(bars.size))
@@ -434,7 +435,9 @@ def _spans(view: View, bars: Bars) -> Iterator[Span]:
         yield float(left), float(right), float(top), foot
 
 
-def _off_bars(texts: list[Number], spans: list[Span], ends: tuple[float, float]) -> list[Number]:
+def _off_bars(
+    texts: list[BarNumber], spans: list[BarSpan], ends: tuple[float, float]
+) -> list[BarNumber]:
     """Numbers that are moved to the side off higher bars beside their own, and into the axes; those
     without room for that are left out.
 
@@ -453,9 +456,9 @@ def _off_bars(texts: list[Number], spans: list[Span], ends: tuple[float, float])
     return moved
 
 
-def _clear(texts: list[Number]) -> list[Number]:
+def _clear(texts: list[BarNumber]) -> list[BarNumber]:
     """Those that lie on no number of a higher bar."""
-    clear: list[Number] = []
+    clear: list[BarNumber] = []
     for item in sorted(texts, key=lambda number: number[2]):
         text, x, y, _ = item
         half = width_of(text, SMALL) / 2

@@ -15,8 +15,8 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.figures.style import FAINT, SMALL
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Box = tuple[float, float, float, float]
 """Left, top, right, bottom."""
 Anchor = Literal["start", "middle", "end"]
@@ -75,7 +75,7 @@ class Words:
     backed: bool = False
 
 
-Item = CanvasStroke | Markers | Words
+SheetItem = CanvasStroke | Markers | Words
 
 
 @dataclass
@@ -85,14 +85,14 @@ class Canvas:
     width: float
     height: float
     title: str = ""
-    _items: list[tuple[float, Item]] = field(default_factory=list)
+    _items: list[tuple[float, SheetItem]] = field(default_factory=list)
 
-    def add(self, item: Item, order: float = 5.0) -> None:
+    def add(self, item: SheetItem, order: float = 5.0) -> None:
         """Draw something."""
         self._items.append((order, item))
 
     @property
-    def items(self) -> list[Item]:
+    def items(self) -> list[SheetItem]:
         """All of it in the order in which it is drawn."""
         return [item for _, item in sorted(self._items, key=lambda pair: pair[0])]
 

@@ -11,10 +11,11 @@ from itertools import pairwise
 import numpy as np
 
 from equipoise.figures.layout import lay_out
-from equipoise.figures.sheet import Array, Box, Canvas, CanvasStroke, Markers, Words, box_of
+from equipoise.figures.sheet import Box, Canvas, CanvasStroke, Markers, Words, box_of
 from equipoise.figures.style import PAPER
 from equipoise.i18n import localized
 from equipoise.results.charts import Chart
+from equipoise.signals import Array
 
 FONTS = "DejaVu Sans, Verdana, sans-serif"
 FAR = 1e6

@@ -25,9 +25,9 @@ from equipoise.keys.kinds import (
 )
 from equipoise.quantities import Dimension
 
-Given = TypeVar("Given")
+GivenT = TypeVar("GivenT")
 Class = TypeVar("Class", bound=type)
-Result = TypeVar("Result")
+ResultT = TypeVar("ResultT")
 
 # -- declaring -------------------------------------------------------------------------------------
 
@@ -139,7 +139,7 @@ def declared(cls: Class) -> Class:
     return declared_class
 
 
-def once(compute: Callable[[type[Frozen]], Result]) -> Callable[[type[Frozen]], Result]:
+def once(compute: Callable[[type[Frozen]], ResultT]) -> Callable[[type[Frozen]], ResultT]:
     """Compute something of each class when it is first asked for."""
     return cache(compute)  # type: ignore[return-value]
 
@@ -348,7 +348,7 @@ def _coordinate(step: str) -> int:
     return XYZ.index(step)
 
 
-def with_fields(value: Given, **changes: Any) -> Given:
+def with_fields(value: GivenT, **changes: Any) -> GivenT:
     """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
     result = object.__new__(type(value))
     left = cached_names(type(value))

@@ -12,7 +12,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note, say, to_say
 from equipoise.measured.fits import FittedValue, WholeFit, fit_whole, line_of_swings
-from equipoise.measured.record import Kind, Record, positive
+from equipoise.measured.record import Record, RecordKind, positive
 from equipoise.measured.turning import Turns, find_turns
 from equipoise.quantities import in_unit, number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Span, Table, Text, Value
@@ -34,7 +34,7 @@ TERMS = {
     to_say("viscous damping"): "decay_rate",
     to_say("Coulomb friction"): "coulomb_displacement",
 }
-SHOWN: dict[Kind, str] = {"length": "mm", "angle": "deg"}
+SHOWN: dict[RecordKind, str] = {"length": "mm", "angle": "deg"}
 """Unit of displacements."""
 ALWAYS = {
     "damped_frequency": (to_say("damped frequency"), "Hz"),
@@ -43,7 +43,7 @@ ALWAYS = {
     "damping_ratio": (to_say("damping ratio"), ""),
     "logarithmic_decrement": (to_say("logarithmic decrement"), ""),
 }
-BY_STIFFNESS: dict[Kind, dict[str, tuple[str, str]]] = {
+BY_STIFFNESS: dict[RecordKind, dict[str, tuple[str, str]]] = {
     "length": {
         "mass": (to_say("mass"), "kg"),
         "viscous_damping": (to_say("viscous damping"), "N s/m"),
@@ -87,7 +87,7 @@ class Decay(Result):
     blocks_in = "measured.decay.decay_blocks"
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> RecordKind:
         """``"length"`` or ``"angle"``."""
         return self.record.kind
 
@@ -179,7 +179,7 @@ def identify_decay(
     )
 
 
-def _stiffness(kind: Kind, stiffness: float | None, spring_arm: float | None) -> float | None:
+def _stiffness(kind: RecordKind, stiffness: float | None, spring_arm: float | None) -> float | None:
     """Stiffness of the record's kind: of a spring at an arm, K L^2."""
     if stiffness is not None:
         stiffness = positive("stiffness", stiffness)

@@ -13,7 +13,7 @@ from equipoise.dataclass import dataclass
 from equipoise.decompositions import pinv
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.measured.record import FreeSwing, Kind, Record, reaches
+from equipoise.measured.record import FreeSwing, Record, RecordKind, reaches
 from equipoise.measured.turning import Turns
 from equipoise.signals import Array
 
@@ -62,7 +62,7 @@ class Constants:
     covariance: Array | None
     factor: float
 
-    def quantities(self, kind: Kind, stiffness: float | None) -> dict[str, FittedValue]:
+    def quantities(self, kind: RecordKind, stiffness: float | None) -> dict[str, FittedValue]:
         """Every quantity by name, in SI units; see `_quantities`."""
         point = np.array([self.damped, self.loss, self.friction])
         values = _quantities(point.astype(complex), kind, stiffness)
@@ -89,7 +89,7 @@ class Constants:
         return FittedValue(value, value - half, value + half)
 
 
-def _quantities(point: Array, kind: Kind, stiffness: float | None) -> dict[str, Any]:
+def _quantities(point: Array, kind: RecordKind, stiffness: float | None) -> dict[str, Any]:
     """(60) to (62) of Yamashita, Ichikawa and Mori; complex numbers carry derivatives.
 
     point : beta (rad/s), -ln n, d (m or rad).
@@ -118,7 +118,7 @@ def _quantities(point: Array, kind: Kind, stiffness: float | None) -> dict[str, 
     return values
 
 
-NAMES: dict[Kind, tuple[str, str]] = {
+NAMES: dict[RecordKind, tuple[str, str]] = {
     "length": ("mass", "coulomb_force"),
     "angle": ("inertia", "coulomb_torque"),
 }

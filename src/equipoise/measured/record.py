@@ -152,7 +152,7 @@ def steepest_time(
 
 LARGEST_SWING = 1.0
 """rad: far more than a gauge's displacement over its arm can stand for."""
-Kind = Literal["length", "angle"]
+RecordKind = Literal["length", "angle"]
 
 LEAST_SAMPLES = 12
 """Fewer cannot show three half-swings."""
@@ -176,7 +176,7 @@ class Record:
 
     time: Array
     displacement: Array
-    kind: Kind = "length"
+    kind: RecordKind = "length"
 
     def __post_init__(self) -> None:
         if self.kind not in ("length", "angle"):
@@ -347,7 +347,7 @@ def simulate_decay(
     center: float = 0.0,
     noise: float = 0.0,
     seed: int = 1,
-    kind: Kind = "length",
+    kind: RecordKind = "length",
 ) -> Record:
     """Free decay with viscous damping and Coulomb friction: exact, not integrated.
 

@@ -46,23 +46,23 @@ Vector = tuple[float, float]
 Bodies = Mapping[str, Mapping[str, Vector]]
 """Points by name of the frame and of every link, in their own axes."""
 
-Value = TypeVar("Value")
+ValueT = TypeVar("ValueT")
 
 LONGEST_NAME = 200
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 
 
-class NamedItems(dict[str, Value]):
+class NamedItems(dict[str, ValueT]):
     """A dict that says which names there are when one is asked for that is not."""
 
-    def __init__(self, kind: str, items: Iterable[tuple[str, Value]]) -> None:
+    def __init__(self, kind: str, items: Iterable[tuple[str, ValueT]]) -> None:
         super().__init__(items)
         self.kind = kind
 
     def __repr__(self) -> str:
         return f"{{{names_of(f'{name!r}: {brief(value)}' for name, value in self.items())}}}"
 
-    def __missing__(self, name: str) -> Value:
+    def __missing__(self, name: str) -> ValueT:
         raise KeyError(unknown(name, self, self.kind))
 
 

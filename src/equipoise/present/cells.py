@@ -25,9 +25,9 @@ from equipoise.results.blocks import (
     Value,
 )
 
-Kind = tuple[Dimension | None, str | None]
+CellUnit = tuple[Dimension | None, str | None]
 """Dimension and unit of a number; those of one kind have one unit in a table."""
-Sizes = Mapping[tuple[int, Kind], float]
+Sizes = Mapping[tuple[int, CellUnit], float]
 """The largest number of each kind in each column; numbers that are rounding beside it show as 0."""
 UNCHANGED = change(1.0, 1.0)
 """Text of `change` for two equal figures."""
@@ -110,7 +110,7 @@ def grid(table: Table) -> Grid:
 
 
 def _row(
-    table: Table, row: tuple[Cell, ...], displays: Mapping[Kind, Display], sizes: Sizes
+    table: Table, row: tuple[Cell, ...], displays: Mapping[CellUnit, Display], sizes: Sizes
 ) -> Iterator[CellText]:
     unit = _unit_of_row(table, row, displays)
     faint = _faint(table, row, sizes)
@@ -123,7 +123,7 @@ def _row(
         yield text
 
 
-def _faint(table: Table, row: tuple[Cell, ...], sizes: Sizes) -> dict[Kind, float]:
+def _faint(table: Table, row: tuple[Cell, ...], sizes: Sizes) -> dict[CellUnit, float]:
     """Of each kind with a dimension, the size up to which numbers of a row have no meaning."""
     whole = {kind: 0.0 for _, kind in sizes if kind[0] is not None}
     for (place, kind), size in sizes.items():
@@ -137,7 +137,7 @@ def _faint(table: Table, row: tuple[Cell, ...], sizes: Sizes) -> dict[Kind, floa
     return whole
 
 
-def _unit_of_row(table: Table, row: tuple[Cell, ...], displays: Mapping[Kind, Display]) -> str:
+def _unit_of_row(table: Table, row: tuple[Cell, ...], displays: Mapping[CellUnit, Display]) -> str:
     """Unit of the numbers of a row in columns without a dimension of their own."""
     own = (
         displays[_kind(value, column)].unit
@@ -156,15 +156,15 @@ def _values(cell: Cell) -> tuple[Value, ...]:
     return (cell,) if isinstance(cell, Value) else ()
 
 
-def _kind(value: Value, column: Column) -> Kind:
+def _kind(value: Value, column: Column) -> CellUnit:
     if value.dimension is not None:
         return value.dimension, value.unit
     return column.dimension, column.unit
 
 
-def _sizes(table: Table) -> dict[tuple[int, Kind], float]:
+def _sizes(table: Table) -> dict[tuple[int, CellUnit], float]:
     """The largest number of each kind in each column, but for what is rounding by its own scale."""
-    sizes: dict[tuple[int, Kind], float] = {}
+    sizes: dict[tuple[int, CellUnit], float] = {}
     for row in table.rows:
         for place, (column, cell) in enumerate(zip(table.columns, row, strict=True)):
             for value in _values(cell):
@@ -175,9 +175,9 @@ def _sizes(table: Table) -> dict[tuple[int, Kind], float]:
     return sizes
 
 
-def _displays(table: Table, sizes: Sizes) -> dict[Kind, Display]:
+def _displays(table: Table, sizes: Sizes) -> dict[CellUnit, Display]:
     """The unit of each kind of number: the same in the whole table, so that they compare."""
-    kinds: dict[Kind, list[float]] = {}
+    kinds: dict[CellUnit, list[float]] = {}
     for column in table.columns:
         kinds |= {(column.dimension, column.unit): [], column.at: []}
     for (_, kind), size in sizes.items():
@@ -191,7 +191,7 @@ def _display(dimension: Dimension | None, unit: str | None, values: Iterable[flo
     return display(dimension, [*values], unit)
 
 
-def _head(column: Column, cells: tuple[Cell, ...], displays: Mapping[Kind, Display]) -> Head:
+def _head(column: Column, cells: tuple[Cell, ...], displays: Mapping[CellUnit, Display]) -> Head:
     is_so = any(value.at is not None for cell in cells for value in _values(cell))
     at = displays[column.at].unit if is_so else ""
     return Head(column.label, displays[column.dimension, column.unit].unit, at)
@@ -207,9 +207,9 @@ _IS_NUMBER = re.compile(r"[(+\-\N{MINUS SIGN}\N{PLUS-MINUS SIGN}]*[0-9]")
 def _text(
     cell: Cell,
     column: Column,
-    displays: Mapping[Kind, Display],
-    sizes: Mapping[Kind, float],
-    faint: Mapping[Kind, float],
+    displays: Mapping[CellUnit, Display],
+    sizes: Mapping[CellUnit, float],
+    faint: Mapping[CellUnit, float],
 ) -> CellText:
     if cell is None or isinstance(cell, str):
         return CellText(decimals(cell) if cell and _IS_NUMBER.match(cell) else cell or "")

@@ -22,10 +22,10 @@ from equipoise.quantities import SI, Dimension
 from equipoise.results.blocks import Cell, Column, Table, Value
 from equipoise.signals import Array
 
-Signal = tuple[str, str, Array]
+CsvColumn = tuple[str, str, Array]
 """Name, SI unit and values of a column of a CSV file."""
-Own = Literal["own"]
-OWN: Own = "own"
+OwnDimension = Literal["own"]
+OWN: OwnDimension = "own"
 """The dimension of a figure that has that of the output whose figure it is."""
 FIGURES_OF_LISTS = ("mean", "rms", "peak", "max", "min", "peak_to_peak")
 PLACES = ("peak_at", "max_at", "min_at")
@@ -68,7 +68,7 @@ class ResultOutput:
     """
 
     meaning: str
-    dimension: Dimension | Own | None = None
+    dimension: Dimension | OwnDimension | None = None
     turned: Dimension | None = None
     read: Callable[[Any], Any] | str = ""
     of: dict[str, ResultOutput] | None = None
@@ -172,7 +172,7 @@ def columns_of(
     model: Any = None,
     before: str = "",
     turned: bool = False,
-) -> Iterator[Signal]:
+) -> Iterator[CsvColumn]:
     """The columns of an object's CSV file.
 
     sampled : makes the values of a column.  model : the machine or tool, which knows the members

@@ -24,7 +24,7 @@ from equipoise.schema.models import HeldFiles, machine_of, plain_of
 from equipoise.schema.reading import Context, read_table
 from equipoise.schema.template import named_parts
 
-Content = dict[str, Any]
+DocumentContent = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Document:
     """
 
     of: type[Frozen]
-    content: Content
+    content: DocumentContent
     side_files: Mapping[tuple[str, str], Any] = field(default_factory=dict)
 
     @classmethod
@@ -55,7 +55,7 @@ class Document:
         """
         return machine_of(self.content, HeldFiles(self.side_files, texts or {}))
 
-    def put(self, place: KeyPath, values: Content, name: str | None = None) -> Document:
+    def put(self, place: KeyPath, values: DocumentContent, name: str | None = None) -> Document:
         """With other values of the plain keys of an entry, or with a new entry.
 
         name : what an entry that has a name is called from now on.
@@ -92,7 +92,7 @@ class Document:
             del _above(self.of, content, place.parent)[place[-2]]
         return self._with(content)
 
-    def _with(self, content: Content) -> Document:
+    def _with(self, content: DocumentContent) -> Document:
         return Document(self.of, content, self.side_files)
 
 
@@ -116,7 +116,7 @@ def tables_below(of: type[Frozen]) -> dict[str, Key]:
     return {name: all_key for name, all_key in all_keys(of).items() if _below(all_key)}
 
 
-def valid_content(of: type[Frozen], entry: Mapping[str, Any]) -> Content:
+def valid_content(of: type[Frozen], entry: Mapping[str, Any]) -> DocumentContent:
     """What stays of an entry when its own keys are given anew."""
     own = own_keys(of)
     return {name: value for name, value in entry.items() if name not in own}
@@ -164,7 +164,7 @@ def _has(above: Any, step: str | int) -> bool:
     return isinstance(above, dict) and step in above
 
 
-def _above(of: type[Frozen], content: Content, place: KeyPath) -> Any:
+def _above(of: type[Frozen], content: DocumentContent, place: KeyPath) -> Any:
     """The table or list in which an entry stands, made where it may be empty."""
     here: Any = content
     for length, step in enumerate(place[:-1], 1):
@@ -186,7 +186,7 @@ def _is_entry(of: type[Frozen], place: KeyPath) -> bool:
     return False
 
 
-def _set(above: Any, place: KeyPath, entry: Content, name: str | None) -> None:
+def _set(above: Any, place: KeyPath, entry: DocumentContent, name: str | None) -> None:
     """Put an entry into its list or table; another name takes the same place among the names."""
     step = place[-1]
     if isinstance(above, list):
@@ -211,7 +211,7 @@ def _set(above: Any, place: KeyPath, entry: Content, name: str | None) -> None:
     above.setdefault(new, entry)
 
 
-def _make_room(of: type[Frozen], content: Content, place: KeyPath) -> None:
+def _make_room(of: type[Frozen], content: DocumentContent, place: KeyPath) -> None:
     """Leave out what follows from a new entry, such as the mass of a link from its first body."""
     length = len(place) - (1 if _is_entry(of, place.parent) else 2)
     here: Any = content

@@ -92,7 +92,7 @@ class Context:
 
 
 @dataclass(frozen=True)
-class Values:
+class TableValues:
     """Values of a table, of which an object is to be made."""
 
     of: type[keys.Frozen]
@@ -151,7 +151,7 @@ def _table(kind: keys.KeyTable, given: Any, place: KeyPath, context: Context) ->
         if item.required and name not in given:
             example = _example(item, _own_names(item.kind, given, known, context.bodies))
             return context.say(place / name, Note("missing; add {example}", example=example))
-    return Values(of, place, _values(of, given, place, context))
+    return TableValues(of, place, _values(of, given, place, context))
 
 
 def _meant_below(name: str, value: Any, known: Mapping[str, keys.Key]) -> str:
@@ -184,7 +184,7 @@ def _values(
     for name, key in keys.keys_of(of).items():
         kind, at = key.kind, key.field or name
         if isinstance(kind, keys.KeyTable) and kind.flat:
-            values[at] = Values(kind.type, place, _values(kind.type, given, place, context))
+            values[at] = TableValues(kind.type, place, _values(kind.type, given, place, context))
         elif name in given:
             values[at] = READERS[type(kind)](kind, given[name], place / name, context)
     return values
@@ -267,9 +267,9 @@ def constructed(value: Any, context: Context) -> Any:
     """The objects of what has been read."""
     if isinstance(value, dict):
         return {name: constructed(item, context) for name, item in value.items()}
-    if isinstance(value, tuple) and value and isinstance(value[0], Values | NamedFile):
+    if isinstance(value, tuple) and value and isinstance(value[0], TableValues | NamedFile):
         return tuple(constructed(item, context) for item in value)
-    if isinstance(value, Values):
+    if isinstance(value, TableValues):
         make = partial(context.makers.get(value.of, value.of.from_table), _given(value, context))
     elif isinstance(value, NamedFile) and context.read_side_file is not None:
         make = partial(context.read_side_file, value.sort, value.file)
@@ -281,7 +281,7 @@ def constructed(value: Any, context: Context) -> Any:
         raise within(value.place, error) from error
 
 
-def _given(values: Values, context: Context) -> dict[str, Any]:
+def _given(values: TableValues, context: Context) -> dict[str, Any]:
     """What an object is made of, by its fields."""
     given = {name: constructed(value, context) for name, value in values.given.items()}
     for name, key in keys.keys_of(values.of).items():

@@ -13,7 +13,7 @@ import os
 import re
 from collections.abc import Sequence
 from itertools import islice
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -42,8 +42,7 @@ from equipoise.schema.tables import (
     value_of,
     wrong,
 )
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 LARGEST, LARGEST_SIGNAL = 100_000_000, 300_000_000
 """Bytes of a decay, and of accelerations: some millions of rows."""

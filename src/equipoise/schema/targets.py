@@ -37,7 +37,7 @@ from equipoise.schema.numbers import si_value
 from equipoise.schema.open_files import in_file, toml_content
 from equipoise.schema.reading import Context, read_table
 
-Quantity = str | float
+QuantityValue = str | float
 VALUE = Anything()
 """Of a figure: its dimension is known later."""
 
@@ -59,7 +59,7 @@ class GoalTable(Frozen):
     extra_keys: ClassVar[Keys] = RequirementKeys("goals", VALUE)
 
     figure: str = key(TextKind(), "that `equipoise plant` reports", example="curve.height")
-    tolerance: Quantity | None = key(VALUE, "of the target", default=None)
+    tolerance: QuantityValue | None = key(VALUE, "of the target", default=None)
     asks: Any = inside(Anything(), factory=dict)
 
     @classmethod

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isnan
 from shlex import quote
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number, percent
 from equipoise.results.blocks import Block, Cell, Column, Facts, FileText, Notes, Table, Text, Value
 from equipoise.results.outputs import objective_named
+from equipoise.signals import Array
 from equipoise.studies.outcomes import far_apart, signs_of
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from equipoise.studies.study import Output
     from equipoise.studies.tolerances import Cause, IntervalEstimate, Tolerances
 
-Array = np.ndarray[Any, Any]
 
 MOST = 20
 """Designs of a front at most that are listed."""

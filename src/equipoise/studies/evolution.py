@@ -9,8 +9,7 @@ import numpy as np
 
 from equipoise.design.solvers import DesignProblem, DesignSolution, DesignSolver, EveryDesign
 from equipoise.errors import UsageError, lacking
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 MANY = 4
 """Objectives from which reference directions, not crowding, keep designs apart."""

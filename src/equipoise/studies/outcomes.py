@@ -14,13 +14,13 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import needed
 from equipoise.i18n import Note
 from equipoise.quantities import Display, display
+from equipoise.signals import Array
 
 if TYPE_CHECKING:
     from equipoise.keys.requirement_kinds import Make
     from equipoise.quantities import Dimension
     from equipoise.studies.study import Output
 
-Array = np.ndarray[Any, Any]
 
 WINDOW = 60.0
 """Time over which the rate is taken, s."""

@@ -24,6 +24,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.keys.requirement_kinds import Make
 from equipoise.results.result import Result
+from equipoise.signals import Array
 from equipoise.studies.evaluate import pooled
 from equipoise.studies.evolution import SOLVERS
 from equipoise.studies.outcomes import (
@@ -45,7 +46,6 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
 
-Array = np.ndarray[Any, Any]
 
 POPULATION, GENERATIONS = 100, 200
 """Designs of a generation, and generations at most, where nothing else follows from the study."""

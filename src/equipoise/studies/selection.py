@@ -26,6 +26,7 @@ from equipoise.i18n import Note
 from equipoise.keys.requirement_kinds import Make
 from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
+from equipoise.signals import Array
 from equipoise.studies.outcomes import (
     Block,
     design_records,
@@ -42,10 +43,9 @@ from equipoise.studies.study import Output, random_numbers
 if TYPE_CHECKING:
     from equipoise.studies.study import Output
 
-Array = np.ndarray[Any, Any]
 Blocks = Callable[[], Iterable[tuple[int, Block]]]
 """Gives all designs, each time anew, some at a time with the number of the first."""
-Pair = tuple[str, str]
+NamePair = tuple[str, str]
 
 MOST, SOME = 2000, 250
 """Designs up to which each is drawn; those that are drawn as lines from axis to axis."""
@@ -107,7 +107,7 @@ class Cloud:
     spreads: Mapping[str, Spread]
     some: Mapping[str, Array]
     good: Array
-    counts: Mapping[Pair, Array]
+    counts: Mapping[NamePair, Array]
     lost: Mapping[str, Array]
 
     @property
@@ -120,7 +120,7 @@ def cloud_of(
     blocks: Blocks,
     numbers: Sequence[str],
     outputs: Sequence[Output],
-    pairs: Sequence[Pair],
+    pairs: Sequence[NamePair],
     size: int,
 ) -> Cloud:
     """The cloud of some designs.
@@ -154,7 +154,7 @@ def cloud_of(
     spreads = {
         name: _spread(low, high, column, name not in numbers) for name, low, high, column in ends
     }
-    counts: dict[Pair, Array] = {}
+    counts: dict[NamePair, Array] = {}
     failed = {name: spreads[name].bins(table[lost, k]) for k, name in enumerate(numbers)}
     if not few:
         counts, failed = _counts(blocks, names, outputs, pairs, spreads)
@@ -188,9 +188,9 @@ def _counts(
     blocks: Blocks,
     names: Sequence[str],
     outputs: Sequence[Output],
-    pairs: Sequence[Pair],
+    pairs: Sequence[NamePair],
     spreads: Mapping[str, Spread],
-) -> tuple[dict[Pair, Array], dict[str, Array]]:
+) -> tuple[dict[NamePair, Array], dict[str, Array]]:
     """`Cloud.counts`, and bins of each number in which designs fail."""
     counts = {pair: np.zeros((2, BINS * BINS), int) for pair in pairs}
     lost = {name: np.zeros(BINS, int) for name in dict.fromkeys(first for first, _ in pairs)}

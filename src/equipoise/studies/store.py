@@ -35,13 +35,13 @@ from equipoise.fence import OutsideError, open_folder
 from equipoise.folders import NOWHERE, Folder, LinkError, is_nowhere
 from equipoise.i18n import Note, worded
 from equipoise.results.result import Result
+from equipoise.signals import Array
 from equipoise.studies.outcomes import Block, Outcome
 from equipoise.studies.study import Output
 
 if TYPE_CHECKING:
     import zarr
 
-Array = np.ndarray[Any, Any]
 
 MARK, LAYOUT = "equipoise_store", 2
 """What a folder says of itself, and how it is laid out; another number is another meaning of it."""

@@ -27,6 +27,7 @@ from equipoise.keys.requirement_kinds import Asks, RequiredFigure, asks_of
 from equipoise.limits import OUTPUTS, most_outputs
 from equipoise.mechanism.checks import unknown, wrong_text
 from equipoise.sequences import sobol
+from equipoise.signals import Array
 
 if TYPE_CHECKING:
     from scipy.stats.qmc import Sobol
@@ -132,8 +133,6 @@ class Sampling:
     designs: int | None = None
     seed: int = 1
 
-
-Array = np.ndarray[Any, Any]
 
 CHUNK, SLOW_CHUNK = 65_536, 256
 """Designs that are computed and stored together: of analyses, and of whatever takes longer."""

@@ -19,7 +19,7 @@ from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.tip import surface_of
-from equipoise.mechanism.parts.bodies import Outline, outlines, place_of
+from equipoise.mechanism.parts.bodies import BodyOutline, outlines, place_of
 from equipoise.mechanism.parts.couplings import Coupling, Law
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Link
 from equipoise.symbols.carrier import MOUNT, Carrier, SupportSwing
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 
 CORNERS = 180
 """Of a pitch curve that is no circle."""
-Curves = Iterator[Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +87,9 @@ def _distance(joints: Structure, bodies: Bodies, coupling: Coupling) -> float:
     return dist(*(points[pin] for pin in coupling_pins(joints, coupling)))
 
 
-def _curves(gear: Coupling, law: Law, centres: complex, angles: Mapping[str, float]) -> Curves:
+def _curves(
+    gear: Coupling, law: Law, centres: complex, angles: Mapping[str, float]
+) -> Iterator[Array]:
     """Corners of driver's and driven gear's curve, in their axes: where the pitch point comes."""
     turned = {FRAME: 0.0, **angles}
     driver, driven = (turned[item] - turned[gear.carrier] for item in (gear.driver, gear.driven))
@@ -206,7 +207,7 @@ class LinkOutline:
     name: str
     points: tuple[str, ...]
     outline: tuple[str, ...]
-    solids: tuple[Outline, ...] = ()
+    solids: tuple[BodyOutline, ...] = ()
 
     @property
     def extent(self) -> Array:
@@ -527,7 +528,7 @@ def bodies_of(links: Mapping[str, Link]) -> Iterator[LinkOutline]:
         yield LinkOutline(name, tuple(link.points), around, tuple(_solids(link)))
 
 
-def _solids(link: Link) -> Iterator[Outline]:
+def _solids(link: Link) -> Iterator[BodyOutline]:
     origin = complex(*next(iter(link.points.values())))
     for body in link.bodies:
         holes = [([place_of(hole.at, link.points)], -hole.radius) for hole in body.holes]

@@ -29,7 +29,7 @@ from equipoise.results.analysis import ANGLES, LEAST_ANGLES, Analysis, analyze
 from equipoise.symbols.scene import Scene
 from equipoise.web.design import DRAGGED, Design
 from equipoise.web.fields import constrained_place, fields_of
-from equipoise.web.following import Goals, extent_of, following
+from equipoise.web.following import DragGoals, extent_of, following
 from equipoise.web.messages import Change, Drag, Setting
 
 R = TypeVar("R")
@@ -132,7 +132,7 @@ def edited(base: Computed, changes: Iterable[Change], previous: Computed | None 
     ------
     EquipoiseError : an edit cannot be made, or the machine cannot be computed with it.
     """
-    design, goals = base.design, Goals()
+    design, goals = base.design, DragGoals()
     for change in changes:
         if isinstance(change, Setting):
             design = _set(design, change)
@@ -156,7 +156,9 @@ def edited(base: Computed, changes: Iterable[Change], previous: Computed | None 
         return agreeing
 
 
-def _agreeing(base: Computed, design: Design, goals: Goals, previous: Computed) -> Computed | None:
+def _agreeing(
+    base: Computed, design: Design, goals: DragGoals, previous: Computed
+) -> Computed | None:
     """The design with the other changes that make all joints fit, or None if these are unknown."""
     if base.motion.linkage.shared is None:
         return None
@@ -264,7 +266,7 @@ def settled(computed: Computed) -> Computed:
     return replace(computed, design=computed.design.with_machine(placed), stand=None)
 
 
-def _assembled(design: Design, goals: Goals, previous: Computed, stuck: bool) -> Computed:
+def _assembled(design: Design, goals: DragGoals, previous: Computed, stuck: bool) -> Computed:
     """Compute a design in which dragged points come to where they were put.
 
     One that is dragged across a line of its dyad needs that dyad on its other side.  One that comes
@@ -280,7 +282,7 @@ def _assembled(design: Design, goals: Goals, previous: Computed, stuck: bool) ->
     return result if _reaches(result, goals) else _turned_over(design, goals, stuck) or result
 
 
-def _turned_over(design: Design, goals: Goals, stuck: bool) -> Computed | None:
+def _turned_over(design: Design, goals: DragGoals, stuck: bool) -> Computed | None:
     """The design with one dyad on its other side, if the points then come where they were put."""
     for joint, side in design.own.assembly.items() if goals else ():
         if not _moves(design.own, joint, goals):
@@ -308,11 +310,11 @@ def _moves(machine: Machine, joint: str, points: Iterable[str]) -> bool:
     return any(point in machine.links[link].points for link in links for point in points)
 
 
-def _reaches(computed: Computed, goals: Goals) -> bool:
+def _reaches(computed: Computed, goals: DragGoals) -> bool:
     return not _goals_not_reached(computed, goals)
 
 
-def _goals_not_reached(computed: Computed, goals: Goals) -> list[str]:
+def _goals_not_reached(computed: Computed, goals: DragGoals) -> list[str]:
     """Points that are not where they were put."""
     points, tolerance = computed.motion.points, THERE * extent_of(computed.design.own)
     return [
@@ -322,7 +324,7 @@ def _goals_not_reached(computed: Computed, goals: Goals) -> list[str]:
     ]
 
 
-def _with_limit_note(computed: Computed, goals: Goals) -> Computed:
+def _with_limit_note(computed: Computed, goals: DragGoals) -> Computed:
     """Result with a note on why a cylinder's end, or a driven block, is not where it was put."""
     machine = computed.design.own
     points = {slider.name: slider.point for slider in machine.sliders}

@@ -34,11 +34,11 @@ ROUNDS, LEAST, SAME, THERE = 30, 1e-9, 1e-12, 1e-6
 """Rounds of reweighted least squares; floor of the weights, and change that counts as one, over the
 largest change; relative singular value below which equations are dependent."""
 
-Goals = dict[str, tuple[int, complex]]
+DragGoals = dict[str, tuple[int, complex]]
 """Points that are dragged: the sample at which each is to be at a place, m."""
-Spot = tuple[str, str]
+BodySpot = tuple[str, str]
 """A body, and a point of it."""
-Terms = dict[Spot, complex]
+Terms = dict[BodySpot, complex]
 """Factors of places of points in the axes of their bodies, in a sum."""
 
 
@@ -47,7 +47,7 @@ class Following:
     """A machine whose points agree again, and what went along."""
 
     machine: Machine
-    spots: tuple[Spot, ...]
+    spots: tuple[BodySpot, ...]
 
     @property
     def note(self) -> Note:
@@ -60,7 +60,7 @@ class Following:
         return Note("{spots} moved too, so that all joints fit", spots=all_of(values, commas=True))
 
 
-def following(motion: Motion, machine: Machine, goals: Goals) -> Following | None:
+def following(motion: Motion, machine: Machine, goals: DragGoals) -> Following | None:
     """The machine with dependent changes, from bodies that do not rotate relative to each other.
 
     motion : of the machine before it was changed.  goals : where points were dragged to.
@@ -97,13 +97,13 @@ def extent_of(machine: Machine) -> float:
     return max(map(abs, _spots(machine).values())) or 1.0
 
 
-def _spots(machine: Machine) -> dict[Spot, complex]:
+def _spots(machine: Machine) -> dict[BodySpot, complex]:
     """Place of every point in the axes of its body, m."""
     bodies = machine.bodies.items()
     return {(body, point): planar(at) for body, points in bodies for point, at in points.items()}
 
 
-def _placed(machine: Machine, places: Mapping[Spot, complex]) -> Machine:
+def _placed(machine: Machine, places: Mapping[BodySpot, complex]) -> Machine:
     """The machine with its points at other places, m."""
     bodies = {
         body: {point: (places[body, point].real, places[body, point].imag) for point in points}
@@ -167,7 +167,7 @@ def _walk(motion: Motion, bodies: list[str]) -> tuple[dict[str, Terms], list[Ter
     return known, rings
 
 
-def _add(terms: Terms, spot: Spot, factor: complex) -> None:
+def _add(terms: Terms, spot: BodySpot, factor: complex) -> None:
     terms[spot] = terms.get(spot, 0) + factor
 
 
@@ -183,7 +183,7 @@ def _way(motion: Motion, point: str, at: int) -> Terms:
 
 
 def _system(
-    sums: Sequence[Terms], places: Mapping[Spot, complex], free: Sequence[Spot]
+    sums: Sequence[Terms], places: Mapping[BodySpot, complex], free: Sequence[BodySpot]
 ) -> tuple[Array, Array]:
     """Factors of places that may change, (n, m), and what the sums are (n,), m."""
     matrix = np.array([[terms.get(spot, 0) for spot in free] for terms in sums], complex)
@@ -194,7 +194,7 @@ def _system(
 # -- the fewest changes ----------------------------------------------------------------------------
 
 
-def _costs(machine: Machine, spots: Sequence[Spot], moved: set[str]) -> Array:
+def _costs(machine: Machine, spots: Sequence[BodySpot], moved: set[str]) -> Array:
     """What it costs to move points of bodies by a unit of length, (n,)."""
     far, ring = dict.fromkeys(moved, 0), moved
     for steps in count(1):

@@ -16,7 +16,7 @@ from contextlib import AbstractContextManager, ExitStack
 from threading import Lock, Timer, get_ident
 from typing import Any, TypeVar
 
-Answer = TypeVar("Answer")
+AnswerT = TypeVar("AnswerT")
 
 MOMENT = 0.1
 """s of computing, below which an answer is quick."""
@@ -94,8 +94,8 @@ class PageWork:
         self._ended = self._committed = False
 
     def submit(
-        self, lane: Executor, compute: Callable[[], Answer], timed: bool = False
-    ) -> Future[Answer]:
+        self, lane: Executor, compute: Callable[[], AnswerT], timed: bool = False
+    ) -> Future[AnswerT]:
         """Compute as soon as a thread of a lane is free; `end` cancels what still waits for one.
 
         Raises
@@ -107,7 +107,7 @@ class PageWork:
         self._step = step = lane.submit(self.timed if timed else self.do, compute)
         return step
 
-    def do(self, compute: Callable[[], Answer]) -> Answer:
+    def do(self, compute: Callable[[], AnswerT]) -> AnswerT:
         """Compute in this thread; `EndedError` as soon as `end` is called."""
         thread = get_ident()
         try:
@@ -120,7 +120,7 @@ class PageWork:
             self._leave(thread)
             raise
 
-    def timed(self, compute: Callable[[], Answer]) -> Answer:
+    def timed(self, compute: Callable[[], AnswerT]) -> AnswerT:
         """Compute and remember how long it took."""
         begun = time.thread_time()
         try:

@@ -15,7 +15,7 @@ from equipoise.figures import is_wide, layout
 from equipoise.figures.curves import DOT
 from equipoise.figures.layout import lay_out
 from equipoise.figures.panel import dot_of
-from equipoise.figures.sheet import Canvas, CanvasStroke, Item, Markers, Words, box_of
+from equipoise.figures.sheet import Canvas, CanvasStroke, Markers, SheetItem, Words, box_of
 from equipoise.figures.style import PAPER, DrawingStyle, look_of
 from equipoise.figures.vector import svg_of
 from equipoise.figures.view import View
@@ -42,7 +42,7 @@ class Laid:
 
     chart: Chart
     sheet: Canvas
-    panels: tuple[tuple[View, tuple[Item, ...]], ...]
+    panels: tuple[tuple[View, tuple[SheetItem, ...]], ...]
 
     @classmethod
     def of(cls, chart: Chart, wide: float = layout.WIDE, headed: bool = True) -> Laid:
@@ -55,7 +55,7 @@ class Laid:
 
     @classmethod
     def by(cls, chart: Chart, lay: Callable[[], Canvas]) -> Laid:
-        found: list[tuple[View, tuple[Item, ...]]] = []
+        found: list[tuple[View, tuple[SheetItem, ...]]] = []
         draw = layout.draw
 
         def seen(view: View) -> None:
@@ -356,7 +356,7 @@ def _drawn_whole(view: View) -> Iterator[np.ndarray]:
         yield view.places(outline.places.real, outline.places.imag)
 
 
-def _outside(view: View, item: Item) -> bool:
+def _outside(view: View, item: SheetItem) -> bool:
     lines: Iterable[np.ndarray] = getattr(item, "lines", None) or [item.places]
     return _beyond(view, np.vstack([*lines])) > SLACK
 

@@ -18,7 +18,6 @@ from equipoise.exchange.reading.markup import called, number, numbers
 from equipoise.exchange.reading.planar import planar
 from equipoise.exchange.reading.spatial import (
     WORLD,
-    Array,
     Frame3,
     Joint3,
     Loop3,
@@ -34,6 +33,7 @@ from equipoise.exchange.reading.spatial import (
     turned,
 )
 from equipoise.i18n import Note, to_say
+from equipoise.signals import Array
 
 UNREAD = {"include", "replicate", "composite", "flexcomp", "attach", "deformable"}
 """Elements that stand for others, which only MuJoCo makes of them."""

@@ -17,7 +17,6 @@ from equipoise.errors import ModelError, UsageError, at_place, unknown
 from equipoise.exchange.reading.imported import Read
 from equipoise.exchange.reading.spatial import (
     WORLD,
-    Array,
     Joint3,
     Loop3,
     Solid,
@@ -31,6 +30,7 @@ from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import FRAME, Link, Slider, Vector
 from equipoise.mechanism.parts.springs import Spring
 from equipoise.quantities import clean_place
+from equipoise.signals import Array
 
 SAME = 1e-9
 """Distance over the size of the machine below which two places are one."""

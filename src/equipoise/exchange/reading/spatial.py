@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field
 from math import pi
-from typing import Any, Literal
+from typing import Literal
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -14,8 +14,8 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, at_place
 from equipoise.exchange.reading.markup import called, number, numbers
 from equipoise.i18n import Note
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 WORLD = "world"
 DOWN = (0.0, 0.0, -9.80665)
 """m/s2, of files without gravity."""

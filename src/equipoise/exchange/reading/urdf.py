@@ -15,7 +15,6 @@ from equipoise.exchange.reading.planar import planar
 from equipoise.exchange.reading.spatial import (
     MOST,
     WORLD,
-    Array,
     Frame3,
     Joint3,
     Lump,
@@ -26,6 +25,7 @@ from equipoise.exchange.reading.spatial import (
     direction,
 )
 from equipoise.i18n import Note
+from equipoise.signals import Array
 
 KINDS: dict[str | None, Literal["hinge", "slide"]] = {
     "revolute": "hinge",

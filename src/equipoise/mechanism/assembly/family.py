@@ -189,10 +189,10 @@ def column(values: Iterable[Any]) -> Array:
 
 # -- columns ---------------------------------------------------------------------------------------
 
-Columns = Mapping[str, Array]
+ColumnValues = Mapping[str, Array]
 """Path of a number -> its values (P, 1), SI units."""
-Value = TypeVar("Value")
-Part = str | tuple[str, int]
+ValueT = TypeVar("ValueT")
+NumberKey = str | tuple[str, int]
 """Key of a number, or of a list of numbers and the place in it."""
 
 PAIR = {"x", "y", "distance", "direction"}
@@ -231,7 +231,7 @@ def _listed_holders(of: type[Frozen]) -> Iterator[tuple[PathPattern, Set[str]]]:
         )
 
 
-def _check_holder(whole: KeyPath, parts: Set[Part], of: type[Frozen] = Machine) -> None:
+def _check_holder(whole: KeyPath, parts: Set[NumberKey], of: type[Frozen] = Machine) -> None:
     """A `KeyError` where what stands at a path has no such numbers that may be columns."""
     names = {part if isinstance(part, str) else part[0] for part in parts}
     for pattern, keys in (*HOLDERS.items(), *_listed_holders(of)):
@@ -240,7 +240,7 @@ def _check_holder(whole: KeyPath, parts: Set[Part], of: type[Frozen] = Machine) 
     raise KeyError(str(whole))
 
 
-def _split(path: KeyPath) -> tuple[KeyPath, Part]:
+def _split(path: KeyPath) -> tuple[KeyPath, NumberKey]:
     """What holds a number, and which of its numbers it is."""
     *_, name, last = ("", "", *path)
     if isinstance(last, int):
@@ -257,7 +257,7 @@ def can_vary(machine: Machine, path: str) -> bool:
     return True
 
 
-def with_columns(machine: Machine, columns: Columns) -> Machine:
+def with_columns(machine: Machine, columns: ColumnValues) -> Machine:
     """A machine some of whose numbers are columns.
 
     It passes no checks and serves `linkage_of` alone.
@@ -266,7 +266,7 @@ def with_columns(machine: Machine, columns: Columns) -> Machine:
     ------
     UsageError : there is no such number, or it cannot be a column.
     """
-    base, rows_of_values = machine, dict[KeyPath, dict[Part, Array]]()
+    base, rows_of_values = machine, dict[KeyPath, dict[NumberKey, Array]]()
     for path, column in columns.items():
         whole, part = _split(_path(path))
         rows_of_values.setdefault(whole, {})[part] = column
@@ -297,7 +297,7 @@ def _no_column(paths: str) -> UsageError:
     )
 
 
-def _filled(parts: Mapping[Part, Array], template: Any) -> Any:
+def _filled(parts: Mapping[NumberKey, Array], template: Any) -> Any:
     """What holds numbers with columns for some of them, which have to be given."""
     if isinstance(template, tuple):
         return _pair(template, parts)
@@ -372,7 +372,7 @@ def massive_link(path: str) -> str | None:
     return None
 
 
-def invalid_designs(machine: Machine, base: Linkage, columns: Columns) -> Array:
+def invalid_designs(machine: Machine, base: Linkage, columns: ColumnValues) -> Array:
     """Which of the designs (P,) no machine can have."""
     count = max((len(column) for column in columns.values()), default=1)
     values = np.zeros((count, 1), dtype=bool)

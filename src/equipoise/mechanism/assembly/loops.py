@@ -45,6 +45,7 @@ from equipoise.mechanism.assembly.steps import (
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import HERMITE
 from equipoise.mechanism.formulas.kernels import on_track
+from equipoise.mechanism.formulas.rolling import Levels
 from equipoise.signals import first_below
 
 
@@ -464,9 +465,6 @@ class BranchError(MotionError):
 
     crank_angle: float = float("nan")
     rider: str = ""
-
-
-Levels = tuple[Array, Array, Array]  # the unknowns, and their two derivatives
 
 
 @dataclass(frozen=True)

@@ -219,7 +219,7 @@ def joined(curves: Sequence[PeriodicCurve]) -> PeriodicCurve:
 
 # -- normalised laws -------------------------------------------------------------------------------
 
-Run = tuple[float, float, float, bool]
+AccelerationRun = tuple[float, float, float, bool]
 """Of an acceleration: width; from where to where, phases of a sine if the last is true, else
 levels with a straight line between."""
 
@@ -230,7 +230,7 @@ def _polynomial(*powers: float) -> PeriodicCurve:
     return PeriodicCurve(np.array([0.0, 1.0]), filled, np.zeros((1, 3)))
 
 
-def _accelerated(*runs: Run) -> PeriodicCurve:
+def _accelerated(*runs: AccelerationRun) -> PeriodicCurve:
     """The curve from 0 to 1, from rest to rest, whose acceleration has this shape."""
     place = speed = 0.0
     powers, waves = np.zeros((len(runs), MOST_POWERS)), np.zeros((len(runs), 3))

@@ -27,8 +27,8 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Dimension
 from equipoise.signals import EQUAL, highest_at, within_period
 
-Kind = Literal["slider", "rocker"]
-OF_KIND: dict[Kind, Dimension] = {"slider": "length", "rocker": "angle"}
+StrokeKind = Literal["slider", "rocker"]
+OF_KIND: dict[StrokeKind, Dimension] = {"slider": "length", "rocker": "angle"}
 
 
 def figure(
@@ -97,7 +97,7 @@ class Stroke:
     dead_positions : all of them, in the order of the crank angle.
     """
 
-    kind: Kind
+    kind: StrokeKind
     stroke: float = figure(to_say("stroke"), own=True)
     lowest: float = figure(to_say("lowest place"), own=True)
     lowest_at: float = figure(to_say("lowest at crank angle"), "angle")
@@ -341,7 +341,7 @@ class _Output:
     """A slider or a rocker that is looked at."""
 
     name: str
-    kind: Kind
+    kind: StrokeKind
 
     def of(self, motion: Motion) -> tuple[Array, Array, Array]:
         """Place and its derivatives by crank angle, (N,)."""

@@ -24,7 +24,7 @@ from equipoise.quantities import SI, Dimension
 if TYPE_CHECKING:
     from equipoise.signals import Array
 
-Result = TypeVar("Result")
+ResultT = TypeVar("ResultT")
 Needs = Literal["motion", "masses", "planes", "rows", "support"]
 Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
 """Statistic that reduces an output to one number; see `mechanism.parts.balance`."""
@@ -32,8 +32,8 @@ Yardstick = Literal[
     "", "weight", "span", "bearings", "effort", "acting", "pressure", "transmission", "vibration"
 ]
 """Against what an output is measured to say whether it is large; see `results.yardsticks`."""
-Part = Literal["", "x", "y", "size"]
-Read = Callable[..., Any]
+VectorPart = Literal["", "x", "y", "size"]
+OutputReader = Callable[..., Any]
 """From an analysis, and the name of the member for families, to values (N,), complex of vectors."""
 
 KINEMATIC = "{what} is a part of the motion, which masses do not change"
@@ -106,8 +106,8 @@ class Declared:
     name: str
     dimension: Dimension | None
     label: str
-    read: Read | None
-    part: Part = ""
+    read: OutputReader | None
+    part: VectorPart = ""
     needs: Needs = "masses"
     members: Callable[[Any], Iterable[str]] = _only_one
     items: Callable[[Any], Iterable[str]] | None = None
@@ -250,13 +250,13 @@ DECLARED: dict[str, Declared] = {}
 _FORGETTING: list[Callable[[], None]] = []
 
 
-def kept_until_declared(most: int) -> Callable[[Callable[..., Result]], Callable[..., Result]]:
+def kept_until_declared(most: int) -> Callable[[Callable[..., ResultT]], Callable[..., ResultT]]:
     """A function whose last results are kept until another output is declared.
 
     most : number of results.
     """
 
-    def keeping(function: Callable[..., Result]) -> Callable[..., Result]:
+    def keeping(function: Callable[..., ResultT]) -> Callable[..., ResultT]:
         cached = lru_cache(most)(function)
         _FORGETTING.append(cached.cache_clear)
         return cached
@@ -287,7 +287,7 @@ def output(
     summed: tuple[bool, bool] | bool = True,
     sized: bool = True,
     **options: Any,
-) -> Callable[[Read], Read]:
+) -> Callable[[OutputReader], OutputReader]:
     """Declare an output by the function that has it from an analysis.
 
     Parameters
@@ -303,7 +303,7 @@ def output(
         reason = KINEMATIC if needs == "motion" else ONLY_READ
     of_size, of_parts = summed if isinstance(summed, tuple) else (summed, summed)
 
-    def declare(read: Read) -> Read:
+    def declare(read: OutputReader) -> OutputReader:
         item = Declared(
             name, dimension, label, read, needs=needs, linear=linear, reason=reason, **options
         )
@@ -369,7 +369,7 @@ def _matches(name: str) -> tuple[tuple[Declared, str], ...]:
     whole, _, axis = name.rpartition(".")
     for element, item in _matches(whole) if whole and axis in ("x", "y") else ():
         if element.is_vector:
-            part: Part = "x" if axis == "x" else "y"
+            part: VectorPart = "x" if axis == "x" else "y"
             known.append((replace(element, name=f"{element.name}.{axis}", part=part), item))
     return tuple(known)
 

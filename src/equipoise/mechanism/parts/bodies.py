@@ -47,7 +47,7 @@ MATERIALS = {
 """Densities, kg/m3."""
 
 Form = Literal["bar", "plate", "disc", "ring", "point"]
-Spot = str | Vector
+PointOrPlace = str | Vector
 """Name of a point of the link, or x and y in the link's axes."""
 Points = Mapping[str, Vector]
 
@@ -120,7 +120,7 @@ class Hole(Frozen):
 
     called = to_say("{what} of hole {number}")
 
-    at: Spot = key(
+    at: PointOrPlace = key(
         Point(named=True),
         "its centre: a point of the link, or a place",
         example="B",
@@ -164,7 +164,7 @@ class Body(Frozen):
         "`point`: what is small, or known by its mass and inertia",
         example="bar",
     )
-    between: tuple[Spot, ...] = key(
+    between: tuple[PointOrPlace, ...] = key(
         Listing(Point(named=True), (2,), Note("both ends, points of the link by name or places")),
         "both ends of a bar: points of the link, or places",
         default=(),
@@ -188,14 +188,14 @@ class Body(Frozen):
         "length", "of a round bar, instead of `width`", default=None, example="12 mm", above=0
     )
     inner_diameter: float = key("length", "of a tube; 0 for a rod", default=0.0, at_least=0)
-    corners: tuple[Spot, ...] = key(
+    corners: tuple[PointOrPlace, ...] = key(
         Listing(Point(named=True), (), Note("three corners or more, points of the link or places")),
         "of a plate, in order around it: points of the link, or places",
         default=(),
         example=["B", "C", ["20 mm", "-30 mm"]],
         word=to_say("corner {number}"),
     )
-    at: Spot | None = key(
+    at: PointOrPlace | None = key(
         Point(named=True),
         "centre of a disc, ring or point: a point of the link, or a place",
         default=None,
@@ -364,12 +364,12 @@ ROUNDING = 1e-9
 
 # -- from the side ---------------------------------------------------------------------------------
 
-Outline = tuple[list[complex], float]
+BodyOutline = tuple[list[complex], float]
 """Corners, complex, m, and no radius; or a centre, and the radius of a circle, which is below 0
 where the body lies outside of it."""
 
 
-def outlines(body: Body, points: Points) -> list[Outline]:
+def outlines(body: Body, points: Points) -> list[BodyOutline]:
     """Edges of a body as it is seen from the side, without its holes; none of a point and of a bar
     of which no section is given.
     """
@@ -545,16 +545,16 @@ def _wrong_outline(body: Body, points: Points) -> Wrong:
     yield from _wrong_holes(body, points)
 
 
-Edge = tuple[Any, Any, Any]
+EdgeColumns = tuple[Any, Any, Any]
 """As of `edges_of`; numbers, or columns of them."""
 
 
-def _has_area(edges: Sequence[Edge]) -> Any:
+def _has_area(edges: Sequence[EdgeColumns]) -> Any:
     area = abs(sum(cross for _, _, cross in edges))
     return area > ROUNDING * sum(abs(item) ** 2 for item, _, _ in edges)
 
 
-def _crossings(edges: Sequence[Edge]) -> Iterator[tuple[tuple[int, int], Any]]:
+def _crossings(edges: Sequence[EdgeColumns]) -> Iterator[tuple[tuple[int, int], Any]]:
     """Whether edges of a polygon cross, by their numbers from 0.
 
     Edges that only touch are let be: so a cut-out can be reached by a cut from the edge.
@@ -564,7 +564,7 @@ def _crossings(edges: Sequence[Edge]) -> Iterator[tuple[tuple[int, int], Any]]:
             yield (i, j), _parted(edge, other) & _parted(other, edge)
 
 
-def _parted(edge: Edge, other: Edge) -> Any:
+def _parted(edge: EdgeColumns, other: EdgeColumns) -> Any:
     """Whether both ends of another edge lie on different sides of the line of an edge."""
     along = (edge[1] - edge[0]).conjugate()
     item, two = ((along * (end - edge[0])).imag for end in other[:2])
@@ -593,7 +593,7 @@ def _wrong_holes(body: Body, points: Points) -> Wrong:
         yield "holes", Note("leave nothing of the {shape}; make them smaller", shape=body.shape)
 
 
-def fits(center: complex, radius: float, outline: Outline) -> bool:
+def fits(center: complex, radius: float, outline: BodyOutline) -> bool:
     """Whether a circle lies on the body's side of an outline."""
     corners, size = outline
     if size:
