@@ -53,7 +53,7 @@ MODULES = {
     "explaining": ["explain"],
     "files": ["check", "completion", "examples", "new", "schema", "serve"],
     "handheld:app": ["tool"],
-    "importing:import_file": ["import"],
+    "exchange:import_file": ["import"],
     "linkage": ["analyze", "modes", "respond", "run", "simulate"],
     "linkage:planting": ["plant"],
     "measured": ["decay", "exposure"],

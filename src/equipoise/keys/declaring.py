@@ -1,10 +1,15 @@
-"""Declaring keys: fields of frozen dataclasses, what each is in its file, and checks of values."""
+"""Declaring keys: fields of frozen dataclasses, what each is in its file, checks of values.
+
+`wrong_values` checks the numbers and texts of a value against what is declared of them; `needs`,
+`lacks` and the others say in JSON Schema which keys of a table go together.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, fields, replace
 from functools import cache, cached_property
+from math import inf, isfinite
 from types import MappingProxyType
 from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
@@ -12,18 +17,23 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 from equipoise.guarding import keyworded
 from equipoise.i18n import Note
-from equipoise.keys.base import Kind, TableRecord
 from equipoise.keys.kinds import (
+    PLANES,
     DependentQuantity,
     KeyTable,
+    Kind,
     Listing,
     Number,
+    OneOr,
+    Planes,
     Quantity,
+    TableRecord,
     Tables,
     Whole,
+    choice,
     innermost,
 )
-from equipoise.quantities import Dimension
+from equipoise.quantities import HUGE, TINY, Dimension, Measured, pattern
 
 GivenT = TypeVar("GivenT")
 Class = TypeVar("Class", bound=type)
@@ -378,3 +388,142 @@ def _set(new: Any, values: Mapping[str, Any]) -> None:
     """Give a new frozen value its fields."""
     for name, value in values.items():
         object.__setattr__(new, name, value)
+
+
+# -- which keys go together, in JSON Schema --------------------------------------------------------
+
+
+def needs(*keys: str) -> dict[str, Any]:
+    """JSON Schema of a table that has all of these keys."""
+    return {"required": [*keys]}
+
+
+def lacks(*keys: str) -> dict[str, Any]:
+    """JSON Schema of a table that has none of these keys."""
+    return {"properties": dict.fromkeys(keys, False)}
+
+
+def any_of(*keys: str) -> dict[str, Any]:
+    """JSON Schema of a table that has one of these keys."""
+    return {"anyOf": [needs(key) for key in keys]}
+
+
+def not_both(*keys: str) -> dict[str, Any]:
+    """JSON Schema of a table that lacks one of these keys."""
+    return {"not": needs(*keys)}
+
+
+def schema_by_dimension(
+    name: str, sizes: Sequence[str], dimensions: Mapping[str, Dimension]
+) -> dict[str, Any]:
+    """JSON Schema of a table in which the key `name` decides the dimension of `sizes`."""
+    cases = []
+    for dimension in dict.fromkeys(dimensions.values()):
+        names = [item for item, own in dimensions.items() if own == dimension]
+        cases.append(
+            {
+                "if": {"properties": {name: {"enum": names}}, "required": [name]},
+                "then": {"properties": {size: {"pattern": pattern(dimension)} for size in sizes}},
+            }
+        )
+    return {"allOf": cases}
+
+
+# -- checks of values ------------------------------------------------------------------------------
+
+
+def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
+    """Complain of every number below a value that is not finite, of no usual size, or beyond its
+    limits, and of every text that is none of those that there are.
+    """
+    if _is_sound(value):
+        return
+    leaves = list(_leaves(where, value, None))
+    for place, leaf, _ in leaves:
+        if isinstance(leaf, str):
+            continue
+        if not isfinite(leaf):
+            yield ModelError(place, Note("got {leaf}; give a finite number", leaf=leaf))
+        elif abs(leaf) > HUGE or 0 < abs(leaf) < TINY:
+            size = Note("{size} in SI units", size=f"{leaf:g}")
+            yield ModelError(place, Note("got {text}, which no machine can have", text=size))
+    for place, leaf, item in leaves:
+        names = () if item is None else _names(item)
+        if names and leaf not in names:
+            note = Note("got {leaf!r}; give {choice}", leaf=leaf, choice=choice(names))
+            yield ModelError(place, note)
+        elif item is not None and not isinstance(leaf, str) and not item.allows(leaf):
+            given = Measured(leaf, item.dimension)
+            yield ModelError(place, Note("got {text}; {right}", text=given, right=item.right(leaf)))
+
+
+def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:
+    """Numbers and texts below a value, each with its place and its declaration."""
+    if isinstance(value, bool) or value is None:
+        return
+    if isinstance(value, int | float | str):
+        if of is None or not of.endless or value != inf:
+            yield where, value, of
+    elif isinstance(value, Mapping):
+        for name, item in value.items():
+            yield from _leaves(f"{where}.{name}".lstrip("."), item, of)
+    elif isinstance(value, tuple | list):
+        several = of is not None and isinstance(of.kind, OneOr | Planes)
+        alike = several and all(item == value[0] for item in value)
+        planes = of is not None and isinstance(of.kind, Planes) and len(value) == len(PLANES)
+        for number, item in enumerate(value, 1):
+            part = f".{PLANES[number - 1]}" if planes else f"[{number}]"
+            yield from _leaves(where if alike else where + part, item, of)
+    else:
+        for declaration in declarations(type(value)):
+            flat = isinstance(declaration.kind, KeyTable) and declaration.kind.flat
+            place = (
+                where if flat else f"{where}.{declaration.name or declaration.field}".lstrip(".")
+            )
+            yield from _leaves(place, getattr(value, declaration.field), declaration)
+
+
+def _names(key: Key) -> tuple[Any, ...]:
+    """The only values that there are of a key, if they have names."""
+    names: tuple[Any, ...] = getattr(innermost(key.kind), "names", ())
+    return names
+
+
+@once
+def _limits(cls: type[Frozen]) -> tuple[tuple[str, Key, tuple[Any, ...]], ...]:
+    """Fields of a class, each with its declaration and its names."""
+    return tuple(
+        (declaration.field, declaration, _names(declaration)) for declaration in declarations(cls)
+    )
+
+
+def _is_sound(value: Any, of: Key | None = None, names: tuple[Any, ...] = ()) -> bool:
+    """Whether there is nothing to complain of in a value."""
+    if value is None or isinstance(value, bool):
+        return True
+    if isinstance(value, str):
+        return not names or value in names
+    if isinstance(value, int | float):
+        return _is_usual(value, of) and (not names or value in names)
+    if isinstance(value, tuple | list | Mapping):
+        items = value.values() if isinstance(value, Mapping) else value
+        return all(_is_sound(item, of, names) for item in items)
+    return _parts_are_sound(value, finished=of is not None)
+
+
+def _is_usual(value: float, of: Key | None) -> bool:
+    """Whether a number is of a usual size and within its limits."""
+    if value and not TINY <= abs(value) <= HUGE:  # which NaN is not either
+        return of is not None and of.endless and value == inf
+    return of is None or bool(of.allows(value))
+
+
+def _parts_are_sound(value: Any, finished: bool) -> bool:
+    """Whether an object's fields are; one that is finished is looked at once, whoever has it."""
+    values = vars(value)
+    if "sound" in values.get(MEMORY, {}):
+        return bool(value.memory["sound"])
+    sound = all(_is_sound(values[name], item, names) for name, item, names in _limits(type(value)))
+    if finished:
+        value.memory["sound"] = sound
+    return sound

@@ -6,16 +6,42 @@ from collections.abc import Iterable, Mapping
 from importlib import import_module
 from numbers import Integral, Real
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import LANGUAGES, Note, Worded
-from equipoise.keys.base import Kind, TableRecord
 from equipoise.quantities import Dimension, in_si
 
+
+class TableRecord:
+    """What a table of a file is read to, and holds by the names of its fields."""
+
+    wanted: ClassVar[Note] = Note("such an object")
+
+    @classmethod
+    def checked(cls, value: Any) -> Any:
+        """The value of a field that holds such an object; a `TypeError` where it is none."""
+        if not isinstance(value, TableRecord):
+            raise TypeError
+        return value
+
+
+class Kind:
+    """What a value is: `check` takes one that Python gives, `wanted` says what it has to be."""
+
+    wanted: Note
+
+    def check(self, value: Any) -> Any:
+        """The value as it is kept.
+
+        Raises
+        ------
+        TypeError, ValueError, OverflowError : it is something else.
+        """
+        return value
+
+
 MOST_WHOLE = 1_000_000
-
-
 NO_INERTIA = Note("no body has a negative moment of inertia")
 
 

@@ -16,9 +16,8 @@ from typing import Any, ClassVar, Literal
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, unknown
 from equipoise.i18n import Note, any_of
-from equipoise.keys.base import Kind
 from equipoise.keys.declaring import REQUIRED, Key
-from equipoise.keys.kinds import TextKind
+from equipoise.keys.kinds import Kind, TextKind
 
 Make = Literal["smallest", "largest"]
 Asks = tuple[tuple[str, Any], ...]
