@@ -23,7 +23,7 @@ from typing import BinaryIO
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.fence import check_link, check_written, hold_folder, holding, place_of
-from equipoise.folders import Folder
+from equipoise.folders import Folder, reason
 from equipoise.i18n import Note
 from equipoise.interrupts import check, held_back
 
@@ -68,7 +68,7 @@ class _Transaction:
                         path / name,
                         Note(
                             "the file cannot be written ({reason}); choose another place or name",
-                            reason=(error.strerror or "").lower(),
+                            reason=reason(error),
                         ),
                     )
                 ) from error

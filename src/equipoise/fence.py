@@ -18,10 +18,10 @@ from pathlib import Path
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place
 from equipoise.folders import Folder, LinkError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 
 OUTSIDE = Note("lies outside of the folder that is served; name another")
-OUT = "which leads out of its folder"
+OUT = to_say("{name} is a link, which leads out of its folder")
 LONGEST_NAME = 200
 """Characters of a refused name that the error repeats."""
 

@@ -16,12 +16,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from equipoise.i18n import Note, to_say
+
 RELATIVE = {os.open, os.mkdir, os.unlink, os.rename, os.stat, os.rmdir} <= os.supports_dir_fd
 """Whether the system opens files relative to an open folder."""
 _BINARY = getattr(os, "O_BINARY", 0)
 _WAY = getattr(os, "O_PATH", os.O_RDONLY)
 """How a folder on the way is opened: with O_PATH it need not be readable, only passable."""
-NOWHERE = "the current folder does not exist any more"
+NOWHERE = Note("the current folder does not exist any more")
+NOT_FOLLOWED = to_say("{name} is a link, and links are not followed here")
 
 
 def is_nowhere() -> bool:
@@ -34,10 +37,25 @@ def is_nowhere() -> bool:
 
 
 class LinkError(OSError):
-    """There is a link where none is followed."""
+    """There is a link where none is followed; `note` says so.
 
-    def __init__(self, name: str, why: str = "and links are not followed here") -> None:
-        super().__init__(errno.ELOOP, f"{name} is a link, {why}")
+    sentence : template of the note, about ``{name}``.
+    """
+
+    def __init__(self, name: str, sentence: str = NOT_FOLLOWED) -> None:
+        self.note = Note(sentence, name=name)
+        super().__init__(errno.ELOOP, str(self.note))
+
+
+def reason(error: Exception) -> Note | str:
+    """Say briefly why the system refused: in its own words, but for what is refused here."""
+    if isinstance(error, LinkError):
+        return error.note
+    if isinstance(error, FileNotFoundError) and is_nowhere():
+        return NOWHERE
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror.lower()
+    return str(error).lower()
 
 
 class Folder:

@@ -43,7 +43,7 @@ def site(
         Leave compiling Python modules to the browser, which then shows the first machine later.
         Otherwise Node compiles them, if it is installed and --wheels has NumPy.
     """
-    from equipoise.schema.files import reason
+    from equipoise.folders import reason
     from equipoise.web.bytecode import find_node
     from equipoise.web.site import write_site
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from equipoise.atomic_files import make_folder, replaced
 from equipoise.errors import UsageError, at_place
 from equipoise.fence import OutsideError, holding, may_be_replaced, open_file
-from equipoise.folders import NOWHERE, is_nowhere
+from equipoise.folders import reason
 from equipoise.i18n import Note
 from equipoise.quantities import column_heading
 
@@ -164,15 +164,6 @@ def printable(path: Name) -> str:
     text = os.fspath(path).encode("utf-8", "backslashreplace").decode("utf-8")
     text = text if len(text) <= 300 else f"{text[:147]}...{text[-150:]}"
     return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)
-
-
-def reason(error: Exception) -> str:
-    """Say briefly why the system refused."""
-    if isinstance(error, FileNotFoundError) and is_nowhere():
-        return NOWHERE
-    if isinstance(error, OSError) and error.strerror:
-        return error.strerror.lower()
-    return str(error).lower()
 
 
 # -- results ---------------------------------------------------------------------------------------

@@ -33,7 +33,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place, needed
 from equipoise.fence import OutsideError, open_folder
 from equipoise.folders import NOWHERE, Folder, LinkError, is_nowhere
-from equipoise.i18n import Note, worded
+from equipoise.i18n import Note, to_say, worded
 from equipoise.results.result import Result
 from equipoise.signals import Array
 from equipoise.studies.outcomes import Block, Outcome
@@ -53,7 +53,7 @@ CODEC = "crc32c"
 """Zarr's name of what puts a checksum behind each chunk, and looks at it when that is read."""
 REASON, UNKNOWN = "reason", 255
 """Name of the array of reasons, and the one of designs that are not computed yet."""
-NO_LINKS = "which no store has"
+NO_LINKS = to_say("{name} is a link, which no store has")
 DAMAGED = Note("see whether the disk is there, or sweep anew")
 BLOCK, NUMBERS = 65_536, 2**22
 """Designs that are read at once, or fewer where each has many numbers."""
@@ -443,8 +443,10 @@ LONGEST = 200
 """Characters at most of an error that are kept."""
 
 
-def brief(error: Exception) -> str:
+def brief(error: Exception) -> Note | str:
     """Say briefly what went wrong."""
+    if isinstance(error, LinkError):
+        return error.note
     if isinstance(error, FileNotFoundError) and is_nowhere():
         return NOWHERE
     message = error.strerror if isinstance(error, OSError) and error.strerror else str(error)

@@ -26,9 +26,9 @@ from starlette.websockets import WebSocketDisconnect
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from equipoise.errors import UsageError
+from equipoise.folders import reason
 from equipoise.i18n import Note
 from equipoise.interrupts import answered
-from equipoise.schema.files import reason
 from equipoise.web.desk import PageBackend
 from equipoise.web.documents import TYPES, assets, document
 from equipoise.web.lanes import MOMENT, EndedError, Lanes, PageWork, give_back
