@@ -42,8 +42,8 @@ from equipoise.results.declaring import (
     values_of,
 )
 from equipoise.results.outputs import AnalysisOutputs, unit_of_measure
+from equipoise.results.remarks import slender_links
 from equipoise.results.result import Result
-from equipoise.results.slender_links import slender_links
 from equipoise.signals import Array
 from equipoise.vibration.response import GaugeSignals, of_support
 

@@ -45,9 +45,9 @@ from equipoise.results.blocks import (
     Text,
     Value,
     broken_if,
+    look_at_next,
     worse_if,
 )
-from equipoise.results.headline import look_at_next
 from equipoise.results.machine_blocks import driven, rows_table
 from equipoise.results.outputs import DIMENSIONS, objective_named
 from equipoise.results.yardsticks import sentence

@@ -27,7 +27,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import format_quantity, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.declaring import Declarations, ResultOutput
-from equipoise.results.speed_fluctuation import COARSE, STEADY
+from equipoise.results.rotors import COARSE, STEADY
 from equipoise.results.yardsticks import FigureAssessment
 
 DIGITS = 2

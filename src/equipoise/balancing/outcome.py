@@ -40,7 +40,7 @@ from equipoise.mechanism.parts.balance import (
 )
 from equipoise.quantities import PER_RPM, brief, change, display, format_quantity, percent
 from equipoise.results.blocks import Block, Cell, Column, RelativeChange, Table, Text
-from equipoise.results.lost_contacts import preloads_to_hold
+from equipoise.results.cam_blocks import preloads_to_hold
 from equipoise.results.outputs import (
     MEASURES,
     objective_named,

@@ -30,7 +30,7 @@ from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import display, format_quantity, number, percent
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.declaring import Declarations, ResultOutput
-from equipoise.results.motor_torque import LEAST_MEAN
+from equipoise.results.outputs import LEAST_MEAN
 from equipoise.results.yardsticks import FigureAssessment, assess
 from equipoise.signals import Array, Figures
 

@@ -231,7 +231,7 @@ def _result(
     brief : whether the headline of each part is printed first.
     """
     from equipoise.handheld.blocks import summary_blocks
-    from equipoise.results.headline import look_at_next
+    from equipoise.results.blocks import look_at_next
 
     def values() -> Mapping[str, Any]:
         by_name = {name: item for part in parts for name, item in part.to_dict().items()}
@@ -336,8 +336,7 @@ def sensitivities(
     """
     import numpy as np
 
-    from equipoise.handheld.blocks import summary_blocks
-    from equipoise.handheld.hand_blocks import sensitivity_blocks
+    from equipoise.handheld.blocks import sensitivity_blocks, summary_blocks
     from equipoise.handheld.hand_exposure import tool_sensitivities
 
     band = tool.design.speeds if speeds is None and tool.design is not None else speeds

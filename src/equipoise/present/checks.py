@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from equipoise.codegen.backends import engine, processors
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, lacking
+from equipoise.handheld.blocks import varied_named
 from equipoise.handheld.design_plan import OUTPUTS
-from equipoise.handheld.hand_blocks import varied_named
 from equipoise.handheld.shaft import Section
 from equipoise.i18n import Note, all_of, coordinates, listed, localized, say, series, to_say
 from equipoise.mechanism.assembly.joints import moving_links
@@ -24,8 +24,7 @@ from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, format_
 from equipoise.quantities.numbers import duration_text, rate_text
 from equipoise.results.analysis import analyze
 from equipoise.results.blocks import Block, Cell, Column, FileText, Notes, Table, Text, Value
-from equipoise.results.cam_blocks import cam_descriptions
-from equipoise.results.lost_contacts import preloads_to_hold
+from equipoise.results.cam_blocks import cam_descriptions, preloads_to_hold
 from equipoise.results.machine_blocks import bodies_tables, driven, point_text
 from equipoise.signals import Array
 from equipoise.studies.blocks import Units, in_unit, labelled, spread_text, unit_in

@@ -12,7 +12,7 @@ from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.outcome import benefit_sentences, no_benefit_sentences
 from equipoise.errors import UsageError, at_place
 from equipoise.handheld import blocks as of_tools
-from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
+from equipoise.handheld.blocks import design_blocks, exposure_of_tool
 from equipoise.handheld.model import Tool
 from equipoise.i18n import LANGUAGES, Note, coordinates, localized, say, speaking, to_say
 from equipoise.mechanism.parts.machine import Machine
@@ -24,7 +24,12 @@ from equipoise.present.pictures import Drawings, drawings
 from equipoise.present.summary import answers, check_whole_cycle, tiles, tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number
 from equipoise.results.analysis import Analysis
-from equipoise.results.analysis_blocks import force_blocks, motion_blocks, question_blocks
+from equipoise.results.analysis_blocks import (
+    force_blocks,
+    motion_blocks,
+    question_blocks,
+    verdict_blocks,
+)
 from equipoise.results.blocks import (
     Block,
     Facts,
@@ -36,7 +41,6 @@ from equipoise.results.blocks import (
     Text,
     interleave_changes,
 )
-from equipoise.results.headline import verdict_blocks
 from equipoise.results.joint_blocks import elements_tables, joint_blocks, kind_tables
 from equipoise.results.machine_blocks import crank_angles_text, driven, model_blocks
 from equipoise.results.result import in_own_words

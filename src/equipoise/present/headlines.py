@@ -34,8 +34,8 @@ from equipoise.quantities import (
 )
 from equipoise.results.analysis_blocks import display_of_totals, shares
 from equipoise.results.joint_blocks import display_of_joints
+from equipoise.results.machine_blocks import scale_of
 from equipoise.results.outputs import CAUSES, objective_named, output_named, shown_in
-from equipoise.results.scales import scale_of
 from equipoise.signals import Array, Figures, harmonics, highest_at
 from equipoise.vibration.linear import nearest_loud
 
@@ -50,9 +50,9 @@ if TYPE_CHECKING:
     from equipoise.present.findings import Findings, ToolFindings
     from equipoise.results.analysis import Analysis
     from equipoise.running.run_results import DrivesRun, Run
+    from equipoise.vibration.forced import Sweep
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Response
-    from equipoise.vibration.sweep import Sweep
 
 
 NOTHING = 1e-9

@@ -23,8 +23,7 @@ from equipoise.balancing.outcome import (
 from equipoise.errors import UsageError
 from equipoise.exposure.blocks import VERDICTS, clock, limit_broken
 from equipoise.exposure.daily import verdict_of
-from equipoise.handheld.blocks import UNITS
-from equipoise.handheld.hand_blocks import figure_named, varied_named
+from equipoise.handheld.blocks import UNITS, figure_named, varied_named
 from equipoise.handheld.hand_exposure import WORKING, grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import Note, number_list, say, sentence_start, to_say
@@ -49,9 +48,8 @@ from equipoise.quantities import (
 from equipoise.results.analysis_blocks import CANCELLING, display_of_totals, shares
 from equipoise.results.blocks import worse_if
 from equipoise.results.joint_blocks import display_of_joints
-from equipoise.results.machine_blocks import pushed_named
+from equipoise.results.machine_blocks import pushed_named, scale_of
 from equipoise.results.outputs import CAUSES, objective_named, shown_in
-from equipoise.results.scales import scale_of
 from equipoise.signals import Figures, highest_at
 from equipoise.vibration.linear import resonance_note, within
 

@@ -1,7 +1,12 @@
-"""What an analysis shows: motion, forces on frame and drive, joints, and all of it by orders."""
+"""What an analysis shows: the verdict for this machine, then motion, forces on frame and drive,
+joints, and all of it by orders.
+
+`yardsticks` has the reference value against which each figure is large or not.
+"""
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import pi
@@ -10,11 +15,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say, to_say
+from equipoise.mechanism.assembly.joints import moving_links
+from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.kinematics.strokes import SHARE, Dwell
 from equipoise.mechanism.outputs.declared import joint_named
-from equipoise.quantities import Dimension, Display, angle, display, percent
+from equipoise.mechanism.parts.balance import GAUGES
+from equipoise.quantities import Dimension, Display, angle, display, format_quantity, percent
 from equipoise.quantities.numbers import ROUNDING
-from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
+from equipoise.results.blocks import (
+    Block,
+    Cell,
+    Column,
+    Facts,
+    Many,
+    Notes,
+    Table,
+    Text,
+    Value,
+    broken_if,
+    look_at_next,
+)
 from equipoise.results.joint_blocks import elements_tables, joint_blocks, kind_tables
 from equipoise.results.machine_blocks import (
     crank_angles_text,
@@ -25,17 +45,28 @@ from equipoise.results.machine_blocks import (
     largest,
     point_text,
     points_table,
+    scale_of,
     smallest,
     span,
 )
-from equipoise.results.outputs import CAUSES, tops_of
+from equipoise.results.outputs import CAUSES, TOTALS, tops_of
 from equipoise.results.remarks import Place, remarks_of
-from equipoise.results.scales import TOTALS, scale_of
+from equipoise.results.rotors import rotor_sentence
+from equipoise.results.yardsticks import (
+    FigureAssessment,
+    GaugeReading,
+    assess,
+    contact_sentence,
+    kept_contact,
+    sentence,
+    verdict,
+)
 from equipoise.signals import EQUAL, Array, Periodic
 
 if TYPE_CHECKING:
     from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.results.analysis import Analysis
+
 
 MOST_ORDERS = 8
 """Orders at most in a table of harmonics."""
@@ -43,6 +74,112 @@ MOST_DEAD = 4
 """Dead positions at most that are listed beside the outermost two."""
 LISTED_ANGLES = 24
 """Crank angles in a turn at which an output that the user chose is tabulated."""
+
+
+MOST_LARGE, MOST_SMALL = 3, 2
+"""Figures at most beside the verdict: among large figures, and where no figure is large."""
+
+
+MOST_NOTES = 3
+"""Notes that stand first; the others follow with all tables."""
+
+
+ELSE_LARGE = to_say("Other large figures, each with its reference value")
+
+
+NEXT_TO_ONE = to_say("Nothing else is large; nearest to their reference values")
+
+
+NEXT_TO_NONE = to_say("Nothing is large; nearest to their reference values")
+
+
+def analysis_headline(
+    analysis: Analysis,
+    alone: bool = False,
+    readings: Mapping[str, GaugeReading] | None = None,
+) -> Iterator[Block]:
+    """The verdict and what else is large; alone also what the machine is, and what to look at next.
+
+    alone : whether nothing follows, as on a terminal.
+    readings : of gauges, as of `assess`.
+    """
+    entries = assess(analysis, readings)
+    first = verdict(entries)
+    yield from verdict_blocks(analysis, readings)
+    if alone:
+        yield Text(what_it_is(analysis))
+    is_of_gauge = first is not None and first.output.startswith(GAUGES)
+    rest = [entry for entry in entries if entry is not first and not entry.is_kept_contact]
+    if is_of_gauge:  # `respond` has the others
+        rest = [item for item in rest if not item.output.startswith(GAUGES)]
+    large = [item for item in rest if item.is_large]
+    if largest := large[:MOST_LARGE] or rest[:MOST_SMALL]:
+        lines = tuple(sentence(item, analysis.machine.crank_turns) for item in largest)
+        small = NEXT_TO_ONE if first is not None and first.is_large else NEXT_TO_NONE
+        yield Facts(say(ELSE_LARGE if large else small), lines)
+    if alone and (notes := analysis.notes):
+        yield Notes(notes[:MOST_NOTES])
+    if alone:
+        yield look_at_next(*_next(analysis, first))
+
+
+def verdict_blocks(
+    analysis: Analysis, readings: Mapping[str, GaugeReading] | None = None
+) -> Iterator[Text]:
+    """The figure by which the machine is judged first, and up to which speed followers stay on
+    their cams; nothing where there is neither.
+
+    readings : of gauges, as of `assess`.
+    """
+    entries = assess(analysis, readings)
+    first, figure_assessment = verdict(entries), kept_contact(entries)
+    words = [*filter(None, [rotor_sentence(analysis.machine)])]
+    if first is not None and first is not figure_assessment:
+        words.append(say("{sentence}.", sentence=sentence(first, analysis.machine.crank_turns)))
+    if figure_assessment is not None:
+        words.append(contact_sentence(figure_assessment))
+    if words:
+        is_broken = first is not None and first.is_broken
+        yield Text(" ".join(words), broken_if(is_broken))
+
+
+def what_it_is(analysis: Analysis) -> str:
+    """How many links move, their mass where it is known, and how they are driven."""
+    machine = analysis.machine
+    values = {
+        "links": moving_links(len(machine.links)),
+        "driven": driven(machine, analysis.motion.speed),
+        "mass": "" if massless(machine) else format_quantity(machine.mass, "mass", "kg", digits=3),
+    }
+    without = to_say("{links}; {driven}")
+    with_mass = to_say("{links} of {mass} together; {driven}")
+    several = to_say("{rows} rows, in each {links} of {mass} together; {driven}")
+    if massless(machine):
+        return say(without, **values)
+    if len(machine.rows) > 1:
+        return say(several, rows=len(machine.rows), **values)
+    return say(with_mass, **values)
+
+
+def _next(analysis: Analysis, first: FigureAssessment | None) -> Iterator[str]:
+    """Commands that show more of what is large, and what to do about it."""
+    machine = analysis.machine
+    if output := _output_of(analysis, first):
+        yield f"analyze --output {shlex.quote(output) if ' ' in output else output}"
+    if machine.planting is not None:
+        yield "plant"
+    if machine.support is not None and not massless(machine):
+        yield "respond"
+    if not massless(machine):
+        yield "balance"
+
+
+def _output_of(analysis: Analysis, first: FigureAssessment | None) -> str:
+    """The output to look at: that of the verdict, of a contact its force."""
+    if first is None:
+        return ""
+    names = (first.output, f"{first.output}.normal")
+    return next((name for name in names[first.is_contact :] if name in analysis.outputs), "")
 
 
 def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
@@ -128,12 +265,11 @@ def strokes_table(analysis: Analysis) -> Table:
         rows.append((joint_named(name), stroke, *ends, Value(item.time_ratio), rest))
     heads = (say("stroke"), say("lowest"), say("highest"), say("time ratio"))
     columns = ("", *heads, say("further dead positions"))
-    width = len(columns) if any(row[-1] is not None for row in rows) else -1
     title = say(
         "Sliders and rockers: stroke between dead positions (at crank angle), and time of the "
         "slower stroke over that of the faster"
     )
-    return Table.of(title, columns[:width], (row[:width] for row in rows))
+    return Table.of_filled(title, columns, rows)
 
 
 def advantages_table(analysis: Analysis) -> Table:
@@ -153,7 +289,6 @@ def advantages_table(analysis: Analysis) -> Table:
         Column(say("force over crank torque"), "per length"),
         say("torque over crank torque"),
     )
-    there = [k for k in range(5) if k < 3 or any(row[k] is not None for row in rows)]
     without = to_say(
         "Crank angle over which they rise; longest dwell within {share} % of the stroke"
     )
@@ -161,8 +296,10 @@ def advantages_table(analysis: Analysis) -> Table:
         "Crank angle over which they rise; longest dwell within {share} % of the stroke; least "
         "mechanical advantage, which has no bound towards dead positions"
     )
-    title = say(pushing if there[3:] else without, share=percent(SHARE))
-    return Table.of(title, [columns[k] for k in there], ([row[k] for k in there] for row in rows))
+    title = say(
+        pushing if any(row[3:] != (None, None) for row in rows) else without, share=percent(SHARE)
+    )
+    return Table.of_filled(title, columns, rows)
 
 
 # -- forces ----------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ who renders them chooses digits and signs by `equipoise.quantities`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import takewhile
 from math import isclose
@@ -164,6 +164,14 @@ class Table:
         heads = (Column(column) if isinstance(column, str) else column for column in columns)
         return cls(title, tuple(heads), tuple(map(tuple, rows)))
 
+    @classmethod
+    def of_filled(cls, title: str, columns: Sequence[Any], rows: Sequence[Sequence[Any]]) -> Table:
+        """As `of`, without columns in which every cell is None."""
+        filled = [k for k in range(len(columns)) if any(row[k] is not None for row in rows)]
+        return cls.of(
+            title, [columns[k] for k in filled], ([row[k] for k in filled] for row in rows)
+        )
+
 
 @dataclass(frozen=True)
 class Notes:
@@ -239,6 +247,11 @@ class ReportSection:
     title: str
     blocks: tuple[Block | ReportSection, ...]
     headline: str = ""
+
+
+def look_at_next(*commands: str) -> Text:
+    """Commands that show more, in a line."""
+    return Text(say("Look at next: {commands}.", commands="; ".join(commands)))
 
 
 # -- before and after ------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Forces in joints and between teeth, as an analysis shows them."""
+"""What an analysis shows of joints and links: forces, friction, bearings, stress in sections."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.dynamics.reactions import (
     JointForce,
     SliderForce,
@@ -19,14 +19,10 @@ from equipoise.mechanism.parts.element_kinds import (
     named_function,
     part_kinds,
 )
-from equipoise.quantities import Dimension, Display, display
-from equipoise.results.bearing_blocks import bearing_blocks
-from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
-from equipoise.results.friction_blocks import friction_blocks
-from equipoise.results.machine_blocks import largest, smallest
+from equipoise.quantities import Dimension, Display, display, format_quantity, percent
+from equipoise.results.blocks import Block, Cell, Column, Facts, Notes, Table, Value
+from equipoise.results.machine_blocks import largest, scale_of, smallest
 from equipoise.results.remarks import remarks_of
-from equipoise.results.scales import scale_of
-from equipoise.results.section_blocks import section_blocks
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics.forces import Forces
@@ -140,9 +136,8 @@ def joint_table(analysis: Analysis) -> Table:
     unit = display_of_joints(analysis).unit
     columns = ["", say("by → on"), *(Column(label, "force", unit) for label in labels)]
     columns += [Column(say(item), "torque") for item in (MOMENT, TILTING)]
-    filled = [k for k in range(len(columns)) if any(row[k] is not None for row in rows)]
     title = say("Force in each joint; largest with its crank angle")
-    return Table.of(title, [columns[k] for k in filled], ([row[k] for k in filled] for row in rows))
+    return Table.of_filled(title, columns, rows)
 
 
 MOMENT, TILTING = to_say("moment"), to_say("tilting moment")
@@ -159,3 +154,194 @@ def _peak(analysis: Analysis, moment: JointForce | None, scale: float) -> Value 
     if moment is None:
         return None
     return Value(analysis.motion.figures(moment.size).peak, scale)
+
+
+# -- friction, bearings and stress -----------------------------------------------------------------
+
+
+def friction_blocks(analysis: Analysis) -> Iterator[Block]:
+    """Losses of all joints, and the efficiency."""
+    whole = analysis.resolved
+    losses, forces = whole.losses, whole.forces
+    if losses is None:
+        return
+    total = losses.loss
+    rows: list[tuple[Cell, ...]] = []
+    for name, joint in losses.joints.items():
+        friction = forces.frictions[name]
+        kind: Dimension = "torque" if friction.is_pin else "force"
+        figures = forces.motion.figures(abs(friction.effort))
+        resists = largest(figures, dimension=kind)
+        share = f"{percent(joint.loss / total)} %" if total else ""
+        wears = Value(joint.wear_work) if friction.wears else None
+        rows.append((joint_named(name), Value(joint.loss), share, resists, wears))
+    columns = (
+        "",
+        Column(say("mean loss"), "power"),
+        say("share"),
+        say("largest friction"),
+        Column(say("contact force times sliding way in a turn"), "energy"),
+    )
+    yield Table.of(say("Friction in joints; largest with its crank angle"), columns, rows)
+    lines = [
+        say(
+            "drive gives {drive}, loads give {loads}, joints lose {loss} in the mean",
+            drive=format_quantity(losses.drive, "power", "W"),
+            loads=format_quantity(losses.loads, "power", "W"),
+            loss=format_quantity(total, "power", "W"),
+        )
+    ]
+    if losses.efficiency is not None:
+        lines.append(say("efficiency {share} %", share=percent(losses.efficiency)))
+    yield Facts(say("Power in the mean of a cycle"), tuple(lines))
+
+
+def bearing_blocks(analysis: Analysis) -> Iterator[Block]:
+    """Tables of rolling and of plain bearings, where there are any."""
+    if analysis.rolling_bearings:
+        yield _rolling_table(analysis)
+    if analysis.plain_bearings:
+        yield _plain_table(analysis)
+
+
+def _rolling_table(analysis: Analysis) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for name, rolling_bearing in analysis.rolling_bearings.items():
+        reached = (
+            None if rolling_bearing.reached is None else f"{percent(rolling_bearing.reached)} %"
+        )
+        numbers = (
+            rolling_bearing.basic_life,
+            rolling_bearing.rated_life,
+            rolling_bearing.needed_rating,
+            rolling_bearing.static_safety,
+        )
+        life, rated, rating, safety = (None if x is None else Value(x) for x in numbers)
+        load, speed = Value(rolling_bearing.equivalent_load), Value(rolling_bearing.speed)
+        rows.append((joint_named(name), load, speed, life, rated, reached, rating, safety))
+    columns = [
+        "",
+        Column(say("equivalent load"), "force"),
+        Column(say("mean speed"), "angular speed", "rpm"),
+        Column(say("life that 90 % reach (L10)"), "time", "h"),
+        Column(say("life at the wanted reliability"), "time", "h"),
+        say("share that reaches the wanted life"),
+        Column(say("dynamic rating needed"), "force"),
+        say("static safety"),
+    ]
+    states = len(analysis.machine.duty)
+    title = say("Rolling bearings in joints")
+    if states:
+        title = say("Rolling bearings in joints, over {count} duty states", count=states)
+    return Table.of_filled(title, columns, rows)
+
+
+def _plain_table(analysis: Analysis) -> Table:
+    rows = [
+        (
+            joint_named(name),
+            Value(item.pressure, at=item.pressure_at),
+            Value(item.pressure_speed, at=item.pressure_speed_at),
+            Value(item.mean_pressure_speed),
+        )
+        for name, item in analysis.plain_bearings.items()
+    ]
+    columns = (
+        "",
+        Column(say("largest pressure"), "modulus"),
+        Column(say("largest pressure times speed"), "pressure times speed"),
+        Column(say("mean"), "pressure times speed"),
+    )
+    title = say("Plain bearings in joints; largest with its crank angle")
+    if (states := len(analysis.machine.duty)) and analysis.motion.is_steady_cycle:
+        title = say(
+            "Plain bearings in joints, over {count} duty states; largest with its crank angle",
+            count=states,
+        )
+    return Table.of(title, columns, rows)
+
+
+BELOW = 1e-9
+"""Share of a link's mass below 0 that is rounding."""
+
+
+def section_blocks(analysis: Analysis) -> Iterator[Block]:
+    """Loads and strength of each link with a section."""
+    if not analysis.sections:
+        return
+    loads: list[tuple[Cell, ...]] = []
+    strength: list[tuple[Cell, ...]] = []
+    force, moment = scale_of(analysis, "force"), scale_of(analysis, "torque")
+    for name, section in analysis.sections.items():
+        along = (section.tension, section.compression, section.shear)
+        forces = (Value(value, force) for value in along)
+        loads.append((name, *forces, Value(section.bending_moment, moment)))
+        safeties = (section.safety, section.buckling_safety, section.fatigue_safety)
+        cells = (None if safety is None else Value(safety) for safety in safeties)
+        life = None if section.life is None else Value(section.life)
+        place = say(
+            "{distance} from {point}, {side}",
+            distance=format_quantity(section.place, "length", "mm"),
+            point=_first_end(analysis, name),
+            side=say("left fibre") if section.fibre == "left" else say("right fibre"),
+        )
+        stress = Value(section.stress, at=section.stress_at)
+        strength.append((name, stress, place, *cells, life))
+    heads = (say("tension"), say("compression"), say("shear"))
+    columns = ["", *(Column(head, "force") for head in heads)]
+    columns.append(Column(say("bending moment"), "torque"))
+    yield Table.of(say("Loads along links, largest"), columns, loads)
+    heads = (say("yielding"), say("buckling"), say("fatigue"))
+    columns = ["", Column(say("stress"), "modulus"), say("place"), *heads]
+    columns.append(Column(say("life"), "time", "h"))
+    title = say("Largest stress along links (at crank angle), and safety")
+    if states := len(analysis.machine.duty):
+        title = say(
+            "Largest stress along links (at crank angle), and safety, over {count} duty states",
+            count=states,
+        )
+    yield Table.of_filled(title, columns, strength)
+    yield from _elastic_blocks(analysis)
+    if notes := (*_section_notes(analysis), *remarks_of(analysis, "sections")):
+        yield Notes(notes)
+
+
+def _elastic_blocks(analysis: Analysis) -> Iterator[Block]:
+    """How links with an elastic modulus bend."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, section in analysis.sections.items():
+        if section.deflection is not None:
+            frequency = (
+                None if section.natural_frequency is None else Value(section.natural_frequency)
+            )
+            bent = Value(section.deflection, at=section.deflection_at)
+            rows.append((name, frequency, bent, Value(section.path_error or 0.0)))
+    if rows:
+        columns = (
+            "",
+            Column(say("first natural frequency"), "frequency"),
+            Column(say("largest deflection"), "length"),
+            Column(say("largest error of the path of a point"), "length"),
+        )
+        yield Table.of(say("Links as beams on pins at both ends (at crank angle)"), columns, rows)
+
+
+def _first_end(analysis: Analysis, link: str) -> str:
+    body = analysis.machine.links[link]
+    assert body.section is not None
+    return body.section.ends(body.points)[0]
+
+
+def _section_notes(analysis: Analysis) -> Iterator[Note]:
+    """Links whose mass does not lie between the ends of their line."""
+    for name, section in analysis.sections.items():
+        mass = analysis.machine.links[name].mass or 0.0
+        if min(section.rod_mass, section.least_end_mass) < -BELOW * mass:
+            yield Note(
+                to_say(
+                    "mass of the {link} lies beyond the ends of the line of its section, or close "
+                    "to its middle: a rod with a lump at each end has it only with one of these "
+                    "below 0"
+                ),
+                link=name,
+            )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.i18n import Note, coordinates, localized, say, to_say
+from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.outputs.declared import body_named, joint_named
 from equipoise.mechanism.parts.bodies import combined, inertia_of, material_of
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
@@ -23,6 +24,7 @@ from equipoise.quantities import (
     number,
 )
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
+from equipoise.results.outputs import TOTALS
 from equipoise.signals import Array, Figures
 
 if TYPE_CHECKING:
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.bodies import Body
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.analysis import Analysis
+
 
 FOUR_BARS = (
     to_say("double-crank (drag link)"),
@@ -62,6 +65,24 @@ APART = {
 
 
 # -- figures as cells ------------------------------------------------------------------------------
+
+
+def scale_of(analysis: Analysis, kind: Dimension | None) -> float:
+    """The largest force, N, or moment, N m, of a machine, beside which others are rounding.
+
+    Forces are those on frame and drive, in joints and between teeth.  Moments are those on frame
+    and drive, and the largest force at the size of the largest link: in a machine whose forces act
+    along one line every moment is rounding of that.
+    """
+    totals = (item for item in analysis.outputs.summed if item.group in TOTALS[:2])
+    largest = max((item.figures.peak for item in totals if item.dimension == kind), default=0.0)
+    if kind == "force":
+        contacts = analysis.resolved.forces.solved.contacts.values()
+        sizes = (float(np.max(contact.size, initial=0.0)) for contact in contacts)
+        return max(largest, *sizes, 0.0)
+    if kind == "torque":
+        return max(largest, scale_of(analysis, "force") * size_of_links(analysis.machine))
+    return largest
 
 
 def largest(figures: Figures, scale: float = 0.0, dimension: Dimension | None = None) -> Value:

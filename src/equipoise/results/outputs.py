@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import Field
 from functools import cached_property
 from itertools import groupby
-from math import pi
+from math import copysign, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.mechanism.parts.balance import Objective
 
+TOTALS = ("forces", "drives", "rows")
+"""Groups of outputs of frame and drive: of one row, of further drives, and of all rows."""
 FAR = 5.0
 """Over what three quarters of the values of an output are below: beyond it nothing is drawn."""
 
@@ -427,3 +429,20 @@ def figures_by_name(analysis: Any) -> Iterator[tuple[str, str, Any]]:
     for table, by_name in {**analysis.part_figures, **of_joints_and_links}.items():
         for name, figures in by_name.items():
             yield table, name, figures
+
+
+LEAST_MEAN = 0.01
+"""Of the RMS of a torque: less is what samples of narrow peaks leave of a mean that is 0, as of a
+machine that swings near a dead position and does no work, or on which only masses act."""
+
+
+def motor_torque(machine: Machine, outputs: AnalysisOutputs) -> tuple[AnalysisOutput, float] | None:
+    """The drive torque of all rows of a machine with a motor, and its mean, N m, in the direction
+    in which the crank turns: less than 0 where the motor brakes; None where there is none.
+    """
+    name = f"rows.{machine.drive.effort}"
+    name = name if name in outputs else machine.drive.effort
+    if machine.drive.motor is None or not machine.has_crank or name not in outputs:
+        return None
+    torque = outputs[name]
+    return torque, copysign(1.0, machine.drive.speed) * torque.figures.mean

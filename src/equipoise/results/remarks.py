@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from math import inf, pi
 from typing import Literal, NamedTuple, Protocol
 
-from equipoise.i18n import Note
+import numpy as np
+
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.dynamics.assessment import joint_remarks, mass_remarks, questions
+from equipoise.mechanism.dynamics.section_loads import ADDED, added_share, bending_frequency
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.reactions import idle_teeth_notes
-from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.parts.element_kinds import named_function, part_kinds
+from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
-from equipoise.results.braking import braking_motor
-from equipoise.results.outputs import AnalysisOutputs
-from equipoise.results.slender_links import slender_links
-from equipoise.results.unreached_tables import unreached_tables
+from equipoise.quantities import format_quantity, number, percent
+from equipoise.results.outputs import LEAST_MEAN, AnalysisOutputs, motor_torque
 
 Place = Literal["parts", "joints", "sections", "end"]
 
@@ -93,3 +96,84 @@ def linkage_remarks(linkage: Linkage) -> Iterator[Note | str]:
     """What may not be meant, as far as a linkage shows it without its motion."""
     for kind in KINDS:
         yield from kind.of_linkage(linkage)
+
+
+def unreached_tables(motion: Motion) -> Iterator[Note]:
+    """Which tables a whole cycle never enters, with where it is instead: a sentence each.
+
+    Such a table is counted from another place than is meant, or has another unit. What acts is its
+    first or last row alone, or what goes on from there, and no figure shows it.
+    """
+    if not motion.whole_cycle:
+        return
+    for table, index, element in motion.machine.force_elements:
+        where = f"{table}[{index + 1}]"
+        argument = element.table_argument(PlacedBodies(motion, where))
+        if argument is None:
+            continue
+        low, high = float(np.min(argument.values)), float(np.max(argument.values))
+        first, last = argument.rows[0], argument.rows[-1]
+        if low < last and high > first:
+            continue
+        ends = (low, high, first, last)
+        names = ("low", "high", "first", "last")
+        limits = {
+            name: format_quantity(end, argument.dimension)
+            for name, end in zip(names, ends, strict=True)
+        }
+        yield Note(
+            "{where}: the {label} goes from {low} to {high}, and the rows from {first} to {last}, "
+            "so that none is reached; check the rows, and from where they count",
+            where=where,
+            label=argument.label,
+            **limits,
+        )
+
+
+def slender_links(links: Mapping[str, Link], speed: float) -> Iterator[Note]:
+    """Links, by name, that at a speed of the crank, rad/s, bend so much that what is computed of
+    rigid ones misleads.
+    """
+    for name, link in links.items():
+        frequency = bending_frequency(link)
+        if frequency is None or not speed:
+            continue
+        share = added_share(frequency, speed)
+        if share <= ADDED:
+            continue
+        ratio = number(2 * pi * frequency / abs(speed), digits=3)
+        if share == inf:
+            yield Note(
+                to_say(
+                    "the {link} bends at {ratio} times the crank's speed, within its first two "
+                    "orders: balancing by rigid links misleads; make it stiffer or lighter"
+                ),
+                link=name,
+                ratio=ratio,
+            )
+        else:
+            yield Note(
+                to_say(
+                    "the {link} has its first natural frequency at {ratio} times the crank's "
+                    "speed: bending adds {share} % to forces of twice that speed, which balancing "
+                    "by rigid links does not see"
+                ),
+                link=name,
+                ratio=ratio,
+                share=percent(share),
+            )
+
+
+def braking_motor(motion: Motion, outputs: AnalysisOutputs) -> Iterator[Note]:
+    """That the motor brakes, which seldom is meant: a load with the wrong sign looks like that."""
+    driven = motor_torque(motion.machine, outputs)
+    if driven is None or not motion.whole_cycle:
+        return
+    torque, mean = driven
+    if mean < -LEAST_MEAN * torque.figures.rms:
+        yield Note(
+            "what acts on the links drives the machine: in the mean its motor has to brake, with "
+            "{torque} at the crank; if loads should resist, change their signs or that of the "
+            "speed",
+            torque=format_quantity(-mean, "torque"),
+        )

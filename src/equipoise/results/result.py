@@ -244,7 +244,8 @@ class Result(Displayed):
 
     headline_in: ClassVar[str] = ""
     """Module and function of the blocks that come first, such as
-    ``results.headline.analysis_headline``; empty where its other blocks begin with the verdict.
+    ``results.analysis_blocks.analysis_headline``; empty where its other blocks begin with the
+    verdict.
     """
 
     def headline(self, alone: bool = False, **options: Any) -> Sequence[Block]:

@@ -56,10 +56,14 @@ from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Machine
 from equipoise.quantities import SI, Dimension, angle, display, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.machine_blocks import pushing
-from equipoise.results.motor_torque import LEAST_MEAN, motor_torque
-from equipoise.results.outputs import FIGURES, AnalysisOutput, figures_by_name
-from equipoise.results.rotors import unbalances
-from equipoise.results.speed_fluctuation import STEADY, speed_fluctuation
+from equipoise.results.outputs import (
+    FIGURES,
+    LEAST_MEAN,
+    AnalysisOutput,
+    figures_by_name,
+    motor_torque,
+)
+from equipoise.results.rotors import STEADY, speed_fluctuation, unbalances
 
 LARGE, NOTHING = 1.0, 1e-9
 """Ratio from which a figure is large, and up to which it is rounding."""

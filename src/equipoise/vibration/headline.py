@@ -10,10 +10,9 @@ import numpy as np
 from equipoise.errors import EquipoiseError
 from equipoise.i18n import capital, localized, say, to_say
 from equipoise.quantities import PER_RPM, brief, number
-from equipoise.results import headline
+from equipoise.results import analysis_blocks
 from equipoise.results.analysis import Analysis, analyze
-from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
-from equipoise.results.headline import look_at_next
+from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if, look_at_next
 from equipoise.results.machine_blocks import driven
 from equipoise.results.outputs import shown_in
 from equipoise.results.rotors import rotor_sentence
@@ -39,7 +38,7 @@ def analysis_headline(analysis: Analysis, alone: bool = False) -> Iterator[Block
     alone : whether nothing follows, as on a terminal.
     """
     readings = readings_of(analysis.machine, analysis.motion.speed)
-    yield from headline.analysis_headline(analysis, alone, readings)
+    yield from analysis_blocks.analysis_headline(analysis, alone, readings)
 
 
 def response_headline(response: Response, alone: bool = False) -> Iterator[Block]:

@@ -69,8 +69,8 @@ def chart_of(computed: Computed, name: str, choice: str) -> Chart:
         return _named(response_charts(responded(computed)), f"gauge-{choice}")
     if name == "sweep":
         from equipoise.figures.vibration import sweep_charts
+        from equipoise.vibration.forced import sweep_speed
         from equipoise.vibration.linear import around
-        from equipoise.vibration.sweep import sweep_speed
 
         speeds = around(machine.drive, machine.drive.speed)
         return _named(sweep_charts(sweep_speed(machine, *speeds)), "response")
@@ -110,7 +110,7 @@ def _over_crank(computed: Computed, output: str) -> Chart:
     from equipoise.figures.chart_parts import ALL
     from equipoise.figures.forces import over_crank
     from equipoise.mechanism.parts.balance import ROWS
-    from equipoise.results.scales import TOTALS
+    from equipoise.results.machine_blocks import TOTALS
 
     outputs = computed.analysis.outputs
     item = outputs[f"{ROWS}{output}" if f"{ROWS}{output}" in outputs else output]

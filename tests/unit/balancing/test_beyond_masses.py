@@ -26,10 +26,10 @@ from equipoise.balancing.poor_transmission import poor_transmission_for
 from equipoise.balancing.problem import Problem
 from equipoise.mechanism.parts.motors import Motor
 from equipoise.results.blocks import Facts, Text
-from equipoise.results.speed_fluctuation import COARSE, STEADY
+from equipoise.results.rotors import COARSE, STEADY
 from equipoise.results.yardsticks import assess
 from equipoise.running.flywheel import size_flywheel
-from equipoise.vibration.headline import response_headline
+from equipoise.vibration.blocks import response_headline
 from equipoise.vibration.linear import Linear, around, resonances
 from support.chosen import EXHAUSTIVE
 from support.findings import advice_for

@@ -19,7 +19,7 @@ from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.quantities import PER_RPM
-from equipoise.results.lost_contacts import lost_contacts, preloads_to_hold
+from equipoise.results.cam_blocks import lost_contacts, preloads_to_hold
 from equipoise.schema.files import json_text
 from support import refusals
 from support.printing import words

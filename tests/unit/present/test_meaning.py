@@ -17,7 +17,7 @@ from equipoise.balancing.comparison import FAINT as CONCERN
 from equipoise.present.cells import FAINT, FAINT_IN_ROW, grid
 from equipoise.quantities import PER_RPM
 from equipoise.results.blocks import Column, Span, Table, Text, Value
-from equipoise.results.scales import scale_of
+from equipoise.results.machine_blocks import scale_of
 from support.findings import findings_of
 
 MACHINES = (

@@ -15,8 +15,8 @@ from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Wei
 from equipoise.mechanism.parts.joint_properties import JointProperties, RollingBearing
 from equipoise.mechanism.parts.links import LinkSection
 from equipoise.mechanism.parts.motors import Motor, MotorTable
+from equipoise.results.analysis_blocks import verdict_blocks
 from equipoise.results.blocks import Text
-from equipoise.results.headline import verdict_blocks
 from equipoise.results.yardsticks import assess, verdict
 
 

@@ -14,7 +14,7 @@ import equipoise as eq
 import support.findings
 from equipoise.mechanism.outputs.declared import DECLARED, declaring, output
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
-from equipoise.results.speed_fluctuation import STEADY, speed_fluctuation
+from equipoise.results.rotors import STEADY, speed_fluctuation
 from equipoise.results.yardsticks import OF_OUTPUT, FigureAssessment, assess, sentence, verdict
 from equipoise.running.equation import CrankEquation
 from equipoise.running.flywheel import SteadyCycle

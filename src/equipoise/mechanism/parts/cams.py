@@ -60,7 +60,7 @@ class Cam(Coupling):
     legend = ("cam", to_say("cams"))
     tables: ClassVar[Mapping[str, str]] = {"motion": "equipoise.results.cam_blocks:cam_blocks"}
     figures = "equipoise.mechanism.dynamics.cam_contacts:CamFigures"
-    remarks = "equipoise.results.lost_contacts:lost_contacts"
+    remarks = "equipoise.results.cam_blocks:lost_contacts"
     contact_values = "equipoise.mechanism.dynamics.cam_contacts:contact_values"
     counted = to_say("{count} cams")
     most = 100
