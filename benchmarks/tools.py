@@ -32,8 +32,8 @@ from equipoise.handheld.design import design_tool
 from equipoise.handheld.design_plan import DesignLimit, DesignPlan, DesignVariable
 from equipoise.handheld.frequencies import natural_frequencies
 from equipoise.handheld.hand_exposure import grips
-from equipoise.handheld.model import Tool
-from equipoise.handheld.modes import changed, vibrate_tool
+from equipoise.handheld.model import Tool, changed
+from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.sweep import transmit
 from peers import optional

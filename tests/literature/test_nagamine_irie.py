@@ -19,8 +19,8 @@ import pytest
 from scipy.optimize import brentq
 
 from equipoise.handheld.frequencies import natural_frequencies, scale_of
-from equipoise.handheld.model import Excitation, Hand, Harness, Tool
-from equipoise.handheld.modes import changed, determinant_chart, vary_tool, vibrate_tool
+from equipoise.handheld.model import Excitation, Hand, Harness, Tool, changed
+from equipoise.handheld.modes import determinant_chart, vary_tool, vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.sweep import transmit
 from equipoise.schema.models import load_tool

@@ -275,8 +275,8 @@ def vary(
     """
     import numpy as np
 
-    from equipoise.handheld.design_plan import KEYS
-    from equipoise.handheld.modes import check_key, vary_tool
+    from equipoise.handheld.modes import vary_tool
+    from equipoise.handheld.station import KEYS, check_key
     from equipoise.handheld.sweep import MODES
 
     match = VARY.fullmatch(change.strip())

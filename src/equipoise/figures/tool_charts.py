@@ -25,12 +25,13 @@ from equipoise.figures.chart_parts import (
     ordered,
 )
 from equipoise.figures.style import KINDS, short
-from equipoise.handheld.design_plan import KEYS, MEASURES
+from equipoise.handheld.blocks import figure_named
+from equipoise.handheld.design_plan import MEASURES
 from equipoise.handheld.frequencies import scale_of
-from equipoise.handheld.hand_blocks import figure_named
 from equipoise.handheld.hand_exposure import grips
-from equipoise.handheld.modes import number_of
+from equipoise.handheld.model import number_of
 from equipoise.handheld.response import respond_tool
+from equipoise.handheld.station import KEYS
 from equipoise.i18n import capital, decimals, localized, say, to_say
 from equipoise.quantities import Dimension, Display, display
 from equipoise.results.charts import (

@@ -14,7 +14,7 @@ from equipoise.design.variables import Range
 from equipoise.errors import ModelError, ResponseError
 from equipoise.exposure.daily import Exposure
 from equipoise.handheld.chain import Dual
-from equipoise.handheld.design_plan import KEYS, DesignLimit, DesignPlan
+from equipoise.handheld.design_plan import DesignLimit, DesignPlan
 from equipoise.handheld.hand_exposure import (
     BandFigures,
     SpeedBand,
@@ -23,9 +23,9 @@ from equipoise.handheld.hand_exposure import (
     mean_over_band,
     values_of,
 )
-from equipoise.handheld.model import Tool
-from equipoise.handheld.modes import changed
+from equipoise.handheld.model import Tool, changed
 from equipoise.handheld.response import Number, respond_tool, rms_over_time
+from equipoise.handheld.station import KEYS
 from equipoise.handheld.sweep import speeds_between
 from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result
@@ -269,7 +269,7 @@ class ToolDesign(Result):
     solver: str = "sequential quadratic programs"
     proved: bool = False
 
-    blocks_in = "handheld.hand_blocks.design_blocks"
+    blocks_in = "handheld.blocks.design_blocks"
     pictures_in = "figures.tool_side.design_charts"
 
     @cached_property

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.handheld.station import Station
+from equipoise.handheld.station import KEYS, Station
 from equipoise.i18n import Note
 from equipoise.keys import (
     Conditions,
@@ -28,20 +28,6 @@ Measure = Literal["rms", "peak"]
 MEASURES: tuple[Measure, ...] = ("rms", "peak")
 """Root of the mean square over the speeds of the band, and the largest."""
 
-KEYS: dict[str, Dimension] = {
-    "position": "length",
-    "mass": "mass",
-    "stiffness": "stiffness",
-    "damping": "damping",
-    "rotational_stiffness": "torsional stiffness",
-    "rotational_damping": "torsional damping",
-    "harness.stiffness": "stiffness",
-    "harness.damping": "damping",
-    "absorber.mass": "mass",
-    "absorber.stiffness": "stiffness",
-    "absorber.damping": "damping",
-}
-"""Numbers of a station that a design may change, each with its dimension."""
 
 OUTPUTS: dict[str, Dimension] = {
     "acceleration": "acceleration",

@@ -15,10 +15,8 @@ from equipoise.errors import ModelError
 from equipoise.exposure.daily import Exposure, Task, daily_exposure, equivalent
 from equipoise.exposure.weighting import squared_factor
 from equipoise.handheld.chain import Dual, carry, solve
-from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.layout import HarmonicField, Layout, check_coverage
-from equipoise.handheld.model import PLANES, Tool, Work
-from equipoise.handheld.modes import has, number_of
+from equipoise.handheld.model import PLANES, Tool, Work, number_of
 from equipoise.handheld.response import (
     NOTHING,
     Number,
@@ -30,6 +28,7 @@ from equipoise.handheld.response import (
     respond_tool,
     shakes,
 )
+from equipoise.handheld.station import KEYS, has
 from equipoise.handheld.sweep import SPEED
 from equipoise.i18n import Note
 from equipoise.results.declaring import Declarations, ResultOutput
@@ -111,9 +110,9 @@ class ToolExposure(Result):
     days : the day's exposure of each hand; empty where the tool has no working time.
     """
 
-    blocks_in = "handheld.hand_blocks.exposure_of_tool"
+    blocks_in = "handheld.blocks.exposure_of_tool"
     pictures_in = "figures.tool_charts.exposure_charts"
-    headline_in = "handheld.headline.exposure_headline"
+    headline_in = "handheld.blocks.exposure_headline"
 
     response: ToolResponse
     grips: Mapping[str, Grip]

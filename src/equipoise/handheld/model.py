@@ -13,8 +13,7 @@ from typing import Any, ClassVar, Literal
 from equipoise.displays import Displayed
 from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import SPEEDS, DesignPlan, unknown_station, wrong_design
-from equipoise.handheld.shaft import Shaft
-from equipoise.handheld.shaft_checks import wrong_shaft
+from equipoise.handheld.shaft import Shaft, wrong_shaft
 from equipoise.handheld.station import (
     NOTHING,
     Absorber,
@@ -24,6 +23,7 @@ from equipoise.handheld.station import (
     Impedance,
     Station,
     alike,
+    check_key,
     is_damped,
     wrong_station,
 )
@@ -298,6 +298,30 @@ class Tool(Displayed, Frozen):
 
 
 # -- checks ----------------------------------------------------------------------------------------
+
+
+def changed(tool: Tool, station: str, key: str, value: float) -> Tool:
+    """The tool with one number of a station changed, of a pair both.
+
+    station, key : as in `design_plan.DesignVariable`.
+
+    Raises
+    ------
+    ModelError, UsageError : there is no such station or number, or it cannot have that value.
+    """
+    item = tool.station(station)
+    check_key(item, key)
+    *path, last = key.split(".")
+    owner: Any = getattr(item, path[0]) if path else item
+    number = (value, value) if isinstance(getattr(owner, last), tuple) else value
+    owner = replace(owner, **{last: number})
+    return tool.with_station(station, **({path[0]: owner} if path else {last: number}))
+
+
+def number_of(tool: Tool, station: str, key: str) -> float:
+    """A number of a station; of a pair the vertical one."""
+    value = tool.station(station).number(key)
+    return value[0] if isinstance(value, tuple) else value
 
 
 def _problems(tool: Tool) -> Iterator[ModelError]:

@@ -12,7 +12,6 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.chain import NodePair, carry, solve
-from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.frequencies import (
     TOO_FAR_APART,
     characteristic,
@@ -24,9 +23,8 @@ from equipoise.handheld.frequencies import (
     scale_of,
 )
 from equipoise.handheld.layout import HarmonicField, Kind, Layout
-from equipoise.handheld.model import NOTHING, PLANES, Station, Tool
+from equipoise.handheld.model import NOTHING, PLANES, Station, Tool, changed
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.checks import unknown
 from equipoise.results.declaring import NOTES, Declarations, ResultOutput
 from equipoise.results.result import Result
 from equipoise.signals import Array, highest_at
@@ -133,7 +131,7 @@ class ToolModes(Result):
 
     blocks_in = "handheld.blocks.modes_blocks"
     pictures_in = "figures.tool_side.side_mode_charts"
-    headline_in = "handheld.headline.modes_headline"
+    headline_in = "handheld.blocks.modes_headline"
 
     tool: Tool
     places: Array
@@ -365,51 +363,6 @@ def _zero(places: Array, shape: Array, k: int) -> float:
     return float(places[k] + share * (places[k + 1] - places[k]))
 
 
-def changed(tool: Tool, station: str, key: str, value: float) -> Tool:
-    """The tool with one number of a station changed, of a pair both.
-
-    station, key : as in `design_plan.DesignVariable`.
-
-    Raises
-    ------
-    ModelError, UsageError : there is no such station or number, or it cannot have that value.
-    """
-    item = tool.station(station)
-    check_key(item, key)
-    *path, last = key.split(".")
-    owner: Any = getattr(item, path[0]) if path else item
-    number = (value, value) if isinstance(getattr(owner, last), tuple) else value
-    owner = replace(owner, **{last: number})
-    return tool.with_station(station, **({path[0]: owner} if path else {last: number}))
-
-
-def check_key(station: Station, key: str) -> None:
-    """A station must have the number that a key names."""
-    known = [name for name in KEYS if has(station, name)]
-    if key not in KEYS:
-        raise UsageError(unknown(key, known, Note("number of {name!r}", name=station.name)))
-    if key not in known:
-        raise UsageError(
-            Note(
-                "{name!r} has no {key}; give it one first",
-                name=station.name,
-                key=key.partition(".")[0],
-            )
-        )
-
-
-def has(station: Station, key: str) -> bool:
-    """Whether a station has what a key's number belongs to."""
-    owner, dot, _ = key.partition(".")
-    return not dot or getattr(station, owner) is not None
-
-
-def number_of(tool: Tool, station: str, key: str) -> float:
-    """A number of a station; of a pair the vertical one."""
-    value = tool.station(station).number(key)
-    return value[0] if isinstance(value, tuple) else value
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Variation(Result):
     """Natural frequencies while a number of a station changes.
@@ -426,7 +379,7 @@ class Variation(Result):
     frequency: Array
     parameter: Array
 
-    blocks_in = "handheld.hand_blocks.variation_blocks"
+    blocks_in = "handheld.blocks.variation_blocks"
     pictures_in = "figures.tool_charts.variation_charts"
 
     def to_dict(self) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from equipoise.errors import ModelError, at_place
+from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     PLANES,
@@ -27,12 +27,31 @@ from equipoise.keys import (
     keys_of,
 )
 from equipoise.keys.csv_tables import CsvTable
+from equipoise.mechanism.checks import unknown
 from equipoise.quantities import Dimension, Measured
 
 Both = tuple[float, float]
 """One number for bending in the vertical plane, one for the lateral one."""
 NOTHING: Both = (0.0, 0.0)
 """A stiffness or damping that is not there, in both planes."""
+
+
+KEYS: dict[str, Dimension] = {
+    "position": "length",
+    "mass": "mass",
+    "stiffness": "stiffness",
+    "damping": "damping",
+    "rotational_stiffness": "torsional stiffness",
+    "rotational_damping": "torsional damping",
+    "harness.stiffness": "stiffness",
+    "harness.damping": "damping",
+    "absorber.mass": "mass",
+    "absorber.stiffness": "stiffness",
+    "absorber.damping": "damping",
+}
+"""Numbers of a station that a design may change, each with its dimension."""
+
+
 OF_HAND = ("mass", "stiffness", "damping")
 """What is said of a hand that has no measured impedance."""
 STIFFNESS = Planes(Quantity(dimension="stiffness"))
@@ -156,6 +175,27 @@ class Station(Frozen):
             value = getattr(value, part)
         result: float | Both = value
         return result
+
+
+def has(station: Station, key: str) -> bool:
+    """Whether a station has what a key's number belongs to."""
+    owner, dot, _ = key.partition(".")
+    return not dot or getattr(station, owner) is not None
+
+
+def check_key(station: Station, key: str) -> None:
+    """A station must have the number that a key names."""
+    known = [name for name in KEYS if has(station, name)]
+    if key not in KEYS:
+        raise UsageError(unknown(key, known, Note("number of {name!r}", name=station.name)))
+    if key not in known:
+        raise UsageError(
+            Note(
+                "{name!r} has no {key}; give it one first",
+                name=station.name,
+                key=key.partition(".")[0],
+            )
+        )
 
 
 def alike(part: Station | Hand | Harness | Absorber | None) -> bool:

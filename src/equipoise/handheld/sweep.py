@@ -272,7 +272,7 @@ class ToolSweep(Result):
     """
 
     blocks_in = "handheld.blocks.sweep_blocks"
-    headline_in = "handheld.headline.sweep_headline"
+    headline_in = "handheld.blocks.sweep_headline"
 
     tool: Tool
     speed: Array

@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError
 from equipoise.figures.tool_side import MOST_MODES, SWING
-from equipoise.handheld.hand_blocks import NAMED
+from equipoise.handheld.blocks import NAMED
 from equipoise.handheld.hand_exposure import ToolExposure, expose_tool
 from equipoise.handheld.model import Tool
 from equipoise.handheld.modes import ToolModes, vibrate_tool

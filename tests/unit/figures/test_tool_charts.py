@@ -12,11 +12,12 @@ from equipoise.exposure.daily import partial_exposure
 from equipoise.exposure.weighting import factor
 from equipoise.figures import tool_charts, tool_side
 from equipoise.handheld.design import Before, ToolDesign
-from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.frequencies import scale_of
 from equipoise.handheld.hand_exposure import expose_tool, grips
-from equipoise.handheld.modes import changed, determinant_chart, vary_tool, vibrate_tool
+from equipoise.handheld.model import changed
+from equipoise.handheld.modes import determinant_chart, vary_tool, vibrate_tool
 from equipoise.handheld.response import respond_tool
+from equipoise.handheld.station import KEYS
 from equipoise.handheld.sweep import transmit
 from equipoise.i18n import Note
 from equipoise.results.charts import Curve, Panel

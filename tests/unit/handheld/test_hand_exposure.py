@@ -17,7 +17,6 @@ from equipoise.exposure.weighting import weighting
 from equipoise.handheld import hand_exposure
 from equipoise.handheld import response as reciprocal
 from equipoise.handheld.chain import Dual, carry, solve
-from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.hand_exposure import (
     SpeedBand,
     expose_tool,
@@ -27,10 +26,20 @@ from equipoise.handheld.hand_exposure import (
     values_of,
     weighted_squares,
 )
-from equipoise.handheld.model import Excitation, Hand, Impedance, Operation, Station, Tool, Work
-from equipoise.handheld.modes import changed, has, number_of
+from equipoise.handheld.model import (
+    Excitation,
+    Hand,
+    Impedance,
+    Operation,
+    Station,
+    Tool,
+    Work,
+    changed,
+    number_of,
+)
 from equipoise.handheld.response import ToolResponse, respond_tool
 from equipoise.handheld.shaft import Section
+from equipoise.handheld.station import KEYS, has
 from support.refusals import refused
 from unit.handheld.samples import THEORIES, bare, both, random_tool, shaken
 

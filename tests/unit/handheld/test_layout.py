@@ -12,8 +12,16 @@ import pytest
 from equipoise.errors import ModelError
 from equipoise.handheld.chain import carry, log_determinant, longest
 from equipoise.handheld.layout import Layout, check_coverage, impedance
-from equipoise.handheld.model import Absorber, Excitation, Hand, Impedance, Station, Tool
-from equipoise.handheld.modes import changed, number_of
+from equipoise.handheld.model import (
+    Absorber,
+    Excitation,
+    Hand,
+    Impedance,
+    Station,
+    Tool,
+    changed,
+    number_of,
+)
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.shaft import Segment
 from equipoise.handheld.sweep import speeds_between, transmit

@@ -12,12 +12,21 @@ from scipy.optimize import differential_evolution
 
 from equipoise.errors import ModelError, ResponseError
 from equipoise.handheld import design
+from equipoise.handheld.blocks import design_blocks
 from equipoise.handheld.design import ToolDesign, design_tool
 from equipoise.handheld.design_plan import DesignLimit, DesignPlan, DesignVariable
-from equipoise.handheld.hand_blocks import design_blocks
 from equipoise.handheld.hand_exposure import grips
-from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Station, Tool, Work
-from equipoise.handheld.modes import changed, number_of
+from equipoise.handheld.model import (
+    Absorber,
+    Excitation,
+    Hand,
+    Harness,
+    Station,
+    Tool,
+    Work,
+    changed,
+    number_of,
+)
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.shaft import Section, Shaft
 from equipoise.quantities import brief
