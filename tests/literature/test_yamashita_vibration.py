@@ -36,11 +36,10 @@ from scipy.optimize import least_squares
 import equipoise as eq
 from equipoise.mechanism.parts.support import Gauge, Mount, Row
 from equipoise.signals import Periodic
-from equipoise.vibration.forced import respond
+from equipoise.vibration.forced import respond, sweep_speed
 from equipoise.vibration.linear import resonances
 from equipoise.vibration.response import Model
 from equipoise.vibration.simplified import linear_of
-from equipoise.vibration.sweep import sweep_speed
 from literature.yamashita import (
     TYPE_1,
     TYPE_2,

@@ -79,8 +79,9 @@ from equipoise.mechanism.parts.balance import (
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.rotors import unbalances
 from equipoise.results.yardsticks import FigureAssessment
+from equipoise.vibration.body import gauges_of
 from equipoise.vibration.forced import check_moving
-from equipoise.vibration.linear import Linear, gauges_of, resonances
+from equipoise.vibration.linear import Linear, resonances
 
 Solve = Callable[[Machine, Balance], Balanced]
 Remedy = tuple[Machine, tuple[Change, ...], Balance]

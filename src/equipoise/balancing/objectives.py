@@ -41,7 +41,8 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import SI
 from equipoise.signals import Array, JumpSampling, Periodic, Tops, mean, smooth_tops, stencils_above
-from equipoise.vibration.linear import Linear, gauges_of
+from equipoise.vibration.body import gauges_of
+from equipoise.vibration.linear import Linear
 from equipoise.vibration.linkages import rows_of
 
 ACROSS: Mapping[str, Callable[[Array], Array]] = {

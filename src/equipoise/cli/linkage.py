@@ -191,7 +191,7 @@ def respond(
     drive
         Compute the crank speed from the motor in [drive.motor], with the exact model.
     """
-    from equipoise.vibration import forced, sweep
+    from equipoise.vibration import forced
 
     ends: list[float] = speed or []
     if speeds is not None and speed is None:
@@ -205,8 +205,10 @@ def respond(
         )
     if len(ends) == 2:
         with counted("speed") as progress:
-            count = speeds or sweep.SPEEDS
-            over_speed = sweep.sweep_speed(machine, ends[0], ends[1], model, drive, count, progress)
+            count = speeds or forced.SPEEDS
+            over_speed = forced.sweep_speed(
+                machine, ends[0], ends[1], model, drive, count, progress
+            )
         return CommandResult.of(over_speed)
     result = forced.respond(machine, ends[0] if ends else None, model, drive)
     return replace(

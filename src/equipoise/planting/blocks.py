@@ -13,7 +13,7 @@ from equipoise.design.solvers import UNPROVED
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.outputs.declared import joint_named
-from equipoise.planting.arms import SHARED
+from equipoise.planting.figures import SHARED
 from equipoise.planting.names import (
     EXTREMES,
     FIGURES,

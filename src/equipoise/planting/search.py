@@ -28,7 +28,7 @@ from equipoise.mechanism.assembly.family import Family
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.machine import Machine, unknown
-from equipoise.planting.arms import machine_figures
+from equipoise.planting.figures import machine_figures
 from equipoise.planting.names import dimension_of
 from equipoise.planting.stroke import kept_alike, twins_of
 from equipoise.planting.summary import PlantingFigures, plant

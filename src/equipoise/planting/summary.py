@@ -21,8 +21,7 @@ from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.planting.arms import SHARED, hills, of_arm
-from equipoise.planting.figures import GroundPath, Loop, shaking, tip_figures
+from equipoise.planting.figures import SHARED, GroundPath, Loop, hills, of_arm, shaking, tip_figures
 from equipoise.planting.names import dimension_of
 from equipoise.planting.stroke import (
     Visit,

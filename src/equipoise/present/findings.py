@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
     from equipoise.running.run_results import DrivesRun, Run
+    from equipoise.vibration.forced import Sweep
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Response
-    from equipoise.vibration.sweep import Sweep
 
 Part = TypeVar("Part")
 
@@ -130,8 +130,8 @@ class Findings(_ComputedParts):
     @part(to_say("vibration over speed"))
     def sweep(self) -> Sweep | None:
         """Vibration over speeds around that of the machine."""
-        from equipoise.vibration.linear import COARSE, around
-        from equipoise.vibration.sweep import sweep_speed
+        from equipoise.vibration.forced import COARSE, sweep_speed
+        from equipoise.vibration.linear import around
 
         if self.response is None:
             return None

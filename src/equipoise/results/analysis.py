@@ -75,7 +75,7 @@ class Analysis(Result):
 
     blocks_in = "results.analysis_blocks.shown_blocks"
     pictures_in = "figures.analysis.analysis_charts"
-    headline_in: ClassVar[str] = "vibration.headline.analysis_headline"
+    headline_in: ClassVar[str] = "vibration.blocks.analysis_headline"
 
     motion: Motion
     about: complex | None

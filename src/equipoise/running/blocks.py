@@ -16,9 +16,8 @@ from equipoise.running.drives_equation import BRAKE
 from equipoise.running.friction import FRICTION
 from equipoise.running.run_results import DRIVE, FREE, GIVEN, MOTOR
 from equipoise.running.support_equation import MOUNTS
-from equipoise.vibration.blocks import PARTS, extreme_labels, support_rows
+from equipoise.vibration.blocks import PARTS, extreme_labels, readings_in_time, support_rows
 from equipoise.vibration.coupled import stall_note
-from equipoise.vibration.headline import readings_in_time
 
 if TYPE_CHECKING:
     from equipoise.running.drives_integration import DriveEvent

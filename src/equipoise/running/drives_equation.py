@@ -45,8 +45,7 @@ from equipoise.running.friction import FRICTION, DrivesFriction, JointPressing
 from equipoise.running.sources import AppliedSource, SourceInputs, load_factors, plus, sources_of
 from equipoise.running.strokes import Strokes
 from equipoise.signals import Array
-from equipoise.vibration.support_motion import SupportMotion
-from equipoise.vibration.support_place import NO_MOUNTS, SpatialMounts, SupportPlace
+from equipoise.vibration.support_motion import NO_MOUNTS, SpatialMounts, SupportMotion, SupportPlace
 
 Read = Callable[[Array, Array], SupportPlace]
 """Where the support is, by coordinates (C, K) of a machine and their rates."""

@@ -35,8 +35,7 @@ from equipoise.running.sources import AppliedSource, SourceInputs
 from equipoise.signals import Array
 from equipoise.vibration.body import Rest, SupportBody, contacts_of
 from equipoise.vibration.linear import Linear
-from equipoise.vibration.support_motion import SupportMotion
-from equipoise.vibration.support_place import SpatialMounts, SupportPlace, cross
+from equipoise.vibration.support_motion import SpatialMounts, SupportMotion, SupportPlace, cross
 
 MOUNTS = "mounts"
 """In the works of a run: springs and dampers between support and ground."""

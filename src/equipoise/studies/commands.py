@@ -566,7 +566,7 @@ def _parted(study: Study, model: Machine | Tool, asked: Request) -> list[Request
     """What can be had of many designs at once, and the rest."""
     if asked.command != "plant":
         return [asked]
-    from equipoise.planting.arms import OF_DRIVE
+    from equipoise.planting.figures import OF_DRIVE
     from equipoise.planting.summary import PlantingFigures
 
     of_one = {*PlantingFigures.declared, *OF_DRIVE}  # what is no figure of a curve

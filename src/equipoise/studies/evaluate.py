@@ -363,7 +363,7 @@ def _sizes(table: Any) -> Iterator[float]:
 def planting_figures(machines: Sequence[Machine], steps: Sequence[Sequence[Step]]) -> Array:
     """Figures (P, m) of machines of one build whose cranks turn fully; NaN where one is missing."""
     from equipoise.mechanism.kinematics.tip import TipCurve
-    from equipoise.planting.arms import machine_figures
+    from equipoise.planting.figures import machine_figures
     from equipoise.planting.stroke import both_sides
 
     curve = TipCurve(machines)

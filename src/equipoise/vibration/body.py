@@ -266,6 +266,21 @@ def unbounded_at(speed: float) -> Note:
     )
 
 
+def gauges_of(body: SupportBody) -> dict[str, Gauge]:
+    """The gauges of the model; the free coordinates at the reference point where it has none."""
+    if body.support.gauges:
+        return dict(body.support.gauges)
+    x, y, z = map(float, body.reference)
+    gauges = {}
+    for name in body.support.coordinates:
+        if name in AXES:
+            gauges[name] = Gauge(axis=name)
+        else:
+            first, second, third = map(float, np.eye(3)[FREEDOMS.index(name)])
+            gauges[name] = Gauge((x, y, z), (first, second, third))
+    return gauges
+
+
 def _named(body: SupportBody, chosen: Array) -> Note | str:
     names = zip(body.support.coordinates, chosen, strict=True)
     return all_of([Note(name) for name, is_chosen in names if is_chosen])

@@ -2,11 +2,15 @@
 
 Signals are sampled at equal steps of time, so that orders mean what they mean where the crank's
 speed is constant.
+
+Where mounts let go, a machine may have two steady states at one speed: run up slowly it stays on
+one of them, run down on the other.  So a range of speeds is then gone through both ways, each speed
+started from its neighbour.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property, partial
 from math import pi
@@ -21,10 +25,9 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.results.analysis import analyze
 from equipoise.signals import GAUSS_POINTS, Array, JumpSampling, Periodic, mean, smooth_tops
-from equipoise.vibration.body import IN_PLANE, PITCH, Reading, SupportBody
+from equipoise.vibration.body import IN_PLANE, PITCH, Reading, SupportBody, gauges_of
 from equipoise.vibration.coupled import TO_SETTLE, Coupled, StallError, follow, settled
-from equipoise.vibration.hand_held import hand_vibration
-from equipoise.vibration.linear import Linear, gauges_of
+from equipoise.vibration.linear import Linear, force_amplitudes, mount_force
 from equipoise.vibration.linkages import BaseMotion, ReducedInertia, joint_forces, rows_of
 from equipoise.vibration.response import (
     NEUTRAL,
@@ -34,10 +37,11 @@ from equipoise.vibration.response import (
     Joint,
     MountForce,
     Response,
+    hand_vibration,
     in_words,
+    range_shown,
     swings_in_a_turn,
 )
-from equipoise.vibration.small_motion import force_amplitudes, mount_force
 from equipoise.vibration.steady import (
     NO_STEADY_STATE,
     SAMPLES,
@@ -363,3 +367,131 @@ class ExactSolution:
             lost -= contact.force(place, rate) * contact.at.velocity(place, rate)
         powers = (power / np.abs(speed) for power in (fed, lost))
         return Energy(*(orbit.integral(power.reshape(orbit.nodes.shape)) for power in powers))
+
+
+# -- along a range of speeds -----------------------------------------------------------------------
+
+Progress = Callable[[int, int], None]
+
+
+Answers = list[Response | None]
+
+
+APPROACHES = ((1.0,), (0.8, 0.84, 0.88, 0.92, 0.96, 1.0), (1.2, 1.16, 1.12, 1.08, 1.04, 1.0))
+"""Shares of a speed through which it is come to: at once, from below and from above."""
+
+
+DIFFERENT = 1e-3
+"""Share by which two steady states differ at least at some gauge."""
+
+
+def follow_speeds(
+    machine: Machine, speeds: list[float], drive: bool, progress: Progress
+) -> tuple[Answers, list[str]]:
+    """Response at every speed, the louder one where there are two; and what to say of that."""
+    count = len(speeds)
+    upward = _along(machine, speeds, drive, lambda done: progress(done, count))
+    if all(
+        answer is not None and not any(mount.lifts_off for mount in answer.mounts.values())
+        for answer in upward
+    ):
+        return upward, []
+    downward = _along(machine, speeds[::-1], drive, lambda done: progress(count + done, 2 * count))
+    louder: Answers = []
+    both: dict[float, float] = {}  # speeds with two states, and how much less one of them shakes
+    for speed, up, down in zip(speeds, upward, downward[::-1], strict=True):
+        ratio = _ratio(up, down)
+        result = down if up is None or (down is not None and ratio > 1) else up
+        louder.append(result or _patiently(machine, speed, drive))
+        if abs(ratio - 1) > DIFFERENT:
+            both[speed] = min(ratio, 1 / ratio)
+    if not both:
+        return louder, []
+    return louder, [
+        Note(
+            "two steady states at {number} of {count} speeds, {speeds}; the larger one is "
+            "reported, the other is down to {share} % of it",
+            number=len(both),
+            count=count,
+            speeds=range_shown([*both]),
+            share=f"{100 * min(both.values()):.0f}",
+        )
+    ]
+
+
+def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
+    """Response by the exact equations; where mounts let go, the louder of what may be two.
+
+    Raises
+    ------
+    ResponseError : no steady state was found.
+    """
+    support = machine.support
+    if support is None or not any(mount.one_sided for mount in support.mounts.values()):
+        return solve_exact(machine, speed, drive).response()
+    responses: list[Response] = []
+    for reach in APPROACHES:
+        speeds = [speed * share for share in reach]
+        last = _along(machine, speeds, drive, lambda done: None, brief=False)[-1]
+        if last is not None and all(
+            abs(_ratio(last, other) - 1) > DIFFERENT for other in responses
+        ):
+            responses.append(last)
+    if not responses:
+        return solve_exact(machine, speed, drive).response()
+
+    def loudness(answer: Response) -> float:
+        return sum(float(gauge.displacement.peak_to_peak) for gauge in answer.gauges.values())
+
+    louder = max(responses, key=loudness)
+    template = to_say(
+        "another steady state exists at this speed, with {share} % of this vibration; which one "
+        "occurs depends on the preceding speeds"
+    )
+    shares = (100 * _ratio(louder, other) for other in responses if other is not louder)
+    notes = (Note(template, share=f"{share:.0f}") for share in shares)
+    return replace(louder, notes=(*louder.notes, *notes))
+
+
+def _along(
+    machine: Machine,
+    speeds: list[float],
+    drive: bool,
+    progress: Callable[[int], None],
+    brief: bool = True,
+) -> Answers:
+    """Response at every speed, one after the other; None where no steady state was found."""
+    answers: Answers = []
+    guess = None
+    for speed in speeds:
+        try:
+            exact_solution = solve_exact(machine, speed, drive, guess, patient=False)
+        except ResponseError:
+            guess = None
+            answers.append(None)
+        else:
+            guess = exact_solution.steady.orbit.at
+            answers.append(exact_solution.response(brief))
+        progress(len(answers))
+    return answers
+
+
+def _patiently(machine: Machine, speed: float, drive: bool) -> Response | None:
+    """Response at a speed at which neither neighbour nor small motion leads to one."""
+    try:
+        return solve_exact(machine, speed, drive).response(brief=True)
+    except ResponseError:
+        return None
+
+
+def _ratio(first: Response | None, second: Response | None) -> float:
+    """How much more the second shakes, at the gauge where they differ most."""
+    if first is None or second is None:
+        return 1.0
+    ratios = [1.0]
+    for name, gauge in first.gauges.items():
+        before = float(gauge.displacement.peak_to_peak)
+        after = float(second.gauges[name].displacement.peak_to_peak)
+        if before > 0 and after > 0:
+            ratios.append(after / before)
+    return max(ratios, key=lambda ratio: max(ratio, 1 / ratio))

@@ -1,26 +1,38 @@
-"""Steady response at one speed: which model answers, and continuation along a range of speeds.
-
-Exact response along a range of speeds, each started from its neighbour.
-
-Where mounts let go, a machine may have two steady states at one speed: run up slowly it stays on
-one of them, run down on the other.  So the range is then gone through both ways.
-"""
+"""Forced vibration, steady: which model answers, at one speed of the crank, and over a range."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property, partial
+from typing import ClassVar
 
+import numpy as np
+
+from equipoise.dataclass import dataclass
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note, key_names, to_say
+from equipoise.limits import check_memory
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
-from equipoise.quantities import HUGE, in_si
+from equipoise.quantities import HUGE, Dimension, in_si
+from equipoise.results.declaring import NOTES, TITLE, Declarations, ResultOutput
+from equipoise.results.result import Result
+from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import MISSING
-from equipoise.vibration.exact import solve_exact
-from equipoise.vibration.linear import warned
-from equipoise.vibration.response import MODELS, GaugeSignals, Model, Response, range_shown
+from equipoise.vibration.exact import Progress, follow_speeds, respond_exact
+from equipoise.vibration.linear import Linear, Resonance, resonances, warned
+from equipoise.vibration.response import (
+    MODELS,
+    GaugeSignals,
+    Mode,
+    Model,
+    Response,
+    of_support,
+    range_shown,
+)
 from equipoise.vibration.simplified import check_model, linear_of, response_by
 
 STANDSTILL = Note("a crank that stands still shakes nothing; give another speed")
@@ -138,127 +150,6 @@ def models_of(machine: Machine) -> tuple[Model, ...]:
     return known if machine.has_crank else tuple(item for item in known if item not in WITH_CRANK)
 
 
-Progress = Callable[[int, int], None]
-Answers = list[Response | None]
-
-APPROACHES = ((1.0,), (0.8, 0.84, 0.88, 0.92, 0.96, 1.0), (1.2, 1.16, 1.12, 1.08, 1.04, 1.0))
-"""Shares of a speed through which it is come to: at once, from below and from above."""
-DIFFERENT = 1e-3
-"""Share by which two steady states differ at least at some gauge."""
-
-
-def follow_speeds(
-    machine: Machine, speeds: list[float], drive: bool, progress: Progress
-) -> tuple[Answers, list[str]]:
-    """Response at every speed, the louder one where there are two; and what to say of that."""
-    count = len(speeds)
-    upward = _along(machine, speeds, drive, lambda done: progress(done, count))
-    if all(
-        answer is not None and not any(mount.lifts_off for mount in answer.mounts.values())
-        for answer in upward
-    ):
-        return upward, []
-    downward = _along(machine, speeds[::-1], drive, lambda done: progress(count + done, 2 * count))
-    louder: Answers = []
-    both: dict[float, float] = {}  # speeds with two states, and how much less one of them shakes
-    for speed, up, down in zip(speeds, upward, downward[::-1], strict=True):
-        ratio = _ratio(up, down)
-        result = down if up is None or (down is not None and ratio > 1) else up
-        louder.append(result or _patiently(machine, speed, drive))
-        if abs(ratio - 1) > DIFFERENT:
-            both[speed] = min(ratio, 1 / ratio)
-    if not both:
-        return louder, []
-    return louder, [
-        Note(
-            "two steady states at {number} of {count} speeds, {speeds}; the larger one is "
-            "reported, the other is down to {share} % of it",
-            number=len(both),
-            count=count,
-            speeds=range_shown([*both]),
-            share=f"{100 * min(both.values()):.0f}",
-        )
-    ]
-
-
-def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
-    """Response by the exact equations; where mounts let go, the louder of what may be two.
-
-    Raises
-    ------
-    ResponseError : no steady state was found.
-    """
-    support = machine.support
-    if support is None or not any(mount.one_sided for mount in support.mounts.values()):
-        return solve_exact(machine, speed, drive).response()
-    responses: list[Response] = []
-    for reach in APPROACHES:
-        speeds = [speed * share for share in reach]
-        last = _along(machine, speeds, drive, lambda done: None, brief=False)[-1]
-        if last is not None and all(
-            abs(_ratio(last, other) - 1) > DIFFERENT for other in responses
-        ):
-            responses.append(last)
-    if not responses:
-        return solve_exact(machine, speed, drive).response()
-
-    def loudness(answer: Response) -> float:
-        return sum(float(gauge.displacement.peak_to_peak) for gauge in answer.gauges.values())
-
-    louder = max(responses, key=loudness)
-    template = to_say(
-        "another steady state exists at this speed, with {share} % of this vibration; which one "
-        "occurs depends on the preceding speeds"
-    )
-    shares = (100 * _ratio(louder, other) for other in responses if other is not louder)
-    notes = (Note(template, share=f"{share:.0f}") for share in shares)
-    return replace(louder, notes=(*louder.notes, *notes))
-
-
-def _along(
-    machine: Machine,
-    speeds: list[float],
-    drive: bool,
-    progress: Callable[[int], None],
-    brief: bool = True,
-) -> Answers:
-    """Response at every speed, one after the other; None where no steady state was found."""
-    answers: Answers = []
-    guess = None
-    for speed in speeds:
-        try:
-            exact_solution = solve_exact(machine, speed, drive, guess, patient=False)
-        except ResponseError:
-            guess = None
-            answers.append(None)
-        else:
-            guess = exact_solution.steady.orbit.at
-            answers.append(exact_solution.response(brief))
-        progress(len(answers))
-    return answers
-
-
-def _patiently(machine: Machine, speed: float, drive: bool) -> Response | None:
-    """Response at a speed at which neither neighbour nor small motion leads to one."""
-    try:
-        return solve_exact(machine, speed, drive).response(brief=True)
-    except ResponseError:
-        return None
-
-
-def _ratio(first: Response | None, second: Response | None) -> float:
-    """How much more the second shakes, at the gauge where they differ most."""
-    if first is None or second is None:
-        return 1.0
-    ratios = [1.0]
-    for name, gauge in first.gauges.items():
-        before = float(gauge.displacement.peak_to_peak)
-        after = float(second.gauges[name].displacement.peak_to_peak)
-        if before > 0 and after > 0:
-            ratios.append(after / before)
-    return max(ratios, key=lambda ratio: max(ratio, 1 / ratio))
-
-
 def respond(
     machine: Machine,
     speed: float | str | None = None,
@@ -302,3 +193,442 @@ def readings_of(machine: Machine, speed: float) -> Mapping[str, GaugeSignals] | 
         return respond(machine, speed).gauges
     except (ModelError, ResponseError):
         return None
+
+
+# -- over a range of speeds ------------------------------------------------------------------------
+
+SPEEDS = 200
+"""In a sweep, besides those about resonances and where curves bend."""
+MOST_SPEEDS = 20_000
+"""Speeds that can be asked for: more than a picture has pixels."""
+MOST_RESONANCES = 60
+"""Resonances about which speeds are added: beyond these, orders are too high to be met."""
+PREFIXES = {"displacement": "", "velocity": "velocity_", "acceleration": "acceleration_"}
+"""Of the figures of a gauge's displacement and of its derivatives."""
+
+
+curve = partial(ResultOutput, along="speed", nulls=True)
+"""Declares values (S,) against speed."""
+
+
+def curves(dimension: Dimension, turned: Dimension, prefix: str = "") -> Declarations:
+    """Range and RMS of a signal against speed.  prefix : of their attributes and columns."""
+    names = {key: f"{prefix}{key}" for key in ("peak_to_peak", "rms")}
+    return {
+        key: curve(figure, dimension, turned, read=names[key], column=names[key])
+        for key, figure in (
+            ("peak_to_peak", "largest minus smallest value"),
+            ("rms", "RMS about the mean"),
+        )
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class GaugeCurve:
+    """What a gauge reads against speed, arrays (S,): m, m/s and m/s2, or rad, rad/s and rad/s2."""
+
+    peak_to_peak: Array
+    rms: Array
+    velocity_peak_to_peak: Array
+    velocity_rms: Array
+    acceleration_peak_to_peak: Array
+    acceleration_rms: Array
+    harmonics: Array
+    """(S, K + 1) amplitude of the displacement's orders."""
+    rotation: bool
+
+    declared: ClassVar[Declarations] = {
+        "quantity": GaugeSignals.declared["quantity"],
+        **curves("length", "angle"),
+        "velocity": ResultOutput(
+            "of the velocity",
+            of=curves("speed", "angular speed", "velocity_"),
+            read=lambda gauge: gauge,
+            column="",
+        ),
+        "acceleration": ResultOutput(
+            "of the acceleration",
+            of=curves("acceleration", "angular acceleration", "acceleration_"),
+            read=lambda gauge: gauge,
+            column="",
+        ),
+        "harmonics": curve("amplitude of each order at each speed", "length", "angle"),
+    }
+
+
+@dataclass(frozen=True, eq=False)
+class MountCurve:
+    """Force (N or N m) of a mount against speed, arrays (S,)."""
+
+    peak_to_peak: Array
+    rms: Array
+    transmissibility: Array
+    lifts_off: Array
+    torsional: bool
+
+    @property
+    def ratio(self) -> Array | None:
+        """Transmissibility (S,); None of what turns, which hands on no force."""
+        return None if self.torsional else self.transmissibility
+
+    declared: ClassVar[Declarations] = {
+        **curves("force", "torque"),
+        "transmissibility": curve("as at one speed", series="ratio", column="transmissibility"),
+        "lifts_off": curve("as at one speed"),
+    }
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Result):
+    """Steady vibration of a machine on its support over a range of speeds.
+
+    speed : (S,) of the crank, rad/s, rising in size.  Where no steady state was found, values are
+    NaN and `notes` say so.
+    """
+
+    blocks_in = "vibration.blocks.sweep_blocks"
+    pictures_in = "figures.vibration.sweep_charts"
+    headline_in = "vibration.blocks.sweep_headline"
+
+    machine: Machine
+    model: Model
+    speed: Array
+    gauges: Mapping[str, GaugeCurve]
+    mounts: Mapping[str, MountCurve]
+    modes: tuple[Mode, ...]
+    resonances: tuple[Resonance, ...]
+    fluctuation: Array
+    stable: Array
+    notes: tuple[Note | str, ...]
+
+    @cached_property
+    def peaks(self) -> Mapping[str, list[tuple[float, float]]]:
+        """Speed and value of the highest points of each gauge's peak-to-peak curve."""
+        pairs = {}
+        for name, curve in self.gauges.items():
+            values = curve.peak_to_peak
+            inner = (values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])
+            tops = [(float(self.speed[k]), float(values[k])) for k in np.flatnonzero(inner) + 1]
+            pairs[name] = sorted(tops, key=lambda top: -top[1])
+        return pairs
+
+    @property
+    def _stability(self) -> list[bool] | None:
+        """Whether the steady state at each speed is stable; None without Floquet multipliers."""
+        return self.stable.tolist() if self.model in {"coupled", "exact"} else None
+
+    @property
+    def _fluctuates(self) -> bool | None:
+        """Whether the speed of the crank varies; None where it does not."""
+        return True if np.any(self.fluctuation > 0) else None
+
+    declared: ClassVar[Declarations] = {
+        "title": TITLE,
+        "model": ResultOutput("which equations"),
+        "speed": ResultOutput(
+            "speed of the crank; closer about resonances and where curves bend",
+            "angular speed",
+            along="speed",
+            column="speed",
+        ),
+        "gauges": of_support("gauges", "curves of a gauge", GaugeCurve.declared),
+        "mounts": of_support("mounts", "curves of the force of a mount", MountCurve.declared),
+        "modes": ResultOutput("as at one speed", of=Mode.declared, many=True, table="respond"),
+        "resonances": ResultOutput(
+            "speeds of the crank at which an order meets a mode, the fastest first",
+            "angular speed",
+            read=lambda sweep: [resonance.speed for resonance in sweep.resonances],
+        ),
+        "resonance_map": ResultOutput(
+            "resonances", of=Resonance.declared, many=True, read="resonances"
+        ),
+        "stable": ResultOutput(
+            "whether small disturbances die out, with the models coupled and exact",
+            read="_stability",
+            present="_stability",
+        ),
+        "fluctuation": curve(
+            "range of the crank's speed over its mean, with `--drive`", present="_fluctuates"
+        ),
+        "notes": NOTES,
+    }
+
+
+def sweep_speed(
+    machine: Machine,
+    slowest: float | str,
+    fastest: float | str,
+    model: Model | None = None,
+    drive: bool = False,
+    speeds: int = SPEEDS,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Steady vibration of a machine on its support, over a range of speeds.
+
+    Parameters
+    ----------
+    slowest, fastest : of the crank, rad/s, or texts such as ``"300 rpm"``, of the same sign.
+    model, drive : as in `respond`.
+    speeds : how many, equally spaced; more are added about each resonance and where curves bend.
+    progress : called with the number of speeds that are done, and of all that are wanted so far.
+
+    Raises
+    ------
+    As `respond`.
+    """
+    slowest = in_si(slowest, "angular speed", "slowest")
+    fastest = in_si(fastest, "angular speed", "fastest")
+    model = chosen_model(machine, model, drive)
+    if missing := massless(machine):
+        raise MassError(missing)
+    if machine.support is None:
+        raise ModelError("support", MISSING)
+    for end in (slowest or fastest, fastest):  # a range that begins at 0 is refused as such below
+        steady_speed(machine, end, drive)
+    if slowest * fastest <= 0 or abs(slowest) >= abs(fastest):
+        raise UsageError(
+            Note(
+                "got speeds from {slowest:g} to {fastest:g} rad/s; give two of the same "
+                "sign that are not 0, the slower one first",
+                slowest=slowest,
+                fastest=fastest,
+            )
+        )
+    if not 2 <= speeds <= MOST_SPEEDS:
+        raise UsageError(
+            Note(
+                "got {speeds} speeds; give 2 to {most_speeds}",
+                speeds=speeds,
+                most_speeds=MOST_SPEEDS,
+            )
+        )
+    linear = linear_of(machine, model)
+    met = resonances(linear, slowest, fastest)[:MOST_RESONANCES]
+    text = progress or _silent
+    first = speed_grid(slowest, fastest, speeds, met, linear)
+    respond = partial(response_by(model), linear)
+    by_speed = responses_at(respond, first, _silent if model == "exact" else text)
+    grid, answers = np.array([*by_speed]), [*by_speed.values()]
+    names: list[str] = []
+    if model == "exact":  # one speed after the other, where that by orders bends
+        answers, names = follow_speeds(machine, grid.tolist(), drive, text)
+    notes = (*left_out(machine), *names, *_missing(grid, answers))
+    return _gathered(machine, model, grid, answers, linear, met, notes)
+
+
+def _silent(done: int, total: int) -> None:
+    """Report no progress."""
+
+
+def _missing(grid: Array, answers: list[Response | None]) -> list[Note]:
+    lost = [speed for speed, answer in zip(grid.tolist(), answers, strict=True) if answer is None]
+    if len(lost) == len(grid):
+        raise ResponseError(Note("no steady state was found at any of these speeds"))
+    if not lost:
+        return []
+    template = to_say("no steady state was found at {lost} of {count} speeds, {speeds}")
+    return [Note(template, lost=len(lost), count=len(grid), speeds=range_shown(lost))]
+
+
+def _noted(grid: Array, answers: list[Response | None]) -> Iterator[Note | str]:
+    """What is to be said of the responses, each with the speeds of which it holds."""
+    where: dict[str, list[tuple[float, Note | str]]] = {}
+    for speed, answer in zip(grid.tolist(), answers, strict=True):
+        for note in () if answer is None else answer.notes:
+            where.setdefault(_kind(note), []).append((speed, note))
+    for result in where.values():
+        note = result[0][1]
+        if len(result) < len(grid):
+            speeds = range_shown([speed for speed, _ in result])
+            note = Note(to_say("{speeds}: {note}"), speeds=speeds, note=note)
+        yield note
+
+
+def _kind(note: Note | str) -> str:
+    """Key that is equal for notes that differ in numbers only."""
+    if not isinstance(note, Note):
+        return note
+    words = map(str, note.values.values())
+    is_number = re.compile(r"[\d.-]*\d[\d.-]*").fullmatch
+    return "/".join([note.template, *(word for word in words if not is_number(word))])
+
+
+def _gathered(
+    machine: Machine,
+    model: Model,
+    grid: Array,
+    answers: list[Response | None],
+    linear: Linear,
+    met: list[Resonance],
+    notes: tuple[Note | str, ...],
+) -> Sweep:
+    there = np.array([answer is not None for answer in answers])
+    matching_answers = [answer for answer in answers if answer is not None]
+    stable = there.copy()
+    stable[there] = [answer.stable is not False for answer in matching_answers]
+    return Sweep(
+        machine,
+        model,
+        grid,
+        {name: _gauge_curve(name, matching_answers, there) for name in matching_answers[0].gauges},
+        {name: _mount_curve(name, matching_answers, there) for name in matching_answers[0].mounts},
+        linear.modes,
+        tuple(met),
+        _spread(there, np.array([answer.drive.fluctuation for answer in matching_answers])),
+        stable,
+        (*notes, *_noted(grid, answers)),
+    )
+
+
+def _gauge_curve(name: str, responses: list[Response], there: Array) -> GaugeCurve:
+    gauges = [answer.gauges[name] for answer in responses]
+    curves = {}
+    for quantity, prefix in PREFIXES.items():
+        signal = _joined([getattr(gauge, quantity) for gauge in gauges])
+        curves[f"{prefix}peak_to_peak"] = _spread(there, signal.peak_to_peak)
+        curves[f"{prefix}rms"] = _spread(there, signal.vibration_rms)
+        if quantity == "displacement":
+            curves["harmonics"] = _spread(there, signal.sizes)
+    return GaugeCurve(**curves, rotation=gauges[0].rotation)
+
+
+def _mount_curve(name: str, responses: list[Response], there: Array) -> MountCurve:
+    mounts = [answer.mounts[name] for answer in responses]
+    force = _joined([mount.force for mount in mounts])
+    smallest = np.maximum(force.extreme(-1)[0], [mount.least for mount in mounts])
+    return MountCurve(
+        _spread(there, force.extreme(1)[0] - smallest),
+        _spread(there, force.vibration_rms),
+        _spread(there, np.array([mount.whole for mount in mounts])),
+        _spread(there, np.array([mount.lifts_off for mount in mounts])),
+        mounts[0].torsional,
+    )
+
+
+def _joined(signals: list[Periodic]) -> Periodic:
+    """Signals as one, amplitudes (signals, K + 1)."""
+    count = max(len(signal.amplitudes) for signal in signals)
+    padded = np.zeros((len(signals), count), complex)
+    for row, signal in zip(padded, signals, strict=True):
+        row[: len(signal.amplitudes)] = signal.amplitudes
+    return Periodic(padded, signals[0].turns)
+
+
+def _spread(there: Array, values: Array) -> Array:
+    """Values (there, ...) at their places among all speeds (S, ...), NaN at the others."""
+    numbers = np.full((len(there), *values.shape[1:]), np.nan)
+    numbers[there] = values
+    return numbers
+
+
+ResponsesBySpeed = dict[float, Response | None]
+"""Speed of the crank, rad/s -> the response; None where there is none."""
+
+
+# -- at which speeds -------------------------------------------------------------------------------
+
+OFFSETS = (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0)
+"""Speeds about a resonance, in damping ratios of its mode: a peak is as wide as two."""
+
+
+ACROSS, UP = 480.0, 160.0
+"""Points: size of a picture with a curve in it, whose values have a log axis."""
+
+
+OFF, SHORT = 0.7, 2.5
+"""Points: how far a place of a curve lies off the line between its neighbours where it bends, a
+quarter of which is left when both sides are halved; length of a piece that nobody sees."""
+
+
+COARSE = 30
+"""Equally spaced speeds from which curves that bend little are smooth already."""
+
+
+SAME = 1e-12
+"""Over the fastest speed: less is rounding."""
+
+
+ROUNDS = 6
+"""In each of which pieces are halved."""
+
+
+def speed_grid(
+    slowest: float, fastest: float, count: int, met: Iterable[Resonance], linear: Linear
+) -> Array:
+    """Speeds, rad/s: equally spaced, the machine's own, and about resonances; rising in size."""
+    own = np.copysign(linear.body.machine.drive.speed, fastest)
+    grid = [np.linspace(slowest, fastest, count), np.array([own])]
+    for resonance in met:
+        damping = np.clip(linear.modes[resonance.mode - 1].damping_ratio, 1e-5, 0.05)
+        grid.append(resonance.speed * (1 + np.array(OFFSETS) * damping))
+    low, high = sorted((slowest, fastest))
+    speeds = np.concatenate(grid)
+    inside = np.unique(speeds[(speeds >= low) & (speeds <= high)])
+    inside = inside[np.diff(inside, prepend=-np.inf) > SAME * max(-low, high)]
+    return inside if fastest > 0 else inside[::-1]
+
+
+def responses_at(
+    respond: Callable[[float], Response], speeds: Array, progress: Callable[[int, int], None]
+) -> ResponsesBySpeed:
+    """Responses at some speeds, and at those between where curves would be drawn with corners.
+
+    respond : of a speed, whatever the others are.  progress : called with how many are done of how
+    many that are known to be wanted.
+
+    Raises
+    ------
+    UsageError : all of them would take more memory than may be used.
+    """
+    answers: ResponsesBySpeed = {}
+    levels: dict[float, Array] = {}
+    wanted = speeds.tolist()
+    for _ in range(ROUNDS):
+        total = len(answers) + len(wanted)
+        for speed in wanted:
+            try:
+                answer = respond(speed)
+            except ResponseError:
+                answer = None
+            answers[speed] = answer
+            if answer is not None:
+                speeds_of = to_say("{count} speeds of a cycle of {turns} turns")
+                what = Note(speeds_of, count=total, turns=answer.turns)
+                check_memory(answer.nbytes * total, what)
+                levels[speed] = levels_of(answer)
+            progress(len(answers), total)
+        answers = dict(sorted(answers.items(), key=lambda pair: abs(pair[0])))
+        wanted = refined_speeds([*answers], levels)
+    return answers
+
+
+def refined_speeds(ordered: Sequence[float], levels: Mapping[float, Array]) -> list[float]:
+    """Middles of the pieces that meet where any curve bends.
+
+    ordered : speeds.  levels : of those that have an answer, points (C,) of the curves.
+    """
+    speeds = np.array(ordered)
+    there = np.array([speed in levels for speed in ordered])
+    if len(speeds) < 3 or not np.any(there):
+        return []
+    curves_by_speed = [levels[speed] for speed in ordered if speed in levels]
+    curves = np.full((len(curves_by_speed[0]), len(speeds)), np.nan)
+    curves[:, there] = np.array(curves_by_speed).T
+    x = np.broadcast_to(ACROSS * speeds / np.ptp(speeds), curves.shape)
+    ways = np.diff(x) + 1j * np.diff(curves)
+    both = ways[:, 1:] + ways[:, :-1]
+    off = np.abs((ways[:, :-1].conj() * both).imag) / np.abs(both)
+    bent = np.pad(off > OFF, ((0, 0), (1, 1)))
+    split = np.any((bent[:, 1:] | bent[:, :-1]) & (np.abs(ways) > SHORT), axis=0)
+    return [float(speed) for speed in (speeds[1:] + speeds[:-1])[split] / 2]
+
+
+def levels_of(answer: Response) -> Array:
+    """RMS of whatever is drawn against speed, (C,), as points of a log axis; NaN where it is 0."""
+    read = [
+        (gauge.displacement, gauge.velocity, gauge.acceleration) for gauge in answer.gauges.values()
+    ]
+    signals = [*(signal for three in read for signal in three)]
+    signals += [mount.force for mount in answer.mounts.values()]
+    sizes = np.array([float(signal.vibration_rms) for signal in signals])
+    return UP / 3 * np.log10(np.where(sizes > 0, sizes, np.nan))

@@ -19,16 +19,15 @@ from equipoise.quantities import in_si
 from equipoise.results.declaring import NOTES, TITLE, Declarations, ResultOutput
 from equipoise.results.result import Result
 from equipoise.signals import Array
-from equipoise.vibration.body import MISSING, SupportBody
+from equipoise.vibration.body import MISSING, SupportBody, gauges_of
 from equipoise.vibration.coupled import Coupled, follow
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, steady_speed
-from equipoise.vibration.linear import Linear, gauges_of
+from equipoise.vibration.linear import Linear
 from equipoise.vibration.response import Mode, members_of
 from equipoise.vibration.simplified import linear_of
 from equipoise.vibration.steady import equations, motor_setting
-from equipoise.vibration.support_motion import SupportMotion
-from equipoise.vibration.support_place import SpatialMounts, in_plane
+from equipoise.vibration.support_motion import SpatialMounts, SupportMotion, in_plane
 
 
 @dataclass(frozen=True, eq=False)

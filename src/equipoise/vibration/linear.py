@@ -1,13 +1,14 @@
-"""Linear response, modes and resonances of a support under what linkages do to it by orders.
+"""Small motion: response, modes and resonances of a support under what linkages do to it by orders.
 
 (K - (n w)^2 M + i n w C) q_n = W_n for every order n at the crank's speed w.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Iterable, Iterator
+from functools import cached_property, reduce
 from math import copysign, pi, sqrt
+from operator import add
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -16,15 +17,31 @@ from equipoise.dataclass import dataclass
 from equipoise.decompositions import cond, lstsq, svd
 from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import Note, all_of, to_say
-from equipoise.limits import check_memory
+from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.parts.machine import Drive, Machine
-from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge
+from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.quantities import PER_RPM, Dimension, brief, format_quantity, number
 from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.signals import Array, Periodic, highest_at
-from equipoise.vibration.body import Rest, SupportBody, at_rest, driven_away, unbounded_at
+from equipoise.vibration.body import (
+    Rest,
+    SupportBody,
+    at_rest,
+    driven_away,
+    gauges_of,
+    unbounded_at,
+)
 from equipoise.vibration.excitation import SupportExcitation, WholeExcitation
-from equipoise.vibration.response import Mode, Response
+from equipoise.vibration.linkages import rows_of
+from equipoise.vibration.response import (
+    DriveSignals,
+    GaugeSignals,
+    Mode,
+    MountForce,
+    Response,
+    hand_vibration,
+)
 
 STILL = 1e-7
 """Share of the largest frequency below which a motion counts as free, without a spring."""
@@ -214,20 +231,7 @@ class Linear:
         return Periodic(row[self.body.free] @ moved.amplitudes, moved.turns)
 
 
-def gauges_of(body: SupportBody) -> dict[str, Gauge]:
-    """The gauges of the model; the free coordinates at the reference point where it has none."""
-    if body.support.gauges:
-        return dict(body.support.gauges)
-    x, y, z = map(float, body.reference)
-    gauges = {}
-    for name in body.support.coordinates:
-        if name in AXES:
-            gauges[name] = Gauge(axis=name)
-        else:
-            first, second, third = map(float, np.eye(3)[FREEDOMS.index(name)])
-            gauges[name] = Gauge((x, y, z), (first, second, third))
-    return gauges
-
+# -- resonances ------------------------------------------------------------------------------------
 
 QUIET = 1e-3
 """Share of the loudest resonance at every gauge below which a resonance is not listed."""
@@ -417,101 +421,114 @@ def _avoid(speed: float, mode: Mode) -> tuple[float, float] | None:
     return (speed * sqrt(max(low, 0.0)), speed * sqrt(high))
 
 
-Answers = dict[float, Response | None]
-"""Speed of the crank, rad/s -> the response; None where there is none."""
+# -- what gauges read, and how mounts push ---------------------------------------------------------
 
-OFFSETS = (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0)
-"""Speeds about a resonance, in damping ratios of its mode: a peak is as wide as two."""
-ACROSS, UP = 480.0, 160.0
-"""Points: size of a picture with a curve in it, whose values have a log axis."""
-OFF, SHORT = 0.7, 2.5
-"""Points: how far a place of a curve lies off the line between its neighbours where it bends, a
-quarter of which is left when both sides are halved; length of a piece that nobody sees."""
-COARSE = 30
-"""Equally spaced speeds from which curves that bend little are smooth already."""
-SAME = 1e-12
-"""Over the fastest speed: less is rounding."""
-ROUNDS = 6
-"""In each of which pieces are halved."""
+GROWTH_ROUNDING = 1e-9
+"""Growth of a mode, beside its frequency, up to which it is rounding."""
 
 
-def about(
-    slowest: float, fastest: float, count: int, met: Iterable[Resonance], linear: Linear
-) -> Array:
-    """Speeds, rad/s: equally spaced, the machine's own, and about resonances; rising in size."""
-    own = np.copysign(linear.body.machine.drive.speed, fastest)
-    grid = [np.linspace(slowest, fastest, count), np.array([own])]
-    for resonance in met:
-        damping = np.clip(linear.modes[resonance.mode - 1].damping_ratio, 1e-5, 0.05)
-        grid.append(resonance.speed * (1 + np.array(OFFSETS) * damping))
-    low, high = sorted((slowest, fastest))
-    speeds = np.concatenate(grid)
-    inside = np.unique(speeds[(speeds >= low) & (speeds <= high)])
-    inside = inside[np.diff(inside, prepend=-np.inf) > SAME * max(-low, high)]
-    return inside if fastest > 0 else inside[::-1]
+def respond_linear(linear: Linear, speed: float) -> Response:
+    """Response of a linear step, by orders."""
+    body = linear.body
+    moved = linear.motion(speed)
+    moving = moved.derivative() * speed
+    mounts, notes = mount_forces(linear, moved, moving, speed)
+    notes.extend(linear.unsettled)
+    if any(
+        mode.eigenvalue.real > GROWTH_ROUNDING * mode.natural_frequency for mode in linear.modes
+    ):
+        template = to_say("the support is unstable: the drawn position is no stable equilibrium")
+        notes.append(Note(template))
+    return Response(
+        body.machine,
+        linear.excitation.model,
+        speed,
+        moved.turns,
+        gauge_signals(linear, (moved, moving, moving.derivative() * speed), speed),
+        mounts,
+        linear.modes,
+        DriveSignals(_torque(linear, speed), grounded=(body.machine, speed)),
+        notes=tuple(notes),
+        motion=linear.body.whole(moved),
+    )
 
 
-def answered(
-    respond: Callable[[float], Response], speeds: Array, progress: Callable[[int, int], None]
-) -> Answers:
-    """Responses at some speeds, and at those between where curves would be drawn with corners.
-
-    respond : of a speed, whatever the others are.  progress : called with how many are done of how
-    many that are known to be wanted.
-
-    Raises
-    ------
-    UsageError : all of them would take more memory than may be used.
+def gauge_signals(
+    linear: Linear, motion: tuple[Periodic, Periodic, Periodic], speed: float
+) -> dict[str, GaugeSignals]:
+    """What gauges read of displacements, velocities and accelerations (D, K + 1), at a speed of
+    the crank, rad/s.
     """
-    answers: Answers = {}
-    levels: dict[float, Array] = {}
-    wanted = speeds.tolist()
-    for _ in range(ROUNDS):
-        total = len(answers) + len(wanted)
-        for speed in wanted:
-            try:
-                answer = respond(speed)
-            except ResponseError:
-                answer = None
-            answers[speed] = answer
-            if answer is not None:
-                speeds_of = to_say("{count} speeds of a cycle of {turns} turns")
-                what = Note(speeds_of, count=total, turns=answer.turns)
-                check_memory(answer.nbytes * total, what)
-                levels[speed] = levels_of(answer)
-            progress(len(answers), total)
-        answers = dict(sorted(answers.items(), key=lambda pair: abs(pair[0])))
-        wanted = between([*answers], levels)
-    return answers
+    signals, body = {}, linear.body
+    for name, gauge in gauges_of(linear.body).items():
+        row = linear.body.row(gauge)
+        moved, moving, change = (linear.seen_by(row, item) for item in motion)
+        along = tuple(
+            linear.seen_by(body.wrench(axis, gauge.point), motion[2])
+            for axis in (() if gauge.exposure is None else np.eye(3))
+        )
+        hand = hand_vibration(along, speed, gauge.exposure)
+        signals[name] = GaugeSignals(moved, moving, change, gauge.axis is not None, hand)
+    return signals
 
 
-def between(ordered: Sequence[float], levels: Mapping[float, Array]) -> list[float]:
-    """Middles of the pieces that meet where any curve bends.
+def mount_forces(
+    linear: Linear, moved: Periodic, moving: Periodic, speed: float
+) -> tuple[dict[str, MountForce], list[Note]]:
+    """Forces of the mounts at small displacements and velocities (D, K + 1); and what to say."""
+    exciting = force_amplitudes(linear, speed)
+    mounts, notes = {}, []
+    for name, mount in linear.body.support.mounts.items():
+        row, preload = linear.body.row(mount), linear.rest.preload[name]
+        force = linear.seen_by(row, moved) * -mount.spring
+        force = force + linear.seen_by(row, moving) * -mount.damper
+        template = ""
+        if not linear.rest.carries(name, mount):
+            force, preload = force * 0.0, 0.0
+            template = to_say("{name} has no contact at rest and is ignored")
+        elif mount.one_sided and force.extreme(-1)[0] + preload < 0:
+            template = to_say(
+                "{name} would be in tension, which a one-sided mount cannot transmit; the exact "
+                "model includes the loss of contact"
+            )
+        if template:
+            notes.append(Note(template, name=name))
+        hands_on = exciting if mount.axis is None else exciting[:0]
+        mounts[name] = mount_force(force, preload, hands_on)
+    return mounts, notes
 
-    ordered : speeds.  levels : of those that have an answer, points (C,) of the curves.
+
+def mount_force(varying: Periodic, preload: float, exciting: Array) -> MountForce:
+    """A mount's whole force, and what it hands on of the force that excites, (K + 1,).
+
+    exciting : amplitudes of that force; empty for a torsional mount, which hands on none.
     """
-    speeds = np.array(ordered)
-    there = np.array([speed in levels for speed in ordered])
-    if len(speeds) < 3 or not np.any(there):
-        return []
-    curves_by_speed = [levels[speed] for speed in ordered if speed in levels]
-    curves = np.full((len(curves_by_speed[0]), len(speeds)), np.nan)
-    curves[:, there] = np.array(curves_by_speed).T
-    x = np.broadcast_to(ACROSS * speeds / np.ptp(speeds), curves.shape)
-    ways = np.diff(x) + 1j * np.diff(curves)
-    both = ways[:, 1:] + ways[:, :-1]
-    off = np.abs((ways[:, :-1].conj() * both).imag) / np.abs(both)
-    bent = np.pad(off > OFF, ((0, 0), (1, 1)))
-    split = np.any((bent[:, 1:] | bent[:, :-1]) & (np.abs(ways) > SHORT), axis=0)
-    return [float(speed) for speed in (speeds[1:] + speeds[:-1])[split] / 2]
+    amplitudes = varying.amplitudes.copy()
+    amplitudes[0] += preload
+    count = min(len(amplitudes), len(exciting))
+    ratio = np.full(len(amplitudes), np.nan)
+    loud = exciting[:count] > 1e-9 * np.max(exciting, initial=0.0)
+    loud[:1] = False
+    np.divide(np.abs(amplitudes[:count]), exciting[:count], out=ratio[:count], where=loud)
+    whole = float(np.sqrt(np.sum(exciting[1:] ** 2) / 2))
+    force = Periodic(amplitudes, varying.turns)
+    handed_on = float(force.vibration_rms) / whole if whole else np.nan
+    return MountForce(force, ratio, handed_on, torsional=not exciting.size)
 
 
-def levels_of(answer: Response) -> Array:
-    """RMS of whatever is drawn against speed, (C,), as points of a log axis; NaN where it is 0."""
-    read = [
-        (gauge.displacement, gauge.velocity, gauge.acceleration) for gauge in answer.gauges.values()
-    ]
-    signals = [*(signal for three in read for signal in three)]
-    signals += [mount.force for mount in answer.mounts.values()]
-    sizes = np.array([float(signal.vibration_rms) for signal in signals])
-    return UP / 3 * np.log10(np.where(sizes > 0, sizes, np.nan))
+def force_amplitudes(linear: Linear, speed: float) -> Array:
+    """Amplitude (K + 1,) of the force of all linkages on the frame; 0 where they cancel."""
+    signals = (linear.excitation.at(speed), linear.excitation.of_one(speed))
+    sizes, single = (np.linalg.norm(signal.amplitudes[:3], axis=0) for signal in signals)
+    machine = linear.body.machine
+    own = machine.mass * size_of_bodies(machine) * speed**2
+    top = max(float(np.max(single[1:], initial=0.0)), own)
+    rounding = 1e-10 * len(rows_of(machine)) * top
+    return np.where(sizes > rounding, sizes, 0.0)
+
+
+def _torque(linear: Linear, speed: float) -> Periodic:
+    """Torque on all cranks on solid ground."""
+    motion = linear.excitation.motion.at(speed)
+    periodic = motion.periodic(forces(motion).drive_torque)
+    return reduce(add, (periodic.shifted(row.phase) for row in rows_of(linear.body.machine)))

@@ -32,10 +32,9 @@ from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import IN_PLANE, PITCH, SupportBody, rigid_mass
 from equipoise.vibration.collocation import BoundaryConditions, Rates
 from equipoise.vibration.excitation import SupportExcitation
-from equipoise.vibration.linear import Linear
+from equipoise.vibration.linear import Linear, gauge_signals, mount_forces, respond_linear
 from equipoise.vibration.linkages import rows_of
 from equipoise.vibration.response import MODELS, Model, Response, in_words
-from equipoise.vibration.small_motion import gauge_signals, mount_forces, respond_linear
 from equipoise.vibration.steady import ROUGH, SAMPLES, steady
 
 # -- what linkages do ------------------------------------------------------------------------------

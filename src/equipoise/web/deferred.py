@@ -26,8 +26,8 @@ from equipoise.web.replies import FloatBlock
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
+    from equipoise.vibration.forced import Sweep
     from equipoise.vibration.response import Response
-    from equipoise.vibration.sweep import Sweep
 
 Values = dict[str, Any]
 SAMPLES = 360
@@ -50,8 +50,8 @@ def responded(computed: Computed) -> Response:
 @kept_with_first
 def _curves(computed: Computed, speed: float, progress: Callable[[int, int], None]) -> Sweep:
     """The response of a design over speeds around one, rad/s."""
-    from equipoise.vibration.linear import COARSE, around
-    from equipoise.vibration.sweep import sweep_speed
+    from equipoise.vibration.forced import COARSE, sweep_speed
+    from equipoise.vibration.linear import around
 
     ends = around(computed.analysis.machine.drive, speed)
     return sweep_speed(computed.analysis.machine, *ends, speeds=COARSE, progress=progress)

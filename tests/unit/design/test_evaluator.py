@@ -16,7 +16,7 @@ from equipoise.design.requirements import Requirement
 from equipoise.errors import UsageError
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.balance import Objective
-from equipoise.planting.arms import machine_figures
+from equipoise.planting.figures import machine_figures
 from equipoise.planting.search import Designs, fit_planting
 from equipoise.schema.studies import load_study
 from equipoise.schema.template import Template

@@ -23,7 +23,7 @@ from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import each
 from equipoise.results.charts import Axis, Chart, Curve, Panel
 from equipoise.results.result import in_own_words
-from equipoise.vibration.sweep import sweep_speed
+from equipoise.vibration.forced import sweep_speed
 from support.chosen import DISTINCT, few
 from support.findings import findings_of
 from support.gallery import Kept, keep

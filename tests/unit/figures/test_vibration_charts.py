@@ -16,10 +16,9 @@ from equipoise.figures.style import LOOKS, look_of
 from equipoise.figures.time_charts import transient_charts
 from equipoise.figures.vibration import fraction, meeting, merged, response_charts, sweep_charts
 from equipoise.results.charts import Chart, Curve
-from equipoise.vibration.forced import respond
+from equipoise.vibration.forced import Sweep, respond, sweep_speed
 from equipoise.vibration.free import simulate
 from equipoise.vibration.linear import Resonance
-from equipoise.vibration.sweep import Sweep, sweep_speed
 from support.chosen import few
 from support.refusals import refused
 from unit.figures.checks import views

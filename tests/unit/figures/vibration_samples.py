@@ -13,9 +13,8 @@ from equipoise.figures import pictures_of
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Gauge, Mount, Row
 from equipoise.results.charts import Chart
-from equipoise.vibration.forced import respond
+from equipoise.vibration.forced import Sweep, respond, sweep_speed
 from equipoise.vibration.response import Response
-from equipoise.vibration.sweep import Sweep, sweep_speed
 from unit.figures.samples import three_turns
 
 RPM = 30 / pi

@@ -14,7 +14,7 @@ from equipoise.errors import ModelError
 from equipoise.figures.planting import Paths, tips, torque
 from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.field import PlantingArm, Soil
-from equipoise.planting.arms import machine_figures
+from equipoise.planting.figures import machine_figures
 from equipoise.planting.names import TURNING, dimension_of, figure_named
 from equipoise.planting.summary import PlantingFigures, plant, table
 from support.chosen import few

@@ -27,9 +27,9 @@ from equipoise.schema.template import Template
 from equipoise.studies.commands import dimension_of
 from equipoise.studies.evaluate import OneByOne
 from equipoise.studies.study import Output, Sampling, Study
+from equipoise.vibration.forced import GaugeCurve, Sweep, sweep_speed
 from equipoise.vibration.free import FreeVibration, Transient
 from equipoise.vibration.response import SIGNAL, GaugeSignals, Joint, MountForce, Response
-from equipoise.vibration.sweep import GaugeCurve, Sweep, sweep_speed
 
 ROOT = Path(__file__).parents[3] / "docs"
 BEGIN, END = "<!-- declared {} -->\n", "<!-- end of declared {} -->\n"

@@ -12,7 +12,7 @@ from equipoise.balancing.outcome import benefit_sentences
 from equipoise.mechanism.parts.balance import Balance, Objective
 from equipoise.results.blocks import Text
 from equipoise.results.rotors import rotor_sentence, unbalances
-from equipoise.vibration.headline import analysis_headline, response_headline
+from equipoise.vibration.blocks import analysis_headline, response_headline
 
 SIEVE = """
 schema = 1

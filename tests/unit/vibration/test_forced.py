@@ -16,15 +16,13 @@ from equipoise.mechanism.parts.support import UP
 from equipoise.present.findings import Findings, find
 from equipoise.present.summary import vibration_sentences
 from equipoise.results.blocks import Text
-from equipoise.vibration.blocks import disagreement
+from equipoise.vibration.blocks import disagreement, response_headline
 from equipoise.vibration.coupled import StallError
 from equipoise.vibration.exact import solve_exact
-from equipoise.vibration.forced import chosen_model, respond
-from equipoise.vibration.headline import response_headline
+from equipoise.vibration.forced import chosen_model, respond, sweep_speed
 from equipoise.vibration.linear import around
 from equipoise.vibration.response import MODELS, Model
 from equipoise.vibration.simplified import linear_of
-from equipoise.vibration.sweep import sweep_speed
 from support.chosen import few
 from support.refusals import has_value, refused
 from unit.vibration.build import PIVOT, SPEED, Mount, block, cart, rig, rocking, short_rig, springs

@@ -17,17 +17,10 @@ from equipoise.mechanism.parts.motors import Motor
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic
 from equipoise.vibration.excitation import SupportExcitation
-from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import (
-    AMPLIFIED,
-    Linear,
-    Resonance,
-    find_modes,
-    resonances,
-)
+from equipoise.vibration.forced import respond, sweep_speed
+from equipoise.vibration.linear import AMPLIFIED, Linear, Resonance, find_modes, resonances
 from equipoise.vibration.response import Mode, Model
 from equipoise.vibration.simplified import linear_of
-from equipoise.vibration.sweep import sweep_speed
 from support.machines_planes import set_apart
 from support.printing import printed
 from support.refusals import refused

@@ -10,21 +10,20 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ResponseError
-from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import (
+from equipoise.vibration.forced import (
     ACROSS,
     COARSE,
     UP,
-    Linear,
-    answered,
-    around,
-    between,
+    Sweep,
     levels_of,
+    refined_speeds,
+    respond,
+    responses_at,
+    sweep_speed,
 )
+from equipoise.vibration.linear import Linear, around, respond_linear
 from equipoise.vibration.response import Response
 from equipoise.vibration.simplified import linear_of
-from equipoise.vibration.small_motion import respond_linear
-from equipoise.vibration.sweep import Sweep, sweep_speed
 from support.chosen import few
 
 SUPPORTED = ("yamashita-rig", "exudyn-slider-crank", "sieve", "walking-transplanter")
@@ -78,7 +77,7 @@ def of_rig() -> tuple[Callable[[float], Response], Response]:
 def halved(answers: dict[float, Response | None]) -> list[float]:
     """Speeds that are added to these."""
     levels = {speed: levels_of(one) for speed, one in answers.items() if one is not None}
-    return between([*answers], levels)
+    return refined_speeds([*answers], levels)
 
 
 def test_a_straight_curve_takes_no_more() -> None:
@@ -114,7 +113,7 @@ def test_speeds_without_a_response_are_kept_and_told_done() -> None:
             raise ResponseError("none")
         return found(speed)
 
-    answers = answered(some, np.array([5.0, 10.0, 11.0]), lambda *told: done.append(told))
+    answers = responses_at(some, np.array([5.0, 10.0, 11.0]), lambda *told: done.append(told))
     assert answers[10.0] is None
     assert [*answers] == sorted(answers)
     assert done[-1] == (len(answers), len(answers))
