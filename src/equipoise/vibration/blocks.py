@@ -1,4 +1,4 @@
-"""What vibration on the support shows: first, at one speed, in time, over a range, of free modes."""
+"""What vibration on the support shows: first, at one speed, in time, over speeds, of free modes."""
 
 from __future__ import annotations
 
