@@ -66,9 +66,8 @@ class Search(DesignProblem):
     ) -> None:
         self.solvers = (QuadraticPrograms(report, starts),)
         self.tool, self.design, self.band = tool, design, SpeedBand(tool, speed, LEAST)
-        self.numbers: list[Number] = [
-            (variable.station, variable.key) for variable in design.variables
-        ]
+        self.variables = [entry.variable for entry in design.variables]
+        self.numbers: list[Number] = [(entry.station, entry.key) for entry in design.variables]
         self.low = np.array([spread.low for spread in self.spreads])
         self.wide = np.array([spread.high for spread in self.spreads]) - self.low
         self.hands = design.hands or tuple(grip.name for grip in tool.grips)
@@ -83,7 +82,7 @@ class Search(DesignProblem):
         """Measures (M,), of which the largest counts, and limits (C,), each at most 1."""
         key = np.ascontiguousarray(place).tobytes()
         if self._last[0] != key:
-            pair = self._at(self.low + self.wide * place, slopes)
+            pair = self._at(self.values_of(place[None])[0], slopes)
             if not slopes:
                 return pair
             self._last = (key, pair)
@@ -104,9 +103,9 @@ class Search(DesignProblem):
             mine = np.array([key in ("mass", "absorber.mass") for _, key in self.numbers])
             added = float(np.sum((values - self.start)[mine]))
             slopes = mine.astype(float)[: len(felt.hands[self.hands[0]].slopes), None]
-            return Dual(np.array([added]), slopes) / max(limit.at_most, 1e-12)
+            return Dual(np.array([added]), slopes) / max(limit.most, 1e-12)
         source = felt.hands if limit.output == "acceleration" else felt.forces
-        return source[str(limit.station)] / limit.at_most**2
+        return source[str(limit.station)] / limit.most**2
 
     def _joined(self, parts: list[Dual]) -> Dual:
         """All values in a row, with slopes by place."""
@@ -118,7 +117,7 @@ class Search(DesignProblem):
 
     @property
     def spreads(self) -> list[Range]:
-        return [Range(variable.low, variable.high) for variable in self.design.variables]
+        return [variable.spread for variable in self.variables]
 
     def evaluate(self, places: Array) -> tuple[Array, Array]:
         """Measures (P, 1), and by how much the limits are passed, each over its own (P, 1)."""
@@ -341,15 +340,15 @@ def _tool_design(search: Search, best: Array, solution: DesignSolution) -> ToolD
     """The result, from the tool that the best numbers make, found first by a solution."""
     arrived, searches = solution.details or (1, 1)
     tool, design = search.tool, search.design
-    values = search.low + search.wide * best
+    values = search.values_of(best[None])[0]
     better = tool
     for entry, value in zip(design.variables, values, strict=True):
         handy = min(max(float(f"{value:.{DIGITS}g}"), entry.low), entry.high)
         better = changed(better, entry.station, entry.key, handy)
     after = values_of(better, search.numbers)
     rows = tuple(
-        Before(variable.name, KEYS[variable.key], float(start), float(end))
-        for variable, start, end in zip(design.variables, search.start, after, strict=True)
+        Before(entry.name, KEYS[entry.key], float(start), float(end))
+        for entry, start, end in zip(design.variables, search.start, after, strict=True)
     )
     speed = search.band.speed
     edges = ("lowest" if at < EDGE else "highest" if at > 1 - EDGE else "" for at in best.tolist())

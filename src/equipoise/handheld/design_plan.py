@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Literal
 
+from equipoise.design.variables import Range, Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.station import KEYS, Station
 from equipoise.i18n import Note
@@ -12,6 +13,7 @@ from equipoise.keys import (
     Conditions,
     DependentQuantity,
     Frozen,
+    Keys,
     KeyTable,
     Listing,
     Quantity,
@@ -21,6 +23,7 @@ from equipoise.keys import (
     schema_by_dimension,
 )
 from equipoise.keys import key as _key
+from equipoise.keys.requirement_kinds import Asks, RequiredFigure, RequirementKeys, asks_of
 from equipoise.mechanism.checks import numbered, unknown, wrong_speeds
 from equipoise.quantities import Dimension, Measured, format_exact, parse
 
@@ -93,13 +96,32 @@ class DesignVariable(Frozen):
         """Dotted name of the variable, such as ``belt harness.stiffness``."""
         return f"{self.station} {self.key}"
 
+    @property
+    def variable(self) -> Variable:
+        """What a search may change, by its path in the file; `UsageError` where the range is none.
+
+        The path has the station's name, such as ``shaft.stations.belt.harness.stiffness``.
+        """
+        path = f"shaft.stations.{self.station}.{self.key}"
+        return Variable(path, Range(self.low, self.high), KEYS[self.key])
+
 
 @declared
-class DesignLimit(Frozen):
-    """Something that must not become larger, in SI units."""
+class DesignLimit(Frozen, RequiredFigure):
+    """Something that must not become larger than `at_most`, in SI units of the output.
+
+    requirement : what else is asked of it, by the key of a `RequirementKind`.
+    """
 
     file_order = ("output", "station")
-    conditions: ClassVar[Conditions] = schema_by_dimension("output", ("at_most",), OUTPUTS)
+    extra_keys: ClassVar[Keys] = RequirementKeys(
+        "limits",
+        DependentQuantity(),
+        needed=True,
+        text="in a unit of the output",
+        example="5 m/s^2",
+    )
+    conditions: ClassVar[Conditions] = schema_by_dimension("output", (*extra_keys,), OUTPUTS)
 
     output: str = _key(
         TextKind(suggested=(*OUTPUTS,)),
@@ -107,17 +129,39 @@ class DesignLimit(Frozen):
         "`added_mass`: all that is added",
         example="acceleration",
     )
-    at_most: float = _key(DependentQuantity(), "in a unit of the output", example="5 m/s^2")
     station: str | None = _key(TextKind(), "of an acceleration or force", default=None)
+
+    def __init__(
+        self,
+        output: str,
+        at_most: float | None = None,
+        station: str | None = None,
+        *,
+        asks: Asks = (),
+        **requirement: Any,
+    ) -> None:
+        asked = asks_of({"at_most": at_most, **requirement}, asks)
+        for name, value in (("output", output), ("station", station), ("asks", asked)):
+            object.__setattr__(self, name, value)
+        self.__post_init__()
+        for key, given, right in self.wrong_asks():
+            raise ModelError(key, Note("got {given}; {right}", given=given, right=right))
+
+    @property
+    def most(self) -> float:
+        """The most that it may be, which every limit of a tool has."""
+        assert self.at_most is not None
+        return self.at_most
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> DesignLimit:
-        return cls(**_in_si(given, "output", OUTPUTS, "output", at_most="at_most"))
+        asked = {key: key for key in cls.extra_keys if key in given}
+        return cls(**_in_si(given, "output", OUTPUTS, "output", **asked))
 
     @classmethod
     def to_table(cls, value: DesignLimit) -> dict[str, Any]:
-        text = format_exact(value.at_most, OUTPUTS[value.output])
-        return {**super().to_table(value), "at_most": text}
+        texts = {key: format_exact(size, OUTPUTS[value.output]) for key, size in value.asks}
+        return {**super().to_table(value), **texts}
 
 
 @declared
@@ -162,7 +206,7 @@ def wrong_design(
 ) -> Iterator[ModelError]:
     """Everything that is wrong with a plan for a tool.
 
-    length : of its shaft, m.  shaken : whether anything shakes it.
+    length : of its shaft, m.  is_excited : whether anything shakes it.
     """
     hand_names = [station.name for station in stations if station.hand is not None]
     yield from wrong_speeds("design.speeds", design.speeds)
@@ -230,7 +274,9 @@ def _wrong_limit(
     if limit.output not in OUTPUTS:
         yield ModelError(f"{where}.output", unknown(limit.output, OUTPUTS, "output"))
         return
-    if limit.at_most < 0 or (limit.at_most == 0 and limit.output != "added_mass"):
+    if limit.at_most is None:
+        yield ModelError(f"{where}.at_most", Note("missing; give {key}", key="at_most"))
+    elif limit.at_most < 0 or (limit.at_most == 0 and limit.output != "added_mass"):
         template = (
             "give {limit:g} or more" if limit.output == "added_mass" else "give more than {limit:g}"
         )

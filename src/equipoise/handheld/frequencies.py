@@ -4,6 +4,14 @@ Beam elements with the displacement w and slope theta of both ends as coordinate
 exact for loads at the ends, with shear by Timoshenko's theory (Przemieniecki, Theory of Matrix
 Structural Analysis, 1968).  The error of an eigenvalue falls with the fourth power of their number,
 with the square where the shaft yields to shear, which is alike all along an element here.
+
+Elements alone do not replace the counting.  60 of them, by `scipy.linalg.eigh`, miss the first four
+frequencies of the bundled tools by up to 5e-7, but the seven of a usual list by 6e-6 (brush cutter,
+which yields to shear; 2e-6 Nagamine and Irie's) and the highest of 31 by 4 %, where counting has
+all digits; 240 still miss the latter by 2e-3, and in their lowest frequencies rounding grows with
+the fourth power of the number.  For seven frequencies 60 elements take as long as counting, 120
+take two to four times as long.  So frequencies are counted, and elements say where Newton's method
+begins for those with damping.
 """
 
 from __future__ import annotations

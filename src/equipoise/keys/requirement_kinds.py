@@ -1,8 +1,9 @@
 """What can be asked of a figure, each kind a class with a key of its own.
 
 A further kind is a class here, in `REQUIREMENT_KINDS`.  ``[[outputs]]`` of studies, ``[[goals]]``
-of target files and ``[[balance.limits]]`` take its key; studies, searches, `plant fit`, balancing,
-tables, pictures and the page read off it where the figure may lie and which way is better.
+of target files, ``[[balance.limits]]`` and ``[[design.limits]]`` of tools take its key; studies,
+searches, `plant fit`, balancing, the design of tools, tables, pictures and the page read off it
+where the figure may lie and which way is better.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ class RequirementKind(ABC):
 
     key : in files.  description : of that key.
     choices : texts that its value can be; none where it is a value of the figure, in SI units.
-    tables : that have the key, of ``outputs``, ``goals`` and ``limits`` (of balancing, where a kind
-        has to bound from above: what is at most something is convex).
+    tables : that have the key, of ``outputs``, ``goals`` and ``limits`` (of balancing and of tools,
+        where a kind has to bound from above: what is at most something is convex).
     """
 
     key: ClassVar[str]

@@ -467,7 +467,7 @@ class EvolutionAndPolish:
 
     def solve(self, problem: PlantingProblem) -> DesignSolution:
         population = problem.population
-        evolution = _Evolution(problem, problem.seed, problem.generations, self.progress)
+        evolution = _Evolution(problem, self.progress)
         best = evolution.rounds(population)
         if problem.makes:
             polished = [evolution.polished(best[0], max(SMALLEST_POPULATION, population // 3))]
@@ -524,11 +524,10 @@ def _planting_figures(machine: Machine) -> PlantingFigures | None:
 class _Evolution:
     """Differential evolution, round after round, within a number of generations in all."""
 
-    def __init__(
-        self, problem: PlantingProblem, seed: int, generations: int, progress: Progress | None
-    ) -> None:
-        self.problem, self.generations, self.progress = problem, generations, progress
-        self.generator = np.random.default_rng(seed)
+    def __init__(self, problem: PlantingProblem, progress: Progress | None) -> None:
+        self.problem, self.progress = problem, progress
+        self.generations = problem.generations
+        self.generator = np.random.default_rng(problem.seed)
         self.done = 0
         self.costs: list[float] = []
 

@@ -657,5 +657,5 @@ def _design(design: DesignPlan) -> Iterator[str]:
     names = [varied_named(variable.name) for variable in design.variables]
     yield INDENT + say("may change: {names}", names=localized(series(names)))
     for limit in design.limits:
-        most = format_quantity(limit.at_most, OUTPUTS[limit.output])
+        most = format_quantity(limit.most, OUTPUTS[limit.output])
         yield INDENT + say(LIMITED[limit.output], station=limit.station, limit=most)
