@@ -276,7 +276,7 @@ def vary(
     import numpy as np
 
     from equipoise.handheld.modes import vary_tool
-    from equipoise.handheld.station import KEYS, check_key
+    from equipoise.handheld.shaft import KEYS, check_key
     from equipoise.handheld.sweep import MODES
 
     match = VARY.fullmatch(change.strip())

@@ -31,7 +31,7 @@ from equipoise.handheld.frequencies import scale_of
 from equipoise.handheld.hand_exposure import grips
 from equipoise.handheld.model import number_of
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.station import KEYS
+from equipoise.handheld.shaft import KEYS
 from equipoise.i18n import capital, decimals, localized, say, to_say
 from equipoise.quantities import Dimension, Display, display
 from equipoise.results.charts import (

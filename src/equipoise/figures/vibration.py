@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from equipoise.signals import Figures, Periodic
     from equipoise.vibration.linear import Resonance
     from equipoise.vibration.response import GaugeSignals, MountForce, Response
-    from equipoise.vibration.sweep import Sweep
+    from equipoise.vibration.forced import Sweep
 
 
 QUANTITIES = {

@@ -14,7 +14,7 @@ from equipoise.exposure.daily import DAY
 from equipoise.handheld.hand_exposure import IDLING, RACING, WORKING
 from equipoise.handheld.model import PLANES, number_of
 from equipoise.handheld.response import rms_over_time
-from equipoise.handheld.station import KEYS
+from equipoise.handheld.shaft import KEYS
 from equipoise.i18n import Note, localized, number_list, say, to_say
 from equipoise.quantities import PER_RPM, Dimension, brief, format_quantity, number
 from equipoise.results.blocks import (

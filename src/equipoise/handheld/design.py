@@ -25,7 +25,7 @@ from equipoise.handheld.hand_exposure import (
 )
 from equipoise.handheld.model import Tool, changed
 from equipoise.handheld.response import Number, respond_tool, rms_over_time
-from equipoise.handheld.station import KEYS
+from equipoise.handheld.shaft import KEYS
 from equipoise.handheld.sweep import speeds_between
 from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Literal
 
 from equipoise.design.variables import Range, Variable
 from equipoise.errors import ModelError, UsageError
-from equipoise.handheld.station import KEYS, Station
+from equipoise.handheld.shaft import KEYS, Station
 from equipoise.i18n import Note
 from equipoise.keys import (
     Conditions,

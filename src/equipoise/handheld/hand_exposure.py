@@ -28,7 +28,7 @@ from equipoise.handheld.response import (
     respond_tool,
     shakes,
 )
-from equipoise.handheld.station import KEYS, has
+from equipoise.handheld.shaft import KEYS, has_number
 from equipoise.handheld.sweep import SPEED
 from equipoise.i18n import Note
 from equipoise.results.declaring import Declarations, ResultOutput
@@ -301,7 +301,7 @@ def tool_sensitivities(tool: Tool, speed: Array) -> dict[Number, float]:
     In m/s2 for each SI unit; of a pair of numbers, by both together.
     """
     numbers = [
-        (station.name, key) for station in tool.stations for key in KEYS if has(station, key)
+        (station.name, key) for station in tool.stations for key in KEYS if has_number(station, key)
     ]
     means = [mean_over_band(hand) for hand in SpeedBand(tool, speed).felt(numbers).hands.values()]
     worst = max(means, key=lambda item: float(item.value[0]))

@@ -13,18 +13,20 @@ from typing import Any, ClassVar, Literal
 from equipoise.displays import Displayed
 from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import SPEEDS, DesignPlan, unknown_station, wrong_design
-from equipoise.handheld.shaft import Shaft, wrong_shaft
-from equipoise.handheld.station import (
+from equipoise.handheld.shaft import (
     NOTHING,
     Absorber,
     Both,
     Hand,
     Harness,
     Impedance,
+    Shaft,
+    ShaftTable,
     Station,
     alike,
     check_key,
     is_damped,
+    wrong_shaft,
     wrong_station,
 )
 from equipoise.i18n import Note, to_say
@@ -45,7 +47,6 @@ from equipoise.keys import (
     declared,
     inside,
     key,
-    keys_of,
     wrong_values,
 )
 from equipoise.mechanism.checks import numbered, too_many, unknown, wrong_speeds, wrong_text
@@ -184,30 +185,6 @@ class Work(Frozen):
     name: str = key(TextKind(), "of the work", example="mowing")
     speed: float = key("angular speed", "of the engine", example="7000 rpm", above=0)
     duration: float = key("time", "of it in a day", example="2 h", above=0)
-
-
-@declared
-class ShaftTable(Frozen):
-    """The shaft with what sits on it and holds it; a tool has both apart."""
-
-    called = to_say("{what} of the shaft")
-    extra_keys: ClassVar[Keys] = {
-        **keys_of(Shaft),
-        "stations": Key(
-            "stations", Tables(KeyTable(Station)), "what sits on it and holds it", default=()
-        ),
-    }
-    conditions: ClassVar[Conditions] = Shaft.conditions
-
-    @classmethod
-    def from_table(cls, given: dict[str, Any]) -> tuple[Shaft, tuple[Station, ...]]:
-        stations = given.pop("stations", ())
-        return Shaft.from_table(given), stations
-
-    @classmethod
-    def to_table(cls, value: tuple[Shaft, tuple[Station, ...]]) -> dict[str, Any]:
-        shaft, stations = value
-        return {**Shaft.to_table(shaft), **({"stations": stations} if stations else {})}
 
 
 @declared

@@ -29,7 +29,7 @@ from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Array, Periodic
-from equipoise.vibration.body import IN_PLANE, PITCH, SupportBody, rigid_mass
+from equipoise.vibration.body import PITCH, SupportBody, rigid_mass
 from equipoise.vibration.collocation import BoundaryConditions, Rates
 from equipoise.vibration.excitation import SupportExcitation
 from equipoise.vibration.linear import Linear, gauge_signals, mount_forces, respond_linear
@@ -122,7 +122,7 @@ class Reduced:
     @cached_property
     def free(self) -> tuple[int, ...]:
         """Which of surge, heave and pitch."""
-        return tuple(IN_PLANE.index(number) for number in self.linear.body.free)
+        return self.linear.body.free_in_plane
 
     @property
     def sense(self) -> float:

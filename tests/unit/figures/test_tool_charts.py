@@ -17,7 +17,7 @@ from equipoise.handheld.hand_exposure import expose_tool, grips
 from equipoise.handheld.model import changed
 from equipoise.handheld.modes import determinant_chart, vary_tool, vibrate_tool
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.station import KEYS
+from equipoise.handheld.shaft import KEYS
 from equipoise.handheld.sweep import transmit
 from equipoise.i18n import Note
 from equipoise.results.charts import Curve, Panel

@@ -38,8 +38,7 @@ from equipoise.handheld.model import (
     number_of,
 )
 from equipoise.handheld.response import ToolResponse, respond_tool
-from equipoise.handheld.shaft import Section
-from equipoise.handheld.station import KEYS, has
+from equipoise.handheld.shaft import KEYS, Section, has
 from support.refusals import refused
 from unit.handheld.samples import THEORIES, bare, both, random_tool, shaken
 

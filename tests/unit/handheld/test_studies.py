@@ -9,7 +9,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.frequencies import natural_frequencies, scale_of
 from equipoise.handheld.model import Hand, Impedance, Station, Tool, changed, number_of
 from equipoise.handheld.modes import determinant_chart, vary_tool, without_damping
-from equipoise.handheld.station import KEYS
+from equipoise.handheld.shaft import KEYS
 from support.refusals import refused
 from unit.handheld.samples import FULL, THEORIES, bare, both, random_tool, still
 

@@ -11,7 +11,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
-from equipoise.handheld import design_plan, shaft, station
+from equipoise.handheld import design_plan, shaft
 from equipoise.handheld import model as tool
 from equipoise.keys import Frozen, Number, TextKind, declared, key, wrong_values
 from equipoise.keys.paths import KeyPath
@@ -83,7 +83,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         weights.AddedMass, weights.Weight, weights.GearedWeight,
         weights.BalanceShafts,
         balance.SpringChoice, balance.Phases, balance.Objective, balance.Limit, tool.Tool,
-        shaft.Shaft, shaft.Segment, station.Station,
+        shaft.Shaft, shaft.Segment, shaft.Station,
         tool.Excitation, tool.Operation, tool.Work, design_plan.DesignPlan,
         design_plan.DesignVariable, design_plan.DesignLimit,
     )
