@@ -38,7 +38,7 @@ from equipoise.handheld.model import (
     number_of,
 )
 from equipoise.handheld.response import ToolResponse, respond_tool
-from equipoise.handheld.shaft import KEYS, Section, has
+from equipoise.handheld.shaft import KEYS, Section, has_number
 from support.refusals import refused
 from unit.handheld.samples import THEORIES, bare, both, random_tool, shaken
 
@@ -219,7 +219,7 @@ STEP = {
 
 
 def numbers_of(tool: Tool) -> list[tuple[str, str]]:
-    return [(one.name, key) for one in tool.stations for key in KEYS if has(one, key)]
+    return [(one.name, key) for one in tool.stations for key in KEYS if has_number(one, key)]
 
 
 def alike(tool: Tool) -> Tool:
