@@ -51,9 +51,9 @@ from equipoise.vibration.simplified import linear_of
 
 if TYPE_CHECKING:
     from equipoise.signals import Figures, Periodic
+    from equipoise.vibration.forced import Sweep
     from equipoise.vibration.linear import Resonance
     from equipoise.vibration.response import GaugeSignals, MountForce, Response
-    from equipoise.vibration.forced import Sweep
 
 
 QUANTITIES = {

@@ -117,7 +117,8 @@ class Search(DesignProblem):
 
     @property
     def spreads(self) -> list[Range]:
-        return [variable.spread for variable in self.variables]
+        spreads = (variable.spread for variable in self.variables)
+        return [spread for spread in spreads if isinstance(spread, Range)]
 
     def evaluate(self, places: Array) -> tuple[Array, Array]:
         """Measures (P, 1), and by how much the limits are passed, each over its own (P, 1)."""
