@@ -11,9 +11,9 @@ import numpy as np
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.dynamics.assessment import joint_remarks, mass_remarks, questions
-from equipoise.mechanism.dynamics.section_loads import ADDED, added_share, bending_frequency
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.reactions import idle_teeth_notes
+from equipoise.mechanism.dynamics.section_loads import ADDED, added_share, bending_frequency
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.parts.element_kinds import named_function, part_kinds
 from equipoise.mechanism.parts.links import Link
