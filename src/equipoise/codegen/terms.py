@@ -377,7 +377,8 @@ def rotation(angle: Any) -> VectorTerm:
     """
     if type(angle) is Term and angle.mask == BOTH and (parts := _apart(angle)):
         first, second = map(rotation, parts)
-        return first * second
+        turned: VectorTerm = first * second
+        return turned
     return VectorTerm(_operation("cos", angle), _operation("sin", angle))
 
 

@@ -42,13 +42,19 @@ PIECES = 128
 def law_of(shape: GearShape, mean: float) -> RollingLaw:
     """The driven gear's angle by the driver's, both seen from the carrier; mean : ratio."""
     if shape.varies or np.ndim(shape.phase):
-        return replace(_law.__wrapped__(shape, mean), zero=shape.phase)
+        return _counted_from(_law.__wrapped__(shape, mean), shape.phase)
     return _rolling(shape, mean)
+
+
+def _counted_from(law: Any, zero: Any) -> RollingLaw:
+    """The same law, a dataclass, which counts the driver's angle from another one."""
+    moved: RollingLaw = replace(law, zero=zero)
+    return moved
 
 
 @lru_cache(maxsize=256)
 def _rolling(shape: GearShape, mean: float) -> RollingLaw:
-    return replace(_law(_even(shape), mean), zero=shape.phase)
+    return _counted_from(_law(_even(shape), mean), shape.phase)
 
 
 @lru_cache(maxsize=256)
