@@ -10,9 +10,9 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.shaft import KEYS, Station
 from equipoise.i18n import Note
 from equipoise.keys import (
-    Conditions,
     DependentQuantity,
     Frozen,
+    KeyConditions,
     Keys,
     KeyTable,
     Listing,
@@ -27,8 +27,8 @@ from equipoise.keys.requirement_kinds import Asks, RequiredFigure, RequirementKe
 from equipoise.mechanism.checks import numbered, unknown, wrong_speeds
 from equipoise.quantities import Dimension, Measured, format_exact, parse
 
-Measure = Literal["rms", "peak"]
-MEASURES: tuple[Measure, ...] = ("rms", "peak")
+ResponseMeasure = Literal["rms", "peak"]
+MEASURES: tuple[ResponseMeasure, ...] = ("rms", "peak")
 """Root of the mean square over the speeds of the band, and the largest."""
 
 
@@ -70,7 +70,7 @@ class DesignVariable(Frozen):
     key : one of `KEYS`; of a pair of numbers both become the same.
     """
 
-    conditions: ClassVar[Conditions] = schema_by_dimension("key", ("from", "to"), KEYS)
+    conditions: ClassVar[KeyConditions] = schema_by_dimension("key", ("from", "to"), KEYS)
 
     station: str = _key(TextKind(), "name of the station", example="belt")
     key: str = _key(
@@ -108,7 +108,7 @@ class DesignVariable(Frozen):
 
 @declared
 class DesignLimit(Frozen, RequiredFigure):
-    """Something that must not become larger than `at_most`, in SI units of the output.
+    """Something that must not become larger, in SI units.
 
     requirement : what else is asked of it, by the key of a `RequirementKind`.
     """
@@ -121,7 +121,7 @@ class DesignLimit(Frozen, RequiredFigure):
         text="in a unit of the output",
         example="5 m/s^2",
     )
-    conditions: ClassVar[Conditions] = schema_by_dimension("output", (*extra_keys,), OUTPUTS)
+    conditions: ClassVar[KeyConditions] = schema_by_dimension("output", (*extra_keys,), OUTPUTS)
 
     output: str = _key(
         TextKind(suggested=(*OUTPUTS,)),
@@ -140,7 +140,8 @@ class DesignLimit(Frozen, RequiredFigure):
         asks: Asks = (),
         **requirement: Any,
     ) -> None:
-        asked = asks_of({"at_most": at_most, **requirement}, asks)
+        given = requirement if at_most is None else {"at_most": at_most, **requirement}
+        asked = asks_of(given, asks)
         for name, value in (("output", output), ("station", station), ("asks", asked)):
             object.__setattr__(self, name, value)
         self.__post_init__()
@@ -182,7 +183,7 @@ class DesignPlan(Frozen):
     limits: tuple[DesignLimit, ...] = _key(
         Tables(KeyTable(DesignLimit)), "what must not become larger", default=()
     )
-    measure: Measure = _key(
+    measure: ResponseMeasure = _key(
         TextKind(MEASURES),
         "over the speeds: `rms`: root of the mean square; `peak`: the largest",
         default="rms",

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import pytest
+
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.mechanism.parts.machine import FRAME, Vector
@@ -17,6 +19,18 @@ def refused(where: str, expected: dict[str, Any], make: Callable[[], object]) ->
     """Check that a machine is refused at a place, with these values in the sentence."""
     with refusals.refused(ModelError, where, **expected):
         make()
+
+
+def refused_in_words(where: str, words: str, make: Callable[[], object]) -> None:
+    """Check that a value is refused at a place, in these words, or in such where they end in ...
+
+    For refusals of which the words, such as what is proposed, are what a test is about.
+    """
+    with pytest.raises(ModelError) as caught:
+        make()
+    assert caught.value.where == where
+    part, _, rest = words.partition("...")
+    assert caught.value.what == words or ("..." in words and not rest and part in caught.value.what)
 
 
 def body(**points: Vector) -> eq.Link:

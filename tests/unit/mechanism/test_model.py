@@ -21,7 +21,7 @@ from unit.mechanism.build import (
     body,
     crank_rocker,
     four_bar,
-    refused,
+    refused_in_words,
     slider_crank,
     two_gears,
 )
@@ -88,13 +88,15 @@ def without(*names: str) -> eq.Machine:
     ],
 )
 def test_numbers_must_be_finite(where: str, make: Any, value: float) -> None:
-    refused(where, f"got {value}; give a finite number", lambda: make(value))
+    refused_in_words(where, f"got {value}; give a finite number", lambda: make(value))
 
 
 @pytest.mark.parametrize("value", [1e31, -1e300, 1e-31])
 def test_numbers_must_be_those_of_machines(value: float) -> None:
     words = f"got {value:g} in SI units, which no machine can have"
-    refused("links.rocker.center_of_mass[1]", words, lambda: rocker(center_of_mass=(value, 0.0)))
+    refused_in_words(
+        "links.rocker.center_of_mass[1]", words, lambda: rocker(center_of_mass=(value, 0.0))
+    )
 
 
 # -- what contradicts itself -----------------------------------------------------------------------
@@ -216,7 +218,7 @@ WHOLE: list[tuple[str, str, Any]] = [
 
 @pytest.mark.parametrize(("where", "words", "make"), [*LINKS, *JOINTS, *LOADS, *WHOLE])
 def test_what_contradicts_itself(where: str, words: str, make: Any) -> None:
-    refused(where, words, make)
+    refused_in_words(where, words, make)
 
 
 def test_a_link_may_have_no_masses_or_none_known() -> None:
@@ -314,7 +316,7 @@ def test_numbers_of_any_kind_become_floats() -> None:
     ],
 )
 def test_values_of_the_wrong_kind(changes: dict[str, Any], where: str, wanted: str) -> None:
-    refused(where, f"give {wanted}...", lambda: replace(FOUR.links["crank"], **changes))
+    refused_in_words(where, f"give {wanted}...", lambda: replace(FOUR.links["crank"], **changes))
 
 
 def test_a_changed_mass_keeps_the_solved_linkage() -> None:

@@ -22,7 +22,7 @@ from equipoise.mechanism.parts.support import (
     unit_vector,
 )
 from support import refusals
-from unit.mechanism.build import crank_rocker, refused
+from unit.mechanism.build import crank_rocker, refused, refused_in_words
 
 FOUR = crank_rocker()
 SUPPORT = Support(60.0, (0.0, 0.3, 0.0), (4.0,))
@@ -163,8 +163,9 @@ def test_values_of_mounts_and_gauges(
 @pytest.mark.parametrize("name", ["", " ", "a\nb", "x" * 201])
 def test_names(kind: str, name: str) -> None:
     item = MOUNT if kind == "mounts" else Gauge(axis="pitch")
-    wrong(f"support.{kind}", f"got the name {name[:60]!r}; give another",
-            replace(SUPPORT, **{kind: {name: item}}))  # fmt: skip
+    unnamed = replace(SUPPORT, **{kind: {name: item}})
+    words = f"got the name {name[:60]!r}; give another"
+    refused_in_words(f"support.{kind}", words, lambda: replace(FOUR, support=unnamed))
 
 
 def test_numbers_of_mounts_gauges_and_rows() -> None:

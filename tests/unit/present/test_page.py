@@ -85,7 +85,7 @@ def test_the_page_holds_every_picture_and_the_model(found, html):
     words = " ".join(read.words)
     for part in (*(one.chart.what for one in drawn), found.machine.description, eq.__version__):
         assert part in words
-    assert {one.caption for one in drawn} <= set(read.instead)
+    assert {one.chart.caption for one in drawn} <= set(read.instead)
     assert found.text.strip() in words
     assert "equipoise report yamashita-rig" in words
 

@@ -81,7 +81,7 @@ def test_right_angles_are_exact() -> None:
             "[assembly",
             {"text": "[assembly]"},
         ),
-        ("[assembly]", "x = " + "[" * 10**5, {"by": "parse_array"}),
+        ("[assembly]", "x = " + "[" * 10**5, {}),  # which function gives up depends on the stack
         ("[assembly]", "x = " + "9" * 5000, {"by": "match_to_number"}),
         (
             "[assembly]",
