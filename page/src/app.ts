@@ -17,7 +17,7 @@ import { Heading } from "./heading";
 import { Inspector, Locks } from "./inspector";
 import { Keeping } from "./keeping";
 import { Player, TransportBar } from "./player";
-import type { Asked, FileKind, Hello, Numbers, Planted, RunMessage, State, Strokes, Wire } from "./protocol";
+import type { PageRequest, DownloadKind, Hello, Numbers, Planted, RunMessage, State, Strokes, Wire } from "./protocol";
 import { BalancePanel, FigureTable, headline, Readings } from "./readings";
 import { RunPanel } from "./run_panel";
 import { Seeing } from "./seeing";
@@ -632,7 +632,7 @@ export class App {
     write(this.lost, why + kept);
   }
 
-  private async open(asked: Asked, name: string): Promise<void> {
+  private async open(asked: PageRequest, name: string): Promise<void> {
     if (!(await this.keeping.mayLeave(name))) return this.name();
     this.talk.release();
     this.opened = "asked";
@@ -665,7 +665,7 @@ export class App {
     void this.open({ type: "open", name, text, files }, name);
   }
 
-  private command(asked: Asked): void {
+  private command(asked: PageRequest): void {
     this.talk.release();
     this.talk.ask(asked);
   }
@@ -692,7 +692,7 @@ export class App {
     this.command({ type: "compare", on: false });
   }
 
-  private download(kind: FileKind, language = "en", format?: "svg" | "png"): void {
+  private download(kind: DownloadKind, language = "en", format?: "svg" | "png"): void {
     const at = this.player.sample;
     this.command({ type: "download", kind, language, at, ...(format && { format }) });
   }

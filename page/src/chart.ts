@@ -4,7 +4,7 @@
  */
 
 import { fresh, h, put, set, write } from "./dom";
-import type { Asked, ChartData, Choice, Numbers, State, Unit } from "./protocol";
+import type { PageRequest, ChartData, Choice, Numbers, State, Unit } from "./protocol";
 import { turning } from "./scale";
 import { type Curve, Strip } from "./strip";
 import type { Role, Theme } from "./theme";
@@ -265,7 +265,7 @@ export function scaled({ values, before }: Columns, unit: Unit): Columns {
   return { values: times(values, unit), before: before && times(before, unit) };
 }
 
-export type Ask = (asked: Asked) => void;
+export type Ask = (asked: PageRequest) => void;
 
 /** Put a "?" at the end of the heading of a chart of that title; `choice` tells what of it is shown. */
 export function explain(figure: HTMLElement, title: string, name: string, ask: Ask, choice: () => string): void {

@@ -1,6 +1,6 @@
 /** One question at a time: of edits that wait, the newest is enough. */
 
-import type { Asked, Edit, HandedOut, Refused, Tables, Told, Wire } from "./protocol";
+import type { PageRequest, Edit, HandedOut, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
 import { Numbers, type Pictured, type Planted, type ResponseMessage, type Side, type State, type Strokes } from "./protocol";
 import type { GhostMessage, RunMessage, Stores, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
@@ -9,7 +9,7 @@ import { language, say } from "./words";
 
 /** What takes long: the kind of its question, and what is done, in words. */
 export interface Computation {
-  kind: Asked["type"];
+  kind: PageRequest["type"];
   what: string;
 }
 
@@ -48,7 +48,7 @@ type Answered = (refusal: string | null, told: Refused | null) => void;
 
 interface Question {
   seq: number;
-  asked: Asked;
+  asked: PageRequest;
   answered?: Answered | undefined;
   /** Takes the file that is asked for, instead of the browser's downloads. */
   got?: ((told: HandedOut, bytes: DataView | undefined) => void) | undefined;
@@ -69,10 +69,10 @@ const OF_A_MOVE = 500;
 const IDLE = new Set(["ready", "speak", "save", "download", "tables", "study", "stores"]);
 
 /** What is kept until a server answers that does not: what changes the machine, or how it is shown. */
-const kept = ({ type }: Asked) => !(IDLE.has(type) || SLOW.has(type) || OPENS.has(type));
+const kept = ({ type }: PageRequest) => !(IDLE.has(type) || SLOW.has(type) || OPENS.has(type));
 
 /** Whether it only tries an edit, while something is held. */
-const isMove = (asked: Asked) => asked.type === "edit" && !asked.commit;
+const isMove = (asked: PageRequest) => asked.type === "edit" && !asked.commit;
 
 /** Who asks these says himself why not. */
 const ASIDE = new Set(["entry", "tables"]);
@@ -133,7 +133,7 @@ export class Conversation {
   }
 
   /** Ask; every question gets its answer, in this order. */
-  ask(asked: Asked, answered?: Answered, got?: Question["got"]): void {
+  ask(asked: PageRequest, answered?: Answered, got?: Question["got"]): void {
     this.dropWaiting();
     if (this.down && !kept(asked)) return this.unheard(answered);
     this.queue.push({ seq: ++this.seq, asked, answered, got });
@@ -328,7 +328,7 @@ export class Conversation {
   }
 
   /** Repeat a story, and ask what was left to be asked. */
-  private goOn(story: Asked[]): boolean {
+  private goOn(story: PageRequest[]): boolean {
     const waiting = this.story.waiting;
     this.story.waits(null);
     this.repeat(story);
@@ -336,7 +336,7 @@ export class Conversation {
     return story.length + waiting.length > 0;
   }
 
-  private repeat(story: Asked[]): void {
+  private repeat(story: PageRequest[]): void {
     for (const asked of story) this.queue.push({ seq: ++this.seq, asked });
     this.repeats = this.seq;
     this.next();

@@ -2,7 +2,7 @@
 
 import type { Conversation } from "./conversation";
 import { h } from "./dom";
-import type { Asked, Hello } from "./protocol";
+import type { PageRequest, Hello } from "./protocol";
 import { stepCount, type Told } from "./story";
 import type { Opened } from "./toolbar";
 import { say } from "./words";
@@ -108,7 +108,7 @@ interface Page {
   full: boolean;
   shown(): Opened | null;
   say(text: string, bad: boolean): void;
-  open(asked: Asked, name: string): void;
+  open(asked: PageRequest, name: string): void;
 }
 
 export class Keeping {

@@ -42,9 +42,9 @@ export interface Hello {
 export interface ToolOptions {
   word: string;
   /** What each is called, by its key in the request. */
-  labels: Forms;
+  labels: PluralForms;
   /** Values with their names; none where numbers are asked. */
-  choices: Forms;
+  choices: PluralForms;
   /** Of each at first. */
   value: string;
 }
@@ -83,18 +83,18 @@ export interface Spoken {
   seq: number;
   language: string;
   /** Code of each language there is, and its own name. */
-  languages: Forms;
+  languages: PluralForms;
   /** English text of the page -> text in the language. */
-  words: Forms;
+  words: PluralForms;
   /** Chart -> what it shows, and what to look for. */
-  explained: Forms;
+  explained: PluralForms;
   /** As kinds of parts declare them. */
   part_tools: PartTool[];
   particles: Particles | null;
   /** The sign before the decimals of a number that is shown. */
   decimal: string;
   /** English text of the page -> its forms by a count. */
-  forms: Record<string, Forms>;
+  forms: Record<string, PluralForms>;
 }
 
 /** A link, with its points. */
@@ -147,7 +147,7 @@ export interface Sign {
   part: [string, string] | null;
   /** Whether it is fixed to the ground, and not to the support. */
   still: boolean;
-  shapes: Shape[];
+  shapes: DrawnShape[];
 }
 
 /** The drawing of a machine. */
@@ -166,7 +166,7 @@ export interface Scene {
   /** Centre of a support's rotation, m. */
   reference: Pair | null;
   /** Role of a shape -> its style. */
-  looks: Forms;
+  looks: PluralForms;
 }
 
 /** A bundled machine, with its drawing. */
@@ -233,8 +233,8 @@ export interface Field {
 
 /** Texts of this machine that replace those of others, by English text and by chart. */
 export interface Wording {
-  words: Forms;
-  explained: Forms;
+  words: PluralForms;
+  explained: PluralForms;
 }
 
 /** RMS or peak of a signal, and that of the design it is compared with. */
@@ -444,7 +444,7 @@ export interface ShaftPiece {
   place: number;
   /** Whether they turn with the shaft. */
   turns: boolean;
-  shapes: Shape[];
+  shapes: DrawnShape[];
 }
 
 /** A tool from the side at rest: lengths in m. */
@@ -453,7 +453,7 @@ export interface ToolScene {
   tubes: [number, number, number][];
   stations: StationOnShaft[];
   pieces: ShaftPiece[];
-  looks: Forms;
+  looks: PluralForms;
   box: [number, number, number, number];
 }
 
@@ -817,7 +817,7 @@ export interface Tables {
   /** Points of the frame and of links, in their own axes, m. */
   bodies: Record<string, Record<string, Pair>>;
   /** What outputs that balancing can take are called, by name. */
-  outputs: Forms;
+  outputs: PluralForms;
 }
 
 /** The file is saved. */
@@ -845,7 +845,7 @@ export interface HandedOut {
   name: string;
   mime: string;
   /** Texts of the tables that it names. */
-  files?: Forms;
+  files?: PluralForms;
 }
 
 /** All answers to a question have come, those too that take longer. */
@@ -886,7 +886,7 @@ export interface FileRequest {
   /** It is what the file held that the server was started with. */
   file?: true;
   /** Texts of its tables. */
-  files?: Forms;
+  files?: PluralForms;
 }
 
 /** A number is set to the text that was typed. */
@@ -967,7 +967,7 @@ export interface EntryRequest {
   values: Record<string, Plain> | null;
   name?: string;
   /** Texts of CSV files that it names. */
-  files?: Forms;
+  files?: PluralForms;
 }
 
 /** Outputs whose samples are wanted. */
@@ -979,7 +979,7 @@ export interface OutputsRequest {
 /** A file of the machine. */
 export interface DownloadRequest {
   type: "download";
-  kind: FileKind;
+  kind: DownloadKind;
   language?: string;
   at?: number;
   format?: "svg" | "png";
@@ -1064,14 +1064,14 @@ export type Pair = [number, number];
 
 export type Arrays = Record<string, [number, number]>;
 
-export type Shape = [string, boolean, number, number, number[]];
+export type DrawnShape = [string, boolean, number, number, number[]];
 
-export type Forms = Record<string, string>;
+export type PluralForms = Record<string, string>;
 
 export type Edit = TypedEdit | NumberEdit | DragEdit | MassDragEdit;
 
-export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played" | "interactive";
+export type DownloadKind = "model" | "csv" | "report" | "drawing" | "film" | "played" | "interactive";
 
 export type Sent = Hello | Spoken | Pictured | Gallery | StateMessage | ResponseMessage | GhostMessage | ToolMessage | StudyMessage | Stores | VariantsMessage | Strokes | Planted | Side | Balanced | RunMessage | Refused | Tables | Saved | Busy | HandedOut | Answered;
 
-export type Asked = ReadyRequest | LanguageRequest | ExampleRequest | NewRequest | FileRequest | EditRequest | MakeRequest | PlainRequest | BalanceRequest | RunRequest | CompareRequest | EntryRequest | OutputsRequest | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest | VariantRequest | AgainstRequest | RecordRequest | StudyRequest | DesignRequest | CancelRequest;
+export type PageRequest = ReadyRequest | LanguageRequest | ExampleRequest | NewRequest | FileRequest | EditRequest | MakeRequest | PlainRequest | BalanceRequest | RunRequest | CompareRequest | EntryRequest | OutputsRequest | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest | VariantRequest | AgainstRequest | RecordRequest | StudyRequest | DesignRequest | CancelRequest;

@@ -1,6 +1,6 @@
 /** A wire without a server: it answers from what a page was told, which the file holds. */
 
-import type { Asked, Heard, StateMessage, Told, Wire } from "./protocol";
+import type { PageRequest, Heard, StateMessage, Told, Wire } from "./protocol";
 import { say } from "./words";
 
 type Reply = [content: Told, bytes: string];
@@ -20,7 +20,7 @@ export class Played implements Wire {
   }
 
   send(content: object): void {
-    const asked = content as Asked & { seq?: number };
+    const asked = content as PageRequest & { seq?: number };
     queueMicrotask(() => this.answer(asked, asked.seq ?? 0));
   }
 
@@ -32,13 +32,13 @@ export class Played implements Wire {
     this.listeners.delete(heard);
   }
 
-  private answer(asked: Asked, seq: number): void {
+  private answer(asked: PageRequest, seq: number): void {
     if (asked.type === "outputs") this.wanted = asked.names;
     this.reply(asked, seq);
     this.say({ type: "told", seq }, []);
   }
 
-  private reply(asked: Asked, seq: number): void {
+  private reply(asked: PageRequest, seq: number): void {
     if (asked.type === "speak") this.tell(["spoken"], seq);
     else if (asked.type === "outputs") this.tell(["state"], seq);
     else if (asked.type === "ready")

@@ -2,7 +2,7 @@
 
 import { h, put, s, set, show } from "./dom";
 import { plain, round, unbroken } from "./format";
-import { type ArrowOf, type Asked, Numbers, type Pair, type ResponseMessage, type Scene, type State } from "./protocol";
+import { type ArrowOf, type PageRequest, Numbers, type Pair, type ResponseMessage, type Scene, type State } from "./protocol";
 import { curve, type Overlay, Piece } from "./signs";
 import type { Stage } from "./stage";
 import { Support } from "./support";
@@ -177,7 +177,7 @@ export class Seeing {
 
   constructor(
     private readonly stage: Stage,
-    private readonly ask: (asked: Asked) => void,
+    private readonly ask: (asked: PageRequest) => void,
     private readonly changed: () => void,
   ) {
     this.variants = new Variants(ask);

@@ -4,7 +4,7 @@
  */
 
 import { s, set } from "./dom";
-import type { Drawable, Pair, Rows, Scene, Shape, Sign, State } from "./protocol";
+import type { Drawable, Pair, Rows, Scene, DrawnShape, Sign, State } from "./protocol";
 import type { View } from "./view";
 
 /** A layer of its own on the drawing. */
@@ -64,8 +64,8 @@ export class Piece {
     const number = scene.bodies.findIndex(({ name }) => name === sign.link);
     const kind = sign.link ? ` body tint-${number % TINTS}` : "";
     this.parts = runs(sign.shapes).map(([first]) => {
-      const [role] = first as Shape;
-      const element = isRound(first as Shape) ? s("circle") : s("path");
+      const [role] = first as DrawnShape;
+      const element = isRound(first as DrawnShape) ? s("circle") : s("path");
       element.style.cssText = scene.looks[role] ?? "";
       return element;
     });
@@ -88,8 +88,8 @@ export class Piece {
     this.sign = sign;
     runs(sign.shapes).forEach((run, i) => {
       const element = this.parts[i] as SVGElement;
-      const [, , radius, grown, corners] = run[0] as Shape;
-      if (!isRound(run[0] as Shape)) return set(element, { d: run.map(shapePath(scale)).join("") });
+      const [, , radius, grown, corners] = run[0] as DrawnShape;
+      if (!isRound(run[0] as DrawnShape)) return set(element, { d: run.map(shapePath(scale)).join("") });
       const [cx, cy] = corner(corners, 0, scale);
       const r = (radius * scale + grown).toFixed(2);
       set(element, { cx: cx.toFixed(2), cy: cy.toFixed(2), r });
@@ -144,14 +144,14 @@ export function build(scene: Scene): string {
     link,
     part,
     hold && [hold.point, hold.link, hold.guide, hold.to, hold.mount],
-    runs(shapes).map(([first]) => [first?.[0], isRound(first as Shape)]),
+    runs(shapes).map(([first]) => [first?.[0], isRound(first as DrawnShape)]),
   ]);
   return JSON.stringify(drawn);
 }
 
 /** Neighbours that are drawn alike: lines of a role together, circles each by itself. */
-export function runs(shapes: Shape[]): Shape[][] {
-  const found: Shape[][] = [];
+export function runs(shapes: DrawnShape[]): DrawnShape[][] {
+  const found: DrawnShape[][] = [];
   for (const shape of shapes) {
     const last = found[found.length - 1];
     const alike = last && last[0]?.[0] === shape[0] && !isRound(shape);
@@ -162,12 +162,12 @@ export function runs(shapes: Shape[]): Shape[][] {
 }
 
 /** Whether a shape is a circle, and no outline. */
-function isRound([, , radius, grown]: Shape): boolean {
+function isRound([, , radius, grown]: DrawnShape): boolean {
   return radius + grown > 0;
 }
 
 /** The outline of a shape with so many pixels a metre. */
-export function shapePath(scale: number): (shape: Shape) => string {
+export function shapePath(scale: number): (shape: DrawnShape) => string {
   return ([, closed, , , corners]) => {
     let d = "";
     for (let i = 0; i < corners.length; i += 4) {

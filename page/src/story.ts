@@ -1,6 +1,6 @@
 /** What was done to a machine, kept in the browser: a reload, or another server, does it again. */
 
-import type { Asked, State } from "./protocol";
+import type { PageRequest, State } from "./protocol";
 
 /** Most signs that are kept of one story, and most stories. */
 const LONGEST = 4_000_000;
@@ -11,7 +11,7 @@ const PREFIX = "equipoise story ";
 const TAB = "equipoise tab";
 
 /** What was asked, and what followed it that was no step of its own. */
-type Step = Asked[];
+type Step = PageRequest[];
 
 export interface Told {
   /** Sign of the file that it began with; empty where the page has opened something. */
@@ -26,9 +26,9 @@ export interface Told {
   past: Step[];
   future: Step[];
   /** What was measured, which no step takes back. */
-  record?: Asked | undefined;
+  record?: PageRequest | undefined;
   /** What waits for a server that does not answer; there while none does. */
-  lost?: Asked[];
+  lost?: PageRequest[];
 }
 
 /** Where stories outlive the page; a widget in a notebook has none. */
@@ -60,7 +60,7 @@ export class Story {
   constructor(private readonly shelf: Shelf | null) {}
 
   /** What to ask so that a server which has `base` open comes to where this tab was. */
-  begin(base: string): Asked[] {
+  begin(base: string): PageRequest[] {
     const kept = this.shelf?.read(this.shelf.tab) ?? null;
     this.told = kept && fits(kept, base) ? kept : empty(base);
     return asked(this.told, base);
@@ -73,7 +73,7 @@ export class Story {
   }
 
   /** The same of a tab that is closed, whose story goes on in this one. */
-  resume(told: Told, base: string): Asked[] {
+  resume(told: Told, base: string): PageRequest[] {
     this.told = told;
     this.write();
     return asked(told, base);
@@ -91,17 +91,17 @@ export class Story {
   }
 
   /** Everything, to be asked of a server that knows nothing but what it was started with. */
-  all(base: string): Asked[] {
+  all(base: string): PageRequest[] {
     return asked(this.told, base);
   }
 
   /** What waits for a server. */
-  get waiting(): Asked[] {
+  get waiting(): PageRequest[] {
     return this.told.lost ?? [];
   }
 
   /** Nothing waits any more where it is null. */
-  waits(lost: Asked[] | null): void {
+  waits(lost: PageRequest[] | null): void {
     if (lost) this.told.lost = lost;
     else if (this.told.lost) delete this.told.lost;
     else return;
@@ -109,7 +109,7 @@ export class Story {
   }
 
   /** Whether an answer tells of a step more. */
-  private deeper(question: Asked, { steps: [past, future] }: Shown): boolean {
+  private deeper(question: PageRequest, { steps: [past, future] }: Shown): boolean {
     if (past !== this.depth || past < DEEPEST) return past > this.depth;
     return future === 0 && STEPS.has(question.type);
   }
@@ -120,7 +120,7 @@ export class Story {
   }
 
   /** A question was answered by a state. */
-  remember(question: Asked, state: Shown): void {
+  remember(question: PageRequest, state: Shown): void {
     const { told } = this;
     if (OPENS.has(question.type)) this.told = { ...empty(told.base), start: [question] };
     else if (question.type === "record") {
@@ -164,11 +164,11 @@ function fits(told: Told, base: string): boolean {
   return told.base === base || (told.saved === base && told.text !== undefined);
 }
 
-function asked(told: Told, base: string): Asked[] {
+function asked(told: Told, base: string): PageRequest[] {
   const { start, past, future, text, name, record } = told;
   const again = told.base !== base && text !== undefined && !start.some((a) => OPENS.has(a.type));
-  const open: Asked[] = again ? [{ type: "open", name, text, file: true }] : [];
-  const back = future.map((): Asked => ({ type: "undo" }));
+  const open: PageRequest[] = again ? [{ type: "open", name, text, file: true }] : [];
+  const back = future.map((): PageRequest => ({ type: "undo" }));
   const measured = record ? [record] : [];
   return [...open, ...start, ...past.flat(), ...future.flat(), ...back, ...measured];
 }
@@ -182,7 +182,7 @@ function move(from: Step[], to: Step[], end: "start" | "end"): void {
 }
 
 /** Of what is no step the last of its kind is enough. */
-function follow(step: Step, question: Asked): void {
+function follow(step: Step, question: PageRequest): void {
   const last = step.findIndex(({ type }) => type === question.type);
   if (last >= 0 && SETTINGS.has(question.type)) step.splice(last, 1);
   step.push(question);

@@ -4,7 +4,7 @@ import { Parallel, Scatter, type Told } from "./cloud";
 import { Designs } from "./designs";
 import { h, write } from "./dom";
 import { shown, unbroken } from "./format";
-import type { Asked, Numbers, Pair, StudyMessage } from "./protocol";
+import type { PageRequest, Numbers, Pair, StudyMessage } from "./protocol";
 import { capital } from "./readings";
 import type { Theme } from "./theme";
 import { say } from "./words";
@@ -31,7 +31,7 @@ export class StudyView {
   private frame = 0;
 
   constructor(
-    private readonly ask: (asked: Asked) => void,
+    private readonly ask: (asked: PageRequest) => void,
     theme: Theme,
   ) {
     const told: Told = {

@@ -6,7 +6,7 @@ import { h, s, set, write } from "./dom";
 import { measure, unbroken } from "./format";
 import { Heading } from "./heading";
 import { Inspector, Locks } from "./inspector";
-import type { Numbers, Shape, State, ToolMessage, ToolScene } from "./protocol";
+import type { Numbers, DrawnShape, State, ToolMessage, ToolScene } from "./protocol";
 import { comparison } from "./readings";
 import { at as spot, runs, shapePath } from "./signs";
 import type { Theme } from "./theme";
@@ -50,10 +50,10 @@ class Drawing {
     this.element.append(...elements(below), ...this.tubes, ...elements(above));
   }
 
-  private drawn(shapes: Shape[]): SVGGElement {
+  private drawn(shapes: DrawnShape[]): SVGGElement {
     const { scale } = this.view;
     const elements = runs(shapes).map((run) => {
-      const [role, , radius, grown, corners] = run[0] as Shape;
+      const [role, , radius, grown, corners] = run[0] as DrawnShape;
       const round = radius + grown > 0;
       const element = round ? s("circle") : s("path");
       element.style.cssText = this.scene.looks[role] ?? "";

@@ -2,7 +2,7 @@
 
 import type { Computation } from "./conversation";
 import { h, icon, put, set } from "./dom";
-import type { Example, FileKind, State } from "./protocol";
+import type { Example, DownloadKind, State } from "./protocol";
 import { language as spoken, languages, say } from "./words";
 
 const ICONS = {
@@ -19,7 +19,7 @@ const ICONS = {
 /** What is told of whatever is open. */
 export type Opened = Pick<State, "name" | "undo" | "redo" | "lacking" | "file"> & {
   /** Downloads that there are; all where it is left out. */
-  downloads?: FileKind[];
+  downloads?: DownloadKind[];
 };
 
 interface Commands {
@@ -34,7 +34,7 @@ interface Commands {
   balance(): void;
   /** Let the machine run under its motor, weight, springs and loads. */
   run(): void;
-  download(kind: FileKind, language?: string, format?: "svg" | "png"): void;
+  download(kind: DownloadKind, language?: string, format?: "svg" | "png"): void;
   help(): void;
   /** Speak a language from now on. */
   speak(language: string): void;
@@ -118,7 +118,7 @@ export class Toolbar {
     const { downloads } = state;
     this.menu.inert = downloads?.length === 0;
     for (const item of this.menu.querySelectorAll<HTMLButtonElement>("[data-kind]"))
-      item.hidden = !!downloads && !downloads.includes(item.dataset.kind as FileKind);
+      item.hidden = !!downloads && !downloads.includes(item.dataset.kind as DownloadKind);
     this.save.hidden = !state.file;
     able(this.save, say("Save"), state.file?.saved === false ? state.file.name : null, say("the file holds what is shown"));
   }
@@ -168,7 +168,7 @@ function downloads(commands: Commands): HTMLDetailsElement {
     menu.open = false;
     then();
   };
-  const item = (text: string, kind: FileKind, format?: "svg" | "png") =>
+  const item = (text: string, kind: DownloadKind, format?: "svg" | "png") =>
     h(
       "button",
       {

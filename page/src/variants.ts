@@ -2,7 +2,7 @@
 
 import { h, icon } from "./dom";
 import { unbroken } from "./format";
-import type { Asked, VariantsMessage } from "./protocol";
+import type { PageRequest, VariantsMessage } from "./protocol";
 import { capital } from "./readings";
 import { say } from "./words";
 
@@ -19,7 +19,7 @@ export class Variants {
   private readonly select: HTMLSelectElement;
   private shape = "";
 
-  constructor(private readonly ask: (asked: Asked) => void) {
+  constructor(private readonly ask: (asked: PageRequest) => void) {
     this.select = h("select", {
       "aria-label": say("Compare with"),
       onchange: () => ask({ type: "variant", do: "against", to: this.select.value }),

@@ -2,7 +2,7 @@
 
 import type { Conversation } from "./conversation";
 import { h } from "./dom";
-import type { Asked, Numbers, StudyMessage, ToolMessage } from "./protocol";
+import type { PageRequest, Numbers, StudyMessage, ToolMessage } from "./protocol";
 import { StudyView } from "./study";
 import type { Theme } from "./theme";
 import { ToolView } from "./tool";
@@ -18,7 +18,7 @@ export class Views {
   private store: string | null = null;
   private at: HTMLElement | null | undefined;
 
-  constructor(talk: Conversation, theme: Theme, ask: (asked: Asked) => void) {
+  constructor(talk: Conversation, theme: Theme, ask: (asked: PageRequest) => void) {
     this.tool = new ToolView(talk, theme);
     this.study = new StudyView(ask, theme);
     this.back = h(

@@ -5,7 +5,7 @@
 
 import { decimals, point } from "./format";
 import type { Particles } from "./messages";
-import type { Forms, PartTool, Spoken, Told, Wire, Wording } from "./protocol";
+import type { PluralForms, PartTool, Spoken, Told, Wire, Wording } from "./protocol";
 
 /** The function that gives every particle of a text one form. */
 export function particles({ forms, endings, closing, reach }: Particles): (text: string) => string {
@@ -47,7 +47,7 @@ export function say(text: string, values: Record<string, string | number> = {}):
 }
 
 /** The form of a text that has some by a count. */
-function formOf(forms: Forms | undefined, values: Record<string, string | number>): string | undefined {
+function formOf(forms: PluralForms | undefined, values: Record<string, string | number>): string | undefined {
   if (!forms) return undefined;
   const count = Number(values[forms.by ?? ""]);
   const category = Number.isNaN(count) ? "other" : new Intl.PluralRules(told.language).select(count);

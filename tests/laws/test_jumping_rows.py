@@ -26,9 +26,9 @@ from equipoise.mechanism.parts.balance import (
     AddedMass,
     Balance,
     Limit,
-    Measure,
     Objective,
     Phases,
+    Statistic,
     Weight,
 )
 from equipoise.mechanism.parts.loads import Load, LoadTable
@@ -43,7 +43,7 @@ def four_rows(machine: Machine) -> Machine:
 
 @pytest.mark.exhaustive(but=["peak_to_peak"])
 @pytest.mark.parametrize("measure", ["peak", "peak_to_peak"])
-def test_extremes_of_rows_at_any_phases(measure: Measure) -> None:
+def test_extremes_of_rows_at_any_phases(measure: Statistic) -> None:
     """Against sums at each row's own crank angles, so dense that jumps are met to 0.01 deg."""
     machine = four_rows(eq.load("transplanter"))
     term = PhaseObjective(
@@ -96,7 +96,7 @@ def test_rows_of_tables_between_crank_angles(seed: int) -> None:
     before, after = torque[:-1], torque[1:]
     square = np.sum(np.diff(theta) * (before**2 + before * after + after**2) / 3) / (2 * pi)
     mean = np.sum(np.diff(theta) * (before + after) / 2) / (2 * pi)
-    wanted: dict[Measure, float] = {
+    wanted: dict[Statistic, float] = {
         "peak": np.max(np.abs(torque)),
         "peak_to_peak": np.ptp(torque),
         "rms": np.sqrt(square),
@@ -140,7 +140,7 @@ def test_phases_for_the_least_peak() -> None:
 # Phases that are no optimum fail in `test_two_rows_that_jump_end_in_a_proof` too.
 @EXHAUSTIVE
 @pytest.mark.parametrize("measure", few(["peak", "peak_to_peak"], {"peak_to_peak"}))
-def test_no_phases_of_a_fine_grid_are_better_than_those_that_are_chosen(measure: Measure) -> None:
+def test_no_phases_of_a_fine_grid_are_better_than_those_that_are_chosen(measure: Statistic) -> None:
     """Of three shapers, whose cutting force begins and ends within the turn: against sums at 7,200
     crank angles of all phases in steps of 3 deg, between which nothing is polished.
     """
@@ -169,7 +169,7 @@ def test_no_phases_of_a_fine_grid_are_better_than_those_that_are_chosen(measure:
 
 
 @pytest.mark.parametrize("measure", few(["peak", "peak_to_peak"], {"peak"}))
-def test_no_phases_in_a_box_are_below_its_bound(measure: Measure) -> None:
+def test_no_phases_in_a_box_are_below_its_bound(measure: Statistic) -> None:
     """Against values at phases by chance in it; as the box shrinks, bounds come to the values."""
     rows = PhasedRows(four_rows(eq.load("transplanter"))).signals(
         Objective("drive_torque", measure)
@@ -254,7 +254,7 @@ TORQUE, FORCE = Objective("drive_torque", "peak"), Objective("frame_force", "pea
     ),
 )
 def test_no_phases_and_numbers_in_a_box_are_below_its_readings(
-    output: str, measure: Measure
+    output: str, measure: Statistic
 ) -> None:
     """Against values at phases and numbers by chance; as boxes shrink, readings come to them."""
     machine = four_rows(eq.load("transplanter"))

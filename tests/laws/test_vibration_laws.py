@@ -19,7 +19,7 @@ from equipoise.signals import Periodic
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import respond
 from equipoise.vibration.linear import Linear
-from equipoise.vibration.response import MODELS, Model, Response
+from equipoise.vibration.response import MODELS, ExcitationModel, Response
 from equipoise.vibration.simplified import linear_of
 from laws.transforms import mirrored_in_x, shifted
 from support.chosen import EXHAUSTIVE, few, few_together
@@ -251,14 +251,14 @@ def same_response(found: Response, wanted: Response, tolerance: float = 1e-9) ->
 
 @pytest.mark.exhaustive(but=["coupled"])
 @every_model
-def test_a_phase_of_a_full_turn_changes_nothing(model: Model) -> None:
+def test_a_phase_of_a_full_turn_changes_nothing(model: ExcitationModel) -> None:
     machine = springs().with_rows([Row(), Row(phase=1.0)])
     around = springs().with_rows([Row(phase=2 * pi), Row(phase=1.0 - 4 * pi)])
     same_response(respond(around, model=model), respond(machine, model=model))
 
 
 @every_model
-def test_a_phase_that_all_rows_share_is_only_told_from_elsewhere(model: Model) -> None:
+def test_a_phase_that_all_rows_share_is_only_told_from_elsewhere(model: ExcitationModel) -> None:
     machine = springs().with_rows([Row(), Row(phase=1.0)])
     ahead = springs().with_rows([Row(phase=0.8), Row(phase=1.8)])
     wanted, found = (respond(m, model=model).gauges["seat"].displacement for m in (machine, ahead))
@@ -267,7 +267,7 @@ def test_a_phase_that_all_rows_share_is_only_told_from_elsewhere(model: Model) -
 
 
 @every_model
-def test_order_of_the_rows_changes_nothing(model: Model) -> None:
+def test_order_of_the_rows_changes_nothing(model: ExcitationModel) -> None:
     rows = [Row(), Row(phase=1.0, offset=(0.2, 0.0)), Row(phase=-2.0, lateral=1.0)]
     there, back = (springs().with_rows(order) for order in (rows, rows[::-1]))
     same_response(respond(there, model=model), respond(back, model=model))
@@ -281,7 +281,9 @@ def odd_and_even(signal: Periodic) -> tuple[float, float]:
 
 @pytest.mark.parametrize("model", ["linear", "torque", "moment", "coupled"])
 @pytest.mark.parametrize("machine", [rig(), springs()], ids=["pivot", "free"])
-def test_a_row_in_opposite_phase_takes_odd_orders_away(machine: eq.Machine, model: Model) -> None:
+def test_a_row_in_opposite_phase_takes_odd_orders_away(
+    machine: eq.Machine, model: ExcitationModel
+) -> None:
     """The coefficients of (54) then have even orders only, too."""
     two = machine.with_rows([Row(), Row(phase=pi)])
     for gauge in respond(two, model=model).gauges.values():
@@ -392,7 +394,7 @@ def image(signal: Periodic, rotation: bool) -> Array:
     ("kind", "seed"),
     few_together([("crank_rocker", 3), ("watt", 5), ("yamashita-1", 0)], {("watt", 5)}),
 )
-def test_mirror_image(kind: str, seed: int, pivoted: bool, model: Model) -> None:
+def test_mirror_image(kind: str, seed: int, pivoted: bool, model: ExcitationModel) -> None:
     machine = supported(random_machine(kind, seed), seed, pivoted, ROWS[1])
     found, wanted = respond(mirrored(machine), model=model), respond(machine, model=model)
     assert found.speed == -wanted.speed
@@ -438,7 +440,7 @@ def moved(machine: eq.Machine, shift: complex) -> eq.Machine:
 @pytest.mark.exhaustive(but=["free-coupled", "pivot-exact", "free-moment", "pivot-linear"])
 @every_model
 @pytest.mark.parametrize("machine", [rig(), springs()], ids=["pivot", "free"])
-def test_moving_the_origin_of_the_frame(machine: eq.Machine, model: Model) -> None:
+def test_moving_the_origin_of_the_frame(machine: eq.Machine, model: ExcitationModel) -> None:
     machine = machine.with_rows(ROWS[1])
     there = moved(machine, 3.0 - 2.0j)
     same_response(respond(there, model=model), respond(machine, model=model))
@@ -450,7 +452,7 @@ def test_moving_the_origin_in_space() -> None:
 
 
 @every_model
-def test_a_support_in_space_that_moves_in_the_plane_only(model: Model) -> None:
+def test_a_support_in_space_that_moves_in_the_plane_only(model: ExcitationModel) -> None:
     """Three moments of inertia, and mounts out of the plane, change nothing then."""
     flat = springs().with_rows(ROWS[2])
     assert flat.support is not None
@@ -466,7 +468,7 @@ def test_a_support_in_space_that_moves_in_the_plane_only(model: Model) -> None:
 @pytest.mark.exhaustive
 @every_model
 @pytest.mark.parametrize("machine", [rig(), springs()], ids=["pivot", "free"])
-def test_everything_faster(machine: eq.Machine, model: Model) -> None:
+def test_everything_faster(machine: eq.Machine, model: ExcitationModel) -> None:
     """Twice the speed, 4 times stiffness and gravity, twice the damping: the same motion."""
     assert machine.support is not None
     mounts = {
@@ -496,7 +498,7 @@ def test_everything_faster(machine: eq.Machine, model: Model) -> None:
 
 
 @pytest.mark.parametrize("model", ["linear", "torque", "moment"])
-def test_mounts_carry_what_momentum_asks_for(model: Model) -> None:
+def test_mounts_carry_what_momentum_asks_for(model: ExcitationModel) -> None:
     """In space: force of the mounts, of the linkages and of all weights is mass times acceleration.
 
     Rotation moves the common centre of mass, wherever it is.
@@ -518,7 +520,7 @@ def test_mounts_carry_what_momentum_asks_for(model: Model) -> None:
 
 
 @pytest.mark.parametrize("model", ["linear", "torque", "moment"])
-def test_forces_of_the_rows_add_up(model: Model) -> None:
+def test_forces_of_the_rows_add_up(model: ExcitationModel) -> None:
     """What two rows do to the support is the sum of what each does alone."""
     machine = springs()
     rows = [Row(), Row(phase=1.3, offset=(0.2, 0.1))]
@@ -530,7 +532,7 @@ def test_forces_of_the_rows_add_up(model: Model) -> None:
 
 
 @pytest.mark.parametrize("model", ["linear", "torque", "moment", "coupled", "exact"])
-def test_twice_the_mass_of_everything(model: Model) -> None:
+def test_twice_the_mass_of_everything(model: ExcitationModel) -> None:
     """Masses, stiffness and damping all twice: the same motion with forces twice as large."""
     machine = springs()
     support = machine.support

@@ -38,7 +38,7 @@ from equipoise.mechanism.parts.support import Gauge, Mount, Row
 from equipoise.signals import Periodic
 from equipoise.vibration.forced import respond, sweep_speed
 from equipoise.vibration.linear import resonances
-from equipoise.vibration.response import Model
+from equipoise.vibration.response import ExcitationModel
 from equipoise.vibration.simplified import linear_of
 from literature.yamashita import (
     TYPE_1,
@@ -128,7 +128,7 @@ def balanced() -> eq.Machine:
     )
 
 
-def swing(machine: eq.Machine, model: Model = "linear", speed: float = SPEED) -> float:
+def swing(machine: eq.Machine, model: ExcitationModel = "linear", speed: float = SPEED) -> float:
     """Peak to peak at the gauge, mm."""
     return 1e3 * float(respond(machine, speed, model).gauges["gauge"].displacement.peak_to_peak)
 

@@ -23,7 +23,7 @@ import equipoise as eq
 from equipoise.mechanism.parts.motors import Motor
 from equipoise.vibration.exact import ExactSolution, solve_exact
 from equipoise.vibration.forced import respond
-from equipoise.vibration.response import Model
+from equipoise.vibration.response import ExcitationModel
 from support import rig_reference
 from support.chosen import EXHAUSTIVE, few
 from support.conformance import compared, equation
@@ -234,7 +234,7 @@ def test_multipliers(name: str) -> None:
 
 # -- steps of the paper ----------------------------------------------------------------------------
 
-STEPS: dict[int, Model] = {59: "linear", 57: "torque", 54: "coupled"}
+STEPS: dict[int, ExcitationModel] = {59: "linear", 57: "torque", 54: "coupled"}
 
 
 @pytest.mark.exhaustive(but=["59-one row", "57-one row"])
@@ -280,7 +280,7 @@ def test_steps_of_the_paper(rig: Rig, speed: float, step: int) -> None:
         (two_rows(), "exact", 0.7280282),
     ],
 )
-def test_figures_of_the_rig(rig: Rig, model: Model, millimetres: float) -> None:
+def test_figures_of_the_rig(rig: Rig, model: ExcitationModel, millimetres: float) -> None:
     """Peak to peak at the gauge at 193 rpm, as the reference has it to all these digits."""
     found = respond(in_package(rig), 193 * RPM, model).gauges["gauge"].displacement
     assert 1e3 * float(found.peak_to_peak) == pytest.approx(millimetres, abs=1e-7)

@@ -23,7 +23,7 @@ from equipoise.design.evaluator import ChunkTask
 from equipoise.design.variables import Choices, Normal, Range, Variable
 from equipoise.errors import UsageError
 from equipoise.studies import run
-from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.outcomes import DesignBlock, Outcome
 from equipoise.studies.store import Store
 from equipoise.studies.study import Output, Sampling, Study, from_plain, samples
 
@@ -108,7 +108,7 @@ def filled(path: Path, study: Study, chunks: Iterable[int] = (0, 1, 2)) -> Store
     store = run.create_store(path, study, study.chunk, "numba")
     for designs in map(store.designs, chunks):
         values = samples(study, designs.start, len(designs))
-        store.write(designs, Block(values, Formulas()(values)))
+        store.write(designs, DesignBlock(values, Formulas()(values)))
     return store
 
 
@@ -144,7 +144,7 @@ class Orders:
         return {int(file.name.split("-")[1]) for file in self.folder.glob("*-*")}
 
 
-def obey(packed: bytes, designs: range) -> Block:
+def obey(packed: bytes, designs: range) -> DesignBlock:
     """Compute designs as ordered."""
     orders: Orders = pickle.loads(packed)
     before = len(list(orders.folder.glob(f"{designs.start}-*")))
@@ -153,10 +153,10 @@ def obey(packed: bytes, designs: range) -> Block:
         os.kill(os.getpid(), signal.SIGKILL)
     time.sleep(orders.pause)
     values = samples(orders.study, designs.start, len(designs))
-    return Block(values, Formulas()(values))
+    return DesignBlock(values, Formulas()(values))
 
 
-def refuse(packed: bytes, designs: range) -> Block:
+def refuse(packed: bytes, designs: range) -> DesignBlock:
     """As a study that cannot be computed."""
     raise UsageError(f"no study at {designs.start}")
 

@@ -146,73 +146,13 @@ def aliases_of(file: Path) -> Iterator[str]:
                 yield target.id
 
 
-SHARED_ALIASES = frozenset(
-    [
-        "Answer",
-        "Answers",
-        "Array",
-        "Asked",
-        "Block",
-        "Body",
-        "Change",
-        "Choice",
-        "Command",
-        "Conditions",
-        "Data",
-        "Demand",
-        "Direction",
-        "Drawings",
-        "End",
-        "Ends",
-        "Figures",
-        "FileKind",
-        "Folder",
-        "Forms",
-        "Kind",
-        "Law",
-        "Levels",
-        "Line",
-        "Links",
-        "Loop",
-        "Many",
-        "Measure",
-        "Model",
-        "Names",
-        "Number",
-        "OnProgress",
-        "Operation",
-        "Pair",
-        "Picture",
-        "Pictures",
-        "Piece",
-        "Place",
-        "Point",
-        "Progress",
-        "Read",
-        "Row",
-        "Shape",
-        "Shapes",
-        "Signal",
-        "Signals",
-        "Spread",
-        "Step",
-        "Turning",
-        "Units",
-        "Values",
-        "Vector",
-        "View",
-    ]
-)
-"""Aliases that still have the name of a class, or of an alias in another module; no further one."""
-
-
 def test_a_class_name_means_one_thing() -> None:
     """And so does that of a type that has a name of its own."""
     names = [node.name for file in FILES for node in nodes(file) if isinstance(node, ast.ClassDef)]
     assert {name for name, count in Counter(names).items() if count > 1} == set()
     names += [name for file in FILES for name in {*aliases_of(file)}]
     shared = {name for name, count in Counter(names).items() if count > 1}
-    assert shared - SHARED_ALIASES == set()
+    assert shared == set()
 
 
 VAGUE = frozenset(

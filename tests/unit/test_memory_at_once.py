@@ -22,7 +22,7 @@ from equipoise.cli.worker import ToolCall, reply_to
 from equipoise.design.variables import Range, Variable
 from equipoise.limits import memory_limit, out_of_memory
 from equipoise.mechanism.assembly.redundant_reactions import min_norm
-from equipoise.mechanism.parts.balance import Measure, Objective
+from equipoise.mechanism.parts.balance import Objective, Statistic
 from equipoise.schema.template import Template
 from equipoise.signals import Array, Periodic
 from equipoise.studies.commands import analyzed
@@ -53,7 +53,7 @@ def peak_of(call: Callable[[], Any]) -> float:
 
 
 def term(
-    measure: Measure, rows: int = 2, orders: int = ORDERS, turns: int = TURNS
+    measure: Statistic, rows: int = 2, orders: int = ORDERS, turns: int = TURNS
 ) -> PhaseObjective:
     return PhaseObjective(
         Objective("shaking_moment", measure), RowSignals(amplitudes(1, rows, 1, orders), turns)
@@ -68,14 +68,14 @@ def test_values_of_a_signal() -> None:
 
 @pytest.mark.exhaustive(but=["area", "rms"])
 @pytest.mark.parametrize("measure", ["peak", "rms", "area"])
-def test_costs_of_many_phases(measure: Measure) -> None:
+def test_costs_of_many_phases(measure: Statistic) -> None:
     phases = np.random.default_rng(4).uniform(0, 6, (15, 2))
     assert peak_of(lambda: term(measure).values(phases)) < 700
 
 
 @pytest.mark.exhaustive(but=["peak"])
 @pytest.mark.parametrize("measure", ["peak", "area"])
-def test_readings_of_many_boxes(measure: Measure) -> None:
+def test_readings_of_many_boxes(measure: Statistic) -> None:
     some = term(measure)
     total = some.signals.total(np.random.default_rng(5).uniform(0, 6, (60, 2)))
     assert peak_of(lambda: largest_reading(some, total)) < 700
@@ -89,7 +89,7 @@ def test_a_grid_whose_table_is_too_large_is_none() -> None:
 
 @pytest.mark.parametrize("measure", ["peak", "peak_to_peak", "area", "rms"])
 def test_what_is_computed_in_parts_is_that_of_the_whole(
-    measure: Measure, monkeypatch: pytest.MonkeyPatch
+    measure: Statistic, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     some = term(measure, orders=30, turns=2)
     phases = np.random.default_rng(6).uniform(0, 6, (7, 2))

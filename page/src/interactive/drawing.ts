@@ -1,6 +1,6 @@
 /** The drawing of a machine with other numbers: its signs tied to points, and where these are. */
 
-import type { Drawable, Pair, Rows, Scene, Shape, Sign, Status } from "../protocol";
+import type { Drawable, Pair, Rows, Scene, DrawnShape, Sign, Status } from "../protocol";
 import type { Corner, Tie } from "./data";
 import { guideWay, massesMovable, movable } from "./edits";
 import { dot, type Machine, minus, mirrored, plus, ratio, scaled, size, type Solution, times } from "./machine";
@@ -90,7 +90,7 @@ export class Drawing {
     return { ...sign, shapes };
   }
 
-  private shape(shape: Shape, tie: Tie, body: string, solution: Solution): Shape {
+  private shape(shape: DrawnShape, tie: Tie, body: string, solution: Solution): DrawnShape {
     if (tie.made_of && !this.kept(tie.made_of, solution)) return nothing(shape);
     if (tie.hull) return this.plate(shape, body, solution);
     if (tie.strand) return this.strand(shape, tie.strand, body, solution);
@@ -151,13 +151,13 @@ export class Drawing {
   }
 
   /** A bar or plate around all points of a link. */
-  private plate([role, closed, radius, grown]: Shape, body: string, solution: Solution): Shape {
+  private plate([role, closed, radius, grown]: DrawnShape, body: string, solution: Solution): DrawnShape {
     const points = this.machine.data.links[body]?.points ?? [];
     const around = hull(points.map((name) => this.local(name, body, solution)));
     return [role, closed && around.length > 2, radius, grown, around.flatMap(([x, y]) => [x, y, 0, 0])];
   }
 
-  private turned([role, closed, radius, grown, corners]: Shape, { about, between, of }: NonNullable<Tie["turned"]>, body: string, solution: Solution): Shape {
+  private turned([role, closed, radius, grown, corners]: DrawnShape, { about, between, of }: NonNullable<Tie["turned"]>, body: string, solution: Solution): DrawnShape {
     const vector = (design: Solution): Pair =>
       between && of ? minus(this.local(between[1], of, design), this.local(between[0], of, design)) : [1, 0];
     const by = ratio(vector(solution), vector(this.base));
@@ -172,7 +172,7 @@ export class Drawing {
   }
 
   /** A strand of a belt, as `mechanism/formulas/rolling.py` has it. */
-  private strand([role, closed, radius, grown]: Shape, { side, between, radii }: NonNullable<Tie["strand"]>, body: string, solution: Solution): Shape {
+  private strand([role, closed, radius, grown]: DrawnShape, { side, between, radii }: NonNullable<Tie["strand"]>, body: string, solution: Solution): DrawnShape {
     const [start, end] = between.map((pin) => this.local(pin, body, solution)) as [Pair, Pair];
     const apart = minus(end, start);
     const far = size(apart) || 1;
@@ -185,7 +185,7 @@ export class Drawing {
 }
 
 /** A shape of which nothing is seen, but that is still a circle or a line. */
-function nothing([role, , radius, grown]: Shape): Shape {
+function nothing([role, , radius, grown]: DrawnShape): DrawnShape {
   const round = radius + grown > 0;
   return [role, false, round ? 1e-12 : 0, 0, round ? [0, 0, 0, 0] : []];
 }

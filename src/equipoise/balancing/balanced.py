@@ -214,12 +214,12 @@ class Balanced(Result):
         return analyze(self.machine, acceleration=0.0)
 
     @cached_property
-    def aims(self) -> dict[Objective, comparison.Pair]:
+    def aims(self) -> dict[Objective, comparison.BeforeAndAfter]:
         """What was made small, before and after; of an output at several speeds the loudest."""
         return comparison.merged(self.plan, self.reported)
 
     @cached_property
-    def reported(self) -> dict[str, comparison.Pair]:
+    def reported(self) -> dict[str, comparison.BeforeAndAfter]:
         """Each objective before and after by its name, as `before` and `after` have it.
 
         Those that are no such figures, such as single orders, are as the optimisation has them.

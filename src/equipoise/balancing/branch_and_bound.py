@@ -9,7 +9,7 @@ the first solution meets every square, it is the best already.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import count
@@ -26,6 +26,7 @@ from equipoise.balancing.program import (
 )
 from equipoise.dataclass import dataclass
 from equipoise.i18n import Note
+from equipoise.results.result import ProgressCallback
 from equipoise.signals import Array
 
 EXACT_SQUARE = 1e-8
@@ -40,8 +41,6 @@ TANGENT_WIDTHS = (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4)
 """Over the interval: how far a ratio may go from where the square is replaced by its tangent."""
 WIDE = 10.0
 """Half the first interval of a ratio without limits, over lengths of the machine."""
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
@@ -125,7 +124,7 @@ def minimise(
     program: Program,
     squares: Sequence[Square],
     scale: float = 1.0,
-    progress: Progress | None = None,
+    progress: ProgressCallback | None = None,
     above: float = inf,
     most: int = MOST_NODES,
 ) -> ProvedSolution:
@@ -154,7 +153,7 @@ class _Search:
         self.nodes = 0
         self.lost = inf  # the least bound of intervals that could not be looked into
 
-    def run(self, progress: Progress | None, above: float, most: int) -> ProvedSolution:
+    def run(self, progress: ProgressCallback | None, above: float, most: int) -> ProvedSolution:
         self.nodes += 1
         intervals = tuple((square.low, square.high) for square in self.squares)
         root = _Node(intervals, self._solved(self.program))  # which keeps to the intervals already

@@ -10,7 +10,7 @@ from equipoise.balancing.objectives import measured
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, ResponseError
 from equipoise.mechanism.outputs.declared import GROUPS, declared
-from equipoise.mechanism.parts.balance import GAUGES, ROWS, WITHIN, Balance, Measure, Objective
+from equipoise.mechanism.parts.balance import GAUGES, ROWS, WITHIN, Balance, Objective, Statistic
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
@@ -32,7 +32,7 @@ cancel leave as much of a figure where there is nothing."""
 IMPORTANT = tuple(dict.fromkeys(("gauges", "rows", *GROUPS)))
 """Groups of outputs in the order in which a reader asks for them."""
 
-Pair = tuple[float, float]
+BeforeAndAfter = tuple[float, float]
 """A value before and after."""
 
 
@@ -59,7 +59,9 @@ class Worse:
 
 
 def worse_of(
-    before: Mapping[str, float], after: Mapping[str, float], aims: Mapping[Objective, Pair]
+    before: Mapping[str, float],
+    after: Mapping[str, float],
+    aims: Mapping[Objective, BeforeAndAfter],
 ) -> tuple[Worse, ...]:
     """Every figure that got worse, the important ones first, and the worst first among these.
 
@@ -131,7 +133,7 @@ def kin(unit: str) -> str:
     return "N m" if unit == "J" else unit
 
 
-def merged(plan: Balance, values: Mapping[str, Pair]) -> dict[Objective, Pair]:
+def merged(plan: Balance, values: Mapping[str, BeforeAndAfter]) -> dict[Objective, BeforeAndAfter]:
     """Aims of a plan before and after; of one that is read at several speeds the loudest.
 
     values : of each objective, by its name.
@@ -140,7 +142,7 @@ def merged(plan: Balance, values: Mapping[str, Pair]) -> dict[Objective, Pair]:
     groups: dict[Objective, list[Objective]] = {}
     for objective in plan.objectives:
         groups.setdefault(replace(objective, speeds=(), weight=1.0), []).append(objective)
-    by_name: dict[Objective, Pair] = {}
+    by_name: dict[Objective, BeforeAndAfter] = {}
     for first, *others in groups.values():
         speeds = tuple(speed for item in (first, *others) for speed in item.speeds)
         pairs = [values[item.name] for item in (first, *others)]
@@ -177,7 +179,7 @@ def figures_of(analysis: Analysis) -> dict[str, float]:
     return figures | _of_rows(analysis) | _of_support(analysis.machine)
 
 
-def _measured(analysis: Analysis, output: AnalysisOutput, measure: Measure) -> float:
+def _measured(analysis: Analysis, output: AnalysisOutput, measure: Statistic) -> float:
     """A measure of an output as an analysis has it, which sees where forces jump."""
     whole = analysis.resolved
     values = output.declared.component(output.declared.vector(whole, output.item))

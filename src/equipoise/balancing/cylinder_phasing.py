@@ -28,8 +28,8 @@ from equipoise.i18n import Note
 from equipoise.mechanism.kinematics.jumps import bends_of, jumps_of
 from equipoise.mechanism.parts.balance import (
     GAUGES,
-    Measure,
     Objective,
+    Statistic,
     cost_factor,
     output_of,
     wrong_objective,
@@ -189,7 +189,7 @@ def of_each_row(effects: Effects, objective: Objective, point: LinearizationPoin
     return np.where(np.any(near, axis=1), periodic.amplitudes, 0.0)
 
 
-def by_orders(measure: Measure) -> bool:
+def by_orders(measure: Statistic) -> bool:
     """Whether a measure follows from the sizes of the orders."""
     return measure in {"rms", "ripple"}
 
@@ -207,7 +207,7 @@ class PhaseObjective:
     scale: float = 1.0
 
     @property
-    def measure(self) -> Measure:
+    def measure(self) -> Statistic:
         return self.objective.measure
 
     def values(self, phases: Array) -> Array:

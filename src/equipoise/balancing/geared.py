@@ -11,7 +11,7 @@ at once, as far down as they go.
 from __future__ import annotations
 
 from cmath import phase, rect
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, product, starmap
@@ -36,6 +36,7 @@ from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.balance import Balance, BalanceShafts, GearedWeight
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import Link, Machine, Vector
+from equipoise.results.result import ProgressCallback
 from equipoise.signals import Array
 
 GRID, COARSE, WAYS = 33, 13, 24
@@ -331,8 +332,7 @@ def with_shafts(machine: Machine, shafts: BalanceShafts) -> tuple[Machine, list[
     return machine, weights
 
 
-Progress = Callable[[int, int], None]
-Choice = tuple[Mesh, ...]
+GearChoice = tuple[Mesh, ...]
 """The gears of all shafts, in the order of the plan."""
 
 LARGE = 1e300
@@ -369,7 +369,7 @@ class WithShafts:
         gears = (*self.gears, gearing.change(mesh))
         return replace(self, base=base, weights=(*self.weights, weight), gears=gears)
 
-    def solved(self, progress: Progress | None = None, above: float = inf) -> Solution:
+    def solved(self, progress: ProgressCallback | None = None, above: float = inf) -> Solution:
         """The best numbers with these gears; less closely where they cost more than `above`."""
         problem = Problem.of(self.machine, self.plan, self.base, self.weights)
         return replace(solve_problem(problem, progress, above), meshes=self.gears)
@@ -399,7 +399,7 @@ class GearSearch(DesignProblem):
     UsageError : no gears of a shaft mesh, or leave room for its counterweight.
     """
 
-    def __init__(self, start: WithShafts, progress: Progress | None = None) -> None:
+    def __init__(self, start: WithShafts, progress: ProgressCallback | None = None) -> None:
         self.start, self.progress, self.solvers = start, progress, (GearGrid(),)
         self.gearings = [Gearing(start.base, geared) for geared in start.plan.geared]
         self.options = [gearing.meshes() for gearing in self.gearings]
@@ -408,8 +408,8 @@ class GearSearch(DesignProblem):
             for k, gearing in enumerate(self.gearings)
             for name, limits in gearing.ranges.items()
         ]
-        self.tried: list[tuple[Choice, GearTrial]] = []
-        self.costs: dict[Choice, float] = {}
+        self.tried: list[tuple[GearChoice, GearTrial]] = []
+        self.costs: dict[GearChoice, float] = {}
         self.first_error: UsageError | None = None
         self.most = 0
 
@@ -448,13 +448,13 @@ class GearSearch(DesignProblem):
         tried = sum(all(map(set.__contains__, options, choice)) for choice in self.costs)
         return replace(self._lightest(), gears_left=tried < everything)
 
-    def _with(self, choice: Choice) -> WithShafts:
+    def _with(self, choice: GearChoice) -> WithShafts:
         with_shafts = self.start
         for gearing, mesh in zip(self.gearings, choice, strict=True):
             with_shafts = with_shafts.with_gears(gearing, mesh)
         return with_shafts
 
-    def with_numbers(self, start: Choice, numbers: Array) -> Choice | None:
+    def with_numbers(self, start: GearChoice, numbers: Array) -> GearChoice | None:
         """Gears with other numbers of `ranges`; None where a counterweight hits a link."""
         here: list[dict[str, float]] = [{} for _ in start]
         for (k, name, *_), number in zip(self.ranges, numbers, strict=True):
@@ -470,7 +470,7 @@ class GearSearch(DesignProblem):
         )
         return choice if clear else None
 
-    def cost(self, choice: Choice) -> float:
+    def cost(self, choice: GearChoice) -> float:
         """Cost with these gears, not closely where others cost less; infinite where none do."""
         above = min([LARGE, *self.costs.values()])
         try:
@@ -540,7 +540,7 @@ class GearGrid:
         return DesignSolution(np.empty((0, len(problem.spreads))))
 
 
-def _first_choices(options: list[list[Mesh]]) -> list[Choice]:
+def _first_choices(options: list[list[Mesh]]) -> list[GearChoice]:
     """All choices; of several shafts with too many together, some of each."""
     choices = options
     several = sum(len(own) > 1 for own in choices) > 1
@@ -550,13 +550,13 @@ def _first_choices(options: list[list[Mesh]]) -> list[Choice]:
     return list(product(*choices))
 
 
-def _best_choices(problem: GearSearch) -> list[Choice]:
+def _best_choices(problem: GearSearch) -> list[GearChoice]:
     """The first among equals, so that the same search ends at the same gears everywhere."""
     there = [choice for choice, cost in problem.costs.items() if np.isfinite(cost)]
     return sorted(there, key=problem.costs.__getitem__)[:BEST_CHOICES]
 
 
-def _try_by_turns(problem: GearSearch, best: Choice) -> None:
+def _try_by_turns(problem: GearSearch, best: GearChoice) -> None:
     """Try all gears of one shaft after the other, until none is better."""
     for _ in range(MOST_ROUNDS):
         before = best
@@ -570,7 +570,7 @@ def _try_by_turns(problem: GearSearch, best: Choice) -> None:
             return
 
 
-def _follow(problem: GearSearch, start: Choice) -> None:
+def _follow(problem: GearSearch, start: GearChoice) -> None:
     """Go down from a choice of gears, along all that may be any number between two."""
     from scipy.optimize import minimize
 

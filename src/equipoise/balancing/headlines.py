@@ -29,8 +29,8 @@ from equipoise.signals import Array
 from equipoise.vibration.forced import readings_of
 
 Assessment = tuple[FigureAssessment, ...]
-Pair = tuple[FigureAssessment, FigureAssessment]
-Pairs = tuple[Pair, ...]
+AssessmentPair = tuple[FigureAssessment, FigureAssessment]
+Pairs = tuple[AssessmentPair, ...]
 """Figures before and after."""
 
 
@@ -101,7 +101,7 @@ class AssessedMachine:
         known = {new.figure: (was, new) for was, new in reversed((*whole, *parts))}
         return tuple(reversed(known.values()))
 
-    def _couples_made(self, after: AssessedMachine, saving: Saving) -> Iterator[Pair]:
+    def _couples_made(self, after: AssessedMachine, saving: Saving) -> Iterator[AssessmentPair]:
         """Moments that were as good as nothing, and are larger now than what is saved."""
         for new in after.headline:
             if new.is_shaking and new.dimension == "torque":
@@ -172,7 +172,7 @@ def _before(before: Assessment, new: FigureAssessment) -> FigureAssessment:
     return next(same, replace(new, value=0.0, ratio=0.0))
 
 
-def worse_parts(before: Assessment, after: Assessment, saving: Saving) -> Iterator[Pair]:
+def worse_parts(before: Assessment, after: Assessment, saving: Saving) -> Iterator[AssessmentPair]:
     """Single joints and components that grew by more than they may, each before and after."""
     old = {item.figure: item for item in before}
     for new in after:

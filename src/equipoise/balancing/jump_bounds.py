@@ -29,7 +29,7 @@ import numpy as np
 from equipoise.balancing.jumping_rows import JumpingDesigns
 from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
-from equipoise.mechanism.parts.balance import Measure
+from equipoise.mechanism.outputs.declaring import Statistic
 from equipoise.signals import Array
 
 BINS = 720
@@ -204,7 +204,7 @@ class JumpReadings:
     """Reads the peak or peak to peak of rows over boxes."""
 
     designs: JumpingDesigns
-    measure: Measure
+    measure: Statistic
 
     @property
     def possible(self) -> bool:

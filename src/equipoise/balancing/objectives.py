@@ -31,8 +31,8 @@ from equipoise.mechanism.parts.balance import (
     GAUGES,
     OF_ROWS,
     WITHIN,
-    Measure,
     Objective,
+    Statistic,
     output_of,
     quantity_of,
 )
@@ -269,12 +269,12 @@ def _moments(effects: Effects, linear: Linear) -> Array:
 # -- measures --------------------------------------------------------------------------------------
 
 
-def measured(values: Array, measure: Measure, sampling: JumpSampling | None = None) -> float:
+def measured(values: Array, measure: Statistic, sampling: JumpSampling | None = None) -> float:
     """Measure of a signal (N,) over a whole cycle, equally spaced or of a sampling."""
     return float(measured_each(values, measure, sampling))
 
 
-def measured_each(values: Array, measure: Measure, sampling: JumpSampling | None = None) -> Array:
+def measured_each(values: Array, measure: Statistic, sampling: JumpSampling | None = None) -> Array:
     """Measures (...) of signals (..., N) over a whole cycle, equally spaced or of a sampling."""
     shares = None if sampling is None else sampling.shares
     if measure == "ripple":
@@ -303,7 +303,7 @@ def unit_of(objective: Objective, machine: Machine) -> str:
     return SI[quantity]
 
 
-def mean_square_rows(signal: Signal, measure: Measure) -> tuple[Array, Array]:
+def mean_square_rows(signal: Signal, measure: Statistic) -> tuple[Array, Array]:
     """Matrix (R, K) and vector (R,), R <= K + 1, of which |matrix numbers + vector| is the RMS.
 
     By the orthogonal factor of all samples, so that few rows are left and no digits are lost as in
@@ -324,7 +324,7 @@ def bound_measure(
     program: Program,
     numbers: Array,
     signal: Signal,
-    measure: Measure,
+    measure: Statistic,
     bound: Affine,
     name: str = "",
 ) -> None:

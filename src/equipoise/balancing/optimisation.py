@@ -8,7 +8,6 @@ masses are searched together, after the gears.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from equipoise.balancing.balanced import Balanced, bending_notes, result_of
@@ -35,13 +34,12 @@ from equipoise.mechanism.parts.balance import (
     Weight,
 )
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.results.result import ProgressCallback
 from equipoise.vibration.forced import check_moving
-
-Progress = Callable[[int, int], None]
 
 
 def balance(
-    machine: Machine, plan: Balance | None = None, progress: Progress | None = None
+    machine: Machine, plan: Balance | None = None, progress: ProgressCallback | None = None
 ) -> Balanced:
     """Find what to change so that a machine shakes least.
 
@@ -91,7 +89,9 @@ def _checked(machine: Machine, plan: Balance | None) -> Balance:
     return plan
 
 
-def solve_plan(machine: Machine, plan: Balance, progress: Progress | None = None) -> Solution:
+def solve_plan(
+    machine: Machine, plan: Balance, progress: ProgressCallback | None = None
+) -> Solution:
     """The best of all choices of gears, with the best numbers for these."""
     start = WithShafts(machine, plan, machine)
     for shafts in plan.shafts:
@@ -102,7 +102,9 @@ def solve_plan(machine: Machine, plan: Balance, progress: Progress | None = None
     return GearSearch(start, progress).run()
 
 
-def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = None) -> Balanced:
+def balance_rows(
+    machine: Machine, plan: Balance, progress: ProgressCallback | None = None
+) -> Balanced:
     """Choose the phases of a machine's rows; together with masses where the plan frees these."""
     assert plan.phases is not None
     text = progress or (lambda done, most: None)

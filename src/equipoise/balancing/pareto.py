@@ -5,7 +5,7 @@ Each point is the least value of the second with the first as a limit, and as go
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -25,10 +25,8 @@ from equipoise.mechanism.parts.balance import Balance, Limit, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.blocks import Block, Column, Table, Text, Value
 from equipoise.results.outputs import DIMENSIONS, objective_named
-from equipoise.results.result import Result
+from equipoise.results.result import ProgressCallback, Result
 from equipoise.signals import Array
-
-Progress = Callable[[int, int], None]
 
 POINTS = 21
 """Of a front between two objectives, both ends among them: twenty steps of the first."""
@@ -96,7 +94,7 @@ def trade_off(
     second: Objective,
     plan: Balance | None = None,
     points: int = POINTS,
-    progress: Progress | None = None,
+    progress: ProgressCallback | None = None,
 ) -> Front:
     """The least second objective for values of the first, from its own least upwards.
 

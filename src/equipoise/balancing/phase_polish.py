@@ -29,7 +29,7 @@ from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
 from equipoise.signals import Array, Periodic
 
-Step = Callable[[], None]
+AfterStep = Callable[[], None]
 """Is called after each step of what may take minutes."""
 ValuesAndSlopes = tuple[Array, Array]
 """Values (P,) and their slopes (P, m) by the phases."""
@@ -63,7 +63,7 @@ def most_steps(cost: Cost) -> int:
     return ROUNDS + CURVED * CURVED_ROUNDS + (2 * MOST_MOVES if jumps else 0)
 
 
-def polished(cost: Cost, phases: Array, step: float, after: Step = lambda: None) -> Array:
+def polished(cost: Cost, phases: Array, step: float, after: AfterStep = lambda: None) -> Array:
     """Phases (m,) of the minimum next to these, rad; that of row 1 is kept.
 
     step : of the grid, rad.
@@ -84,7 +84,7 @@ def _better(cost: Cost, phases: Array, candidate: Array) -> Array:
 # -- jumps -----------------------------------------------------------------------------------------
 
 
-def _compass(cost: Cost, phases: Array, size: float, after: Step) -> Array:
+def _compass(cost: Cost, phases: Array, size: float, after: AfterStep) -> Array:
     """Phases (m,) from which no step leads to anything better, in ever smaller steps from a size,
     rad: of one row, of two, and some by chance.
 
@@ -118,7 +118,7 @@ def _smoothing(cost: Cost) -> tuple[float, ...]:
     return SMOOTHING if len(cost.terms) > 1 and cost.combine == "sum" else (0.0,)
 
 
-def _newton(cost: Cost, phases: Array, after: Step) -> Array:
+def _newton(cost: Cost, phases: Array, after: AfterStep) -> Array:
     from scipy.optimize import minimize
 
     free = phases[1:]
@@ -178,7 +178,7 @@ def square_with_slopes(term: PhaseObjective, phases: Array) -> tuple[float, Arra
 # -- peaks -----------------------------------------------------------------------------------------
 
 
-def _by_tops(cost: Cost, phases: Array, step: float, after: Step) -> Array:
+def _by_tops(cost: Cost, phases: Array, step: float, after: AfterStep) -> Array:
     """Linear programs, which cross from one set of tops to another, then curved ones."""
     best = _linear_programs(cost, phases, step, after)
     for _ in range(CURVED):
@@ -189,7 +189,7 @@ def _by_tops(cost: Cost, phases: Array, step: float, after: Step) -> Array:
     return best
 
 
-def _linear_programs(cost: Cost, phases: Array, step: float, after: Step) -> Array:
+def _linear_programs(cost: Cost, phases: Array, step: float, after: AfterStep) -> Array:
     best, here, region = phases, float(cost.values(phases)), step
     for _ in range(ROUNDS):
         move, gain = _step(cost, best, region)
@@ -239,7 +239,7 @@ def _below(pieces: list[ValuesAndSlopes], unit: Array) -> Array:
     return np.hstack([slopes, -np.diag(unit)[owner]])
 
 
-def _curved(cost: Cost, phases: Array, after: Step) -> Array:
+def _curved(cost: Cost, phases: Array, after: AfterStep) -> Array:
     """Phases (m,) of the minimum over the same tops, by sequential quadratic programs.
 
     Where fewer tops tie than there are phases, linear programs come near it only.

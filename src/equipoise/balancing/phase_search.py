@@ -10,7 +10,7 @@ twist.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from math import ceil, degrees, pi
@@ -37,7 +37,7 @@ from equipoise.balancing.phase_grid import (
     distinct,
     first_least,
 )
-from equipoise.balancing.phase_polish import Step, most_steps, polished
+from equipoise.balancing.phase_polish import AfterStep, most_steps, polished
 from equipoise.balancing.rounding import NEARLY
 from equipoise.dataclass import dataclass
 from equipoise.design.solvers import DesignProblem, DesignSolution, solve
@@ -46,13 +46,8 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.balance import OF_ROWS, Limit, Objective, Phases
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.results.result import Result
+from equipoise.results.result import ProgressCallback, Result
 from equipoise.signals import Array
-
-Progress = Callable[[int, int], None]
-"""Is called with the steps done of a part of the work, and how many that part has at most: the
-arrangements of the grid, steps of refining the best of them, boxes of the proof.
-"""
 
 CANDIDATES, COARSE_CANDIDATES = 16, 40
 """Cells that are polished of each distance apart; where the first grid had to be coarse."""
@@ -68,7 +63,7 @@ MOST_BEST = 8
 """Arrangements that are as good, among which the twist decides."""
 
 
-def stepped(progress: Progress, begin: int, most: int, total: int) -> Step:
+def stepped(progress: ProgressCallback, begin: int, most: int, total: int) -> AfterStep:
     """What is called after each of at most so many steps, which follow others that are done.
 
     It is called once here, where nothing is done yet.
@@ -192,7 +187,7 @@ class PhaseSearch:
 
     # -- search ------------------------------------------------------------------------------------
 
-    def pool(self, progress: Progress) -> Array:
+    def pool(self, progress: ProgressCallback) -> Array:
         """Arrangements (R, m) among which the best one is, the present one first."""
         cells = np.array([self._descended(start) for start in self._starts(progress)])
         if not self.cost.smooth:
@@ -205,7 +200,7 @@ class PhaseSearch:
         progress(len(cells) * most, len(cells) * most)
         return np.array(presents)
 
-    def polished(self, phases: Array, after: Step = lambda: None) -> Array:
+    def polished(self, phases: Array, after: AfterStep = lambda: None) -> Array:
         """Phases (m,) of the least next to these, on the grid where they nearly are."""
         return self._snapped(polished(self.cost, phases, self.step, after))
 
@@ -219,7 +214,7 @@ class PhaseSearch:
         values = self.polished(phases)
         return values, float(self.cost.values(values))
 
-    def _starts(self, progress: Progress) -> Array:
+    def _starts(self, progress: ProgressCallback) -> Array:
         """The best cells (S, m) of the grid; and the present and the equally spaced phases."""
         grid, rows = self.grid, self.cost.rows
         first = [self.present, np.arange(rows) * (self.cost.period / rows)]
@@ -348,7 +343,9 @@ class Phasing(Result):
 class PhaseProblem(DesignProblem):
     """The phases of all rows but the first, which is at 0."""
 
-    def __init__(self, search: PhaseSearch, progress: Progress = lambda done, total: None) -> None:
+    def __init__(
+        self, search: PhaseSearch, progress: ProgressCallback = lambda done, total: None
+    ) -> None:
         self.search, self.progress, self.solvers = search, progress, (PhasesWithProof(),)
 
     @property
@@ -398,7 +395,7 @@ def choose_phases(
     objectives: Sequence[Objective],
     phases: Phases | None = None,
     combine: Combine = "sum",
-    progress: Progress | None = None,
+    progress: ProgressCallback | None = None,
     limits: Sequence[Limit] = (),
 ) -> Phasing:
     """Find the phases of a machine's rows that make objectives smallest; row 1 keeps its own.

@@ -28,15 +28,8 @@ from equipoise.balancing.effects import Effects
 from equipoise.balancing.jumping_rows import JumpingDesigns
 from equipoise.balancing.objectives import LinearizationPoint
 from equipoise.balancing.phase_grid import distinct
-from equipoise.balancing.phase_polish import Step, most_steps, polished
-from equipoise.balancing.phase_search import (
-    PhaseSearch,
-    Phasing,
-    Progress,
-    phasing_of,
-    stepped,
-    with_phases,
-)
+from equipoise.balancing.phase_polish import AfterStep, most_steps, polished
+from equipoise.balancing.phase_search import PhaseSearch, Phasing, phasing_of, stepped, with_phases
 from equipoise.balancing.problem import WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import NoSolutionError, Program
 from equipoise.balancing.solution import ROUNDS as FRICTION_ROUNDS
@@ -46,6 +39,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.balance import WITHIN, Objective
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.results.result import ProgressCallback
 from equipoise.signals import Array
 
 BESIDE = 0.1
@@ -103,10 +97,12 @@ class JointPhaseMassOptimizer:
         self.each_row = EachRow(self.problem, self._measured)
         self.best: PhaseMassSolution | None = None
         self.tries, self.turns = TRIES, problem.effects.motion.turns
-        self.after: Step = lambda: None
+        self.after: AfterStep = lambda: None
         self.period = 2 * pi * self.turns
 
-    def run(self, first: Solution | None, progress: Progress) -> tuple[Solution | None, Phasing]:
+    def run(
+        self, first: Solution | None, progress: ProgressCallback
+    ) -> tuple[Solution | None, Phasing]:
         """The best masses, in a machine with the best phases, and these with what is proved.
 
         No masses where phases alone are as good.
@@ -162,7 +158,7 @@ class JointPhaseMassOptimizer:
                 error = refused
         return error
 
-    def _proof(self, progress: Progress) -> PhaseProof:
+    def _proof(self, progress: ProgressCallback) -> PhaseProof:
         assert self.best is not None
         known = self.best
         try:

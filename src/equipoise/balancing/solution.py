@@ -7,7 +7,7 @@ limits, the error names the fewest that clash, and how far one of them can be me
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from math import inf, isfinite
@@ -26,9 +26,8 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.parts.balance import Limit
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.results.result import ProgressCallback
 from equipoise.signals import Array
-
-Progress = Callable[[int, int], None]
 
 SLACK, WORSE = 2e-9, 5e-9
 """Over the value before: by how much the cost may rise where that saves mass, as asked of the
@@ -85,7 +84,7 @@ class LimitsClashError(UsageError):
 
 
 def solve_problem(
-    problem: Problem, progress: Progress | None = None, above: float = inf
+    problem: Problem, progress: ProgressCallback | None = None, above: float = inf
 ) -> Solution:
     """The best numbers of one problem; step by step from near to near, where gauges are read or
     gears may change their flanks.
@@ -116,7 +115,9 @@ def solve_problem(
     return solution
 
 
-def _with_its_friction(problem: Problem, progress: Progress | None, above: float = inf) -> Solution:
+def _with_its_friction(
+    problem: Problem, progress: ProgressCallback | None, above: float = inf
+) -> Solution:
     """The best numbers with the friction of their own forces."""
     try:
         solution = _settled(problem, progress, above)
@@ -140,7 +141,7 @@ def _with_its_friction(problem: Problem, progress: Progress | None, above: float
     return _within_limits(problem, numbers, progress)
 
 
-def _settled(problem: Problem, progress: Progress | None, above: float) -> Solution:
+def _settled(problem: Problem, progress: ProgressCallback | None, above: float) -> Solution:
     """The best numbers with the friction of the problem, then of each result in turn, until that
     is its own.  Only then is it proved that nothing is better, as that takes most of the time.
     """
@@ -173,7 +174,9 @@ def _cost_kept(problem: Problem, numbers: list[Array], bound: float) -> float | 
     return None if problem.limits_passed_with_friction(problem.close.machine) else cost
 
 
-def _within_limits(problem: Problem, numbers: list[Array], progress: Progress | None) -> Solution:
+def _within_limits(
+    problem: Problem, numbers: list[Array], progress: ProgressCallback | None
+) -> Solution:
     """Good numbers with the friction of their own forces, where limits leave so little room that
     they cannot be kept with that of other numbers; the gap bounds how much better others may be.
 
@@ -271,7 +274,7 @@ def _on_the_way(
 
 def _solve_once(
     problem: Problem,
-    progress: Progress | None,
+    progress: ProgressCallback | None,
     above: float = inf,
     most: int = MOST_NODES,
     kept: list[Array] | None = None,

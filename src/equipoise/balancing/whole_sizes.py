@@ -18,7 +18,7 @@ from equipoise.balancing.design_variables import RADII, with_parameters
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.problem import ADDED, Problem
 from equipoise.balancing.rounding import NEARLY
-from equipoise.balancing.workshop import Change, Piece
+from equipoise.balancing.workshop import Change, PieceValues
 from equipoise.i18n import Note, localized, say
 from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.parts.balance import Balance
@@ -65,7 +65,7 @@ def in_whole_sizes(balanced: Balanced) -> tuple[Balanced, str]:
     )
 
 
-def _pieces(changes: Sequence[Change]) -> Iterator[tuple[Change, Piece]]:
+def _pieces(changes: Sequence[Change]) -> Iterator[tuple[Change, PieceValues]]:
     for change in changes:
         for piece in change.values.get("pieces", ()):
             yield change, piece
@@ -182,12 +182,12 @@ def _difference(exact: Balanced, rounded: Balanced) -> str:
 # -- pieces ----------------------------------------------------------------------------------------
 
 
-def _is_whole(piece: Piece) -> bool:
+def _is_whole(piece: PieceValues) -> bool:
     sizes = [*(value / MILLIMETRE for value in _lengths(piece)), *_angles(piece)]
     return all(abs(size - round(size)) < WHOLE for size in sizes)
 
 
-def _lengths(piece: Piece) -> Iterator[float]:
+def _lengths(piece: PieceValues) -> Iterator[float]:
     """Sizes that balancing chooses, m: those of a sector are its angles alone."""
     if piece["shape"] == "disc":
         yield from (2 * piece["radius"], *piece["place"])
@@ -195,13 +195,13 @@ def _lengths(piece: Piece) -> Iterator[float]:
         yield 2 * piece["outer_radius"]
 
 
-def _angles(piece: Piece) -> Iterator[float]:
+def _angles(piece: PieceValues) -> Iterator[float]:
     """Degrees."""
     if piece["shape"] == "sector":
         yield from (piece["angle"] / DEGREE, piece["direction"] / DEGREE)
 
 
-def _whole_piece(piece: Piece, way: Round, center: complex, room: float) -> Piece:
+def _whole_piece(piece: PieceValues, way: Round, center: complex, room: float) -> PieceValues:
     """A piece of whole sizes inside its room: diameters and places in millimetres, angles in
     degrees.
     """
@@ -235,7 +235,7 @@ def _half_of_whole(diameter: float, way: Round, most: float, least: int = 1) -> 
     return MILLIMETRE * min(max(way(diameter / MILLIMETRE), least), largest) / 2
 
 
-def _whole_sector(piece: Piece, way: Round, plate: float) -> Piece:
+def _whole_sector(piece: PieceValues, way: Round, plate: float) -> PieceValues:
     outer, inner = piece["outer_radius"], piece["inner_radius"]
     angle = DEGREE * min(max(way(piece["angle"] / DEGREE), 1), 360)
     direction = phase(rect(1.0, DEGREE * round(piece["direction"] / DEGREE)))
@@ -246,7 +246,7 @@ def _whole_sector(piece: Piece, way: Round, plate: float) -> Piece:
     return {**new, "mass": mass, "place": (place.real, place.imag)}
 
 
-def _reach(sector: Piece) -> float:
+def _reach(sector: PieceValues) -> float:
     """From the centre of a sector to its centre of mass, m."""
     outer, inner, half = sector["outer_radius"], sector["inner_radius"], sector["angle"] / 2
     return float(2 / 3 * sin(half) / half * (outer**3 - inner**3) / (outer**2 - inner**2))
@@ -270,7 +270,7 @@ def _with_whole_pieces(change: Change, way: Round, room: float) -> Change:
     return replace(change, values={**change.values, **values})
 
 
-def _sum_of(pieces: Sequence[Piece], center: complex) -> tuple[float, complex, float]:
+def _sum_of(pieces: Sequence[PieceValues], center: complex) -> tuple[float, complex, float]:
     """Mass, first moment and inertia of pieces about the origin of their link."""
     mass, first, inertia = 0.0, 0j, 0.0
     for piece in pieces:
@@ -280,7 +280,7 @@ def _sum_of(pieces: Sequence[Piece], center: complex) -> tuple[float, complex, f
     return mass, first, inertia
 
 
-def _inertia(piece: Piece, place: complex, center: complex) -> float:
+def _inertia(piece: PieceValues, place: complex, center: complex) -> float:
     """Of a piece about the origin of its link, kg m2; rings and sectors lie about a centre."""
     mass = float(piece["mass"])
     if piece["shape"] == "disc":

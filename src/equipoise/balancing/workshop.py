@@ -14,7 +14,7 @@ from equipoise.mechanism.parts.balance import MATERIALS, Weight, material_of
 from equipoise.quantities import display, fixed, format_quantity, number
 from equipoise.results.machine_blocks import point_text
 
-Piece = dict[str, Any]
+PieceValues = dict[str, Any]
 
 DRILL = 1e-3
 """Step of the diameters of holes that are proposed, m, as drills have it."""
@@ -47,7 +47,7 @@ class Change:
 
 def pieces_of(
     weight: Weight, mass: float, moment: complex, inertia: float, center: complex
-) -> list[Piece]:
+) -> list[PieceValues]:
     """Pieces whose masses, places and inertia add up to what was found; SI units and radians.
 
     Parameters
@@ -70,7 +70,7 @@ def pieces_of(
     return _points(mass, moment / mass, inertia, center)
 
 
-def _points(mass: float, place: complex, inertia: float, center: complex) -> list[Piece]:
+def _points(mass: float, place: complex, inertia: float, center: complex) -> list[PieceValues]:
     """One point, or two of equal mass on a line across the direction of their middle.
 
     Two points at place +- d, with d across place, have the inertia m (|place|^2 + d^2).
@@ -84,7 +84,7 @@ def _points(mass: float, place: complex, inertia: float, center: complex) -> lis
 
 def _sectors(
     weight: Weight, plate: float, mass: float, moment: complex, center: complex
-) -> list[Piece]:
+) -> list[PieceValues]:
     """One sector; or two equal ones apart, where one would throw farther than is wanted.
 
     A sector of half angle b has the moment c sin b; two of half angle b / 2 at +- g from their
@@ -100,7 +100,9 @@ def _sectors(
     return [_sector(weight, mass / 2, half / 2, middle + s * aside, center) for s in (1, -1)]
 
 
-def _sector(weight: Weight, mass: float, half: float, direction: float, center: complex) -> Piece:
+def _sector(
+    weight: Weight, mass: float, half: float, direction: float, center: complex
+) -> PieceValues:
     outer, inner = weight.radius, weight.inner_radius
     distance = 2 / 3 * sin(half) / half * (outer**3 - inner**3) / (outer**2 - inner**2)
     return _piece(
@@ -120,7 +122,7 @@ def _plate(weight: Weight) -> dict[str, float | None]:
     return {"thickness": weight.thickness, "density": weight.density}
 
 
-def _piece(shape: str, mass: float, there: complex, **sizes: float | None) -> Piece:
+def _piece(shape: str, mass: float, there: complex, **sizes: float | None) -> PieceValues:
     """A piece whose centre of mass is at a place in the link's axes."""
     return {"shape": shape, "mass": mass, "place": (there.real, there.imag), **sizes}
 
@@ -260,7 +262,7 @@ def _hole_of(mass: float) -> tuple[float, float]:
     return diameter, 4 * volume / (pi * diameter**2)
 
 
-def _describe(piece: Piece, center: str) -> str:
+def _describe(piece: PieceValues, center: str) -> str:
     """A piece in words; rings and sectors are described about the centre of their room."""
     shape = piece["shape"]
     sizes = ("radius", "outer_radius", "thickness")

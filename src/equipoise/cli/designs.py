@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
 
 from equipoise.cli.models import OpenedStore, StudyFile
-from equipoise.cli.options import Computers, Names, count
+from equipoise.cli.options import Computers, NameList, count
 from equipoise.cli.outputs import Chosen, CsvColumns, Outputs, check_new, write_model
 from equipoise.cli.progress import Watched, swept
 from equipoise.cli.runner import CommandResult, command
@@ -27,8 +27,8 @@ def best(
     store: OpenedStore,
     /,
     *,
-    by: Names = None,
-    largest: Names = None,
+    by: NameList = None,
+    largest: NameList = None,
     most: Annotated[int, count(1, MOST_LISTED, "--count")] = 10,
     chosen: Chosen = Chosen(),
     outputs: Outputs,

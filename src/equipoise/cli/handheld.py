@@ -24,9 +24,9 @@ from equipoise.cli.options import (
     time_a_day,
 )
 from equipoise.cli.outputs import (
-    Drawings,
     Length,
     Outputs,
+    PictureSource,
     PlottedOutput,
     Printed,
     check_new,
@@ -75,7 +75,7 @@ def _range(option: str, text: str) -> tuple[float, float]:
 
 
 Speeds = Annotated[Any, read_by(_range, '"2000 : 9000 rpm"')]
-Number = Annotated[int | None, count(1, MOST_MODES)]
+ModeCount = Annotated[int | None, count(1, MOST_MODES)]
 
 
 @app.default
@@ -85,7 +85,7 @@ def tool(
     /,
     *,
     modes: bool = False,
-    number: Number = None,
+    number: ModeCount = None,
     respond: Speeds = None,
     speeds: Annotated[int | None, count(2, MOST_SPEEDS)] = None,
     at: Annotated[Any, sizes("length", "300 mm, 1200 mm")] = None,
@@ -223,7 +223,7 @@ class Asked:
 
 
 def _result(
-    tool: Tool, parts: Sequence[Any], drawings: Drawings, key: str = "", brief: bool = False
+    tool: Tool, parts: Sequence[Any], drawings: PictureSource, key: str = "", brief: bool = False
 ) -> CommandResult:
     """What was computed, below what the tool is.
 
@@ -262,7 +262,7 @@ def vary(
     change: Annotated[str, Parameter(name="CHANGE")],
     /,
     *,
-    number: Number = None,
+    number: ModeCount = None,
 ) -> CommandResult:
     """Natural frequencies against a number of a station.
 

@@ -15,8 +15,8 @@ from equipoise.cli.options import (
     Angle,
     BelongsTo,
     CrankZero,
-    Model,
-    Names,
+    ModelOption,
+    NameList,
     NewFile,
     OtherFile,
     Out,
@@ -77,7 +77,7 @@ def analyze(
     csv: NewFile = None,
     orders: Annotated[int | None, count(1, MOST_ORDERS)] = None,
     crank_zero: Annotated[Angle, BelongsTo("--orders")] = None,
-    output: Names = None,
+    output: NameList = None,
     dwell: Annotated[Any, read_by(tolerance, '"0.5 mm"')] = None,
 ) -> CommandResult:
     """Motion, shaking force and moment, drive torque and every joint force over a cycle.
@@ -132,7 +132,7 @@ def analyze(
 
 
 @command(PlottedOutput)
-def modes(machine: SupportFile, /, *, model: Model | None = None) -> Result:
+def modes(machine: SupportFile, /, *, model: ModelOption | None = None) -> Result:
     """Natural frequencies, damping and shapes of a machine on its support.
 
     Parameters
@@ -170,7 +170,7 @@ def respond(
     machine: SupportFile,
     /,
     *,
-    model: Model | None = None,
+    model: ModelOption | None = None,
     speed: Annotated[Any, read_by(_speeds, '"193 rpm"')] = None,
     speeds: Annotated[int | None, count(2, 20_000)] = None,
     drive: bool = False,

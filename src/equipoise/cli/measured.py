@@ -12,8 +12,8 @@ from cyclopts import Parameter
 from equipoise.cli.options import (
     EXAMPLES,
     SIGNED,
-    Many,
-    Names,
+    NameList,
+    TextList,
     check_belonging,
     error_in_option,
     quantity,
@@ -197,14 +197,14 @@ Acceleration = Annotated[float | None, read_by(_acceleration, ACCELERATION)]
 @command(PlottedOutput)
 def exposure(
     *inputs: Annotated[str, Parameter(name="INPUT")],
-    duration: Annotated[Many, SIGNED, wants('"2.5 h"')] = None,
+    duration: Annotated[TextList, SIGNED, wants('"2.5 h"')] = None,
     idle: Acceleration = None,
     racing: Acceleration = None,
     bands: bool = False,
     weighted: bool = False,
     single_axis: bool = False,
     periodic: bool = False,
-    gauge: Names = None,
+    gauge: NameList = None,
 ) -> CommandResult:
     """Hand-arm vibration: weighted acceleration, daily exposure and permitted working time.
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.quantities import Units
 
-Model = Literal["linear", "torque", "moment", "coupled", "exact"]
+ModelOption = Literal["linear", "torque", "moment", "coupled", "exact"]
 """As in `vibration.response`, which would bring NumPy into every start of the command line."""
 
 
@@ -265,10 +265,10 @@ WorkerCount = Annotated[int | None, count(1, 1000)]
 Out = Annotated[str | None, Parameter(name=["--out", "-o"], metavar="PATH"), OtherFile()]
 NewFile = Annotated[str | None, wants("FILE"), ResultFile()]
 NewFolder = Annotated[str | None, wants("FOLDER")]
-Many = Annotated[list[str] | None, Parameter(consume_multiple=False)]
-Names = Annotated[Many, wants("NAME")]
-OutputList = Annotated[Many, wants("OUTPUT")]
-LimitList = Annotated[Many, wants("LIMIT")]
+TextList = Annotated[list[str] | None, Parameter(consume_multiple=False)]
+NameList = Annotated[TextList, wants("NAME")]
+OutputList = Annotated[TextList, wants("OUTPUT")]
+LimitList = Annotated[TextList, wants("LIMIT")]
 Rate = Annotated[float | None, size("angular speed")]
 Speed = Annotated[Rate, Parameter(help="Speed of the crank instead of the file's.")]
 OF_ANY = Parameter(help="Speed of the crank, or of the tool's engine, instead of the file's.")

@@ -36,7 +36,7 @@ PictureFormatOption = Literal["svg", "png", "pdf"]
 CsvColumns = Sequence[tuple[str, str, "np.ndarray[Any, Any]"]]
 ValueSource = Callable[[], Mapping[str, Any]]
 BlockSource = Callable[[], "Iterable[Block | ReportSection]"]
-Drawings = Callable[[], "Mapping[str, Picture]"]
+PictureSource = Callable[[], "Mapping[str, Picture]"]
 """Results are made when they are asked for: what is not wanted is not computed."""
 
 

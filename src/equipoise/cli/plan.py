@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter
 
 from equipoise.cli.options import (
-    Many,
+    TextList,
     blaming_by_place,
     check_belonging,
     error_in_option,
@@ -70,8 +70,8 @@ PLACES: dict[tuple[str, ...], str] = {
     **{("balance", table, key): KEYS[key] for table in ("masses", "geared") for key in KEYS},
 }
 """Place in a plan -> the option that asked for it."""
-Links = Annotated[Many, wants("LINK")]
-Shape = Literal["any", "point", "disc", "ring", "sector"]
+LinkList = Annotated[TextList, wants("LINK")]
+ShapeOption = Literal["any", "point", "disc", "ring", "sector"]
 
 
 def _ratio(option: str, text: str) -> tuple[float, float]:
@@ -93,11 +93,11 @@ def _ratio(option: str, text: str) -> tuple[float, float]:
 class Freed:
     """What may be changed, in the place of what the table [balance] says."""
 
-    move_cm: Links = None
+    move_cm: LinkList = None
     """Permit a new position of the centre of mass of this link.  May be repeated."""
     crank_counterweight: bool = False
     """Permit a counterweight on the crank's axis."""
-    counterweight: Links = None
+    counterweight: LinkList = None
     """Permit a counterweight on this link, about its pin in the frame, or its first point if it has
     none.  May be repeated."""
     geared_counterweight: Annotated[str | None, wants("LINK")] = None
@@ -106,7 +106,7 @@ class Freed:
     """With --geared-counterweight: speed of the shaft over the link's, or a range "0.3, 2"."""
     pitch_radius: Annotated[float | None, size("length")] = None
     """With --geared-counterweight: pitch radius of the gear on the link."""
-    shape: Shape | None = None
+    shape: ShapeOption | None = None
     """Shape of counterweights: any distribution of mass, point, disc, ring or sector."""
     radius: Annotated[float | None, size("length")] = None
     """Largest radius of a counterweight. Default, without a mass: the length of its link."""

@@ -237,10 +237,10 @@ class Watched:
 
     def __call__(self, values: Any) -> Outcome:
         """Compute designs (P, d)."""
-        from equipoise.studies.outcomes import Block
+        from equipoise.studies.outcomes import DesignBlock
 
         outcome = self.compute(values)
-        self.tally.add(Block(values, outcome), computed=True)
+        self.tally.add(DesignBlock(values, outcome), computed=True)
         return outcome
 
     def show_progress(self, *_: object) -> None:

@@ -39,9 +39,9 @@ from equipoise.cli.outputs import (
     BlockSource,
     Chosen,
     CsvColumns,
-    Drawings,
     Length,
     Outputs,
+    PictureSource,
     PlottedOutput,
     Printed,
     Shown,
@@ -85,7 +85,7 @@ class CommandResult:
     title: str | None = None
     headline: Callable[[bool], Iterable[Block | ReportSection]] | None = None
     columns: Callable[[], CsvColumns] = tuple
-    pictures: Drawings = dict
+    pictures: PictureSource = dict
     save: Callable[[], Iterable[str]] = tuple
     lines: Callable[[], Iterable[str]] | None = None
     around: Callable[[], AbstractContextManager[None]] = nullcontext

@@ -32,7 +32,7 @@ from equipoise.codegen.figures import (
 )
 from equipoise.codegen.loops import MARCH
 from equipoise.codegen.source import TermSource
-from equipoise.codegen.trace import FAR, Array, Trace
+from equipoise.codegen.trace import FAR, Trace
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
@@ -51,7 +51,7 @@ from equipoise.mechanism.kinematics.jumps import (
 )
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.signals import JumpSampling
+from equipoise.signals import Array, JumpSampling
 
 STEPS = (radians(4), radians(0.5), radians(1 / 12))
 """Farthest that crank angles are apart; the next for designs that have not stayed on their branch.

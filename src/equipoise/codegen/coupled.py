@@ -29,7 +29,7 @@ from equipoise.codegen.terms import (
     rotation,
     select,
 )
-from equipoise.codegen.trace import Array, Read, Trace
+from equipoise.codegen.trace import LinkageReader, Trace
 from equipoise.dataclass import dataclass
 from equipoise.keys import cached_names, with_fields
 from equipoise.keys.paths import KeyPath
@@ -42,6 +42,7 @@ from equipoise.mechanism.formulas.kernels import piece_value, plane_piece
 from equipoise.mechanism.formulas.rolling import MOST_PRODUCTS
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.element_kinds import Element
+from equipoise.signals import Array
 
 FEW = 16
 """Pieces of a curve, at most, that are found by comparing, which handles several angles at once."""
@@ -400,7 +401,7 @@ def can_look_up(curve: PlaneCurve) -> bool:
 
 
 def slotted(
-    trace: Trace, value: Any, name: str, read: Read, path: tuple[int | str, ...] = ()
+    trace: Trace, value: Any, name: str, read: LinkageReader, path: tuple[int | str, ...] = ()
 ) -> Any:
     """Copy of a value with slots for its real and complex numbers.
 
@@ -424,7 +425,7 @@ def slotted(
     return value
 
 
-def _at(read: Read, path: tuple[int | str, ...], linkage: Linkage) -> Any:
+def _at(read: LinkageReader, path: tuple[int | str, ...], linkage: Linkage) -> Any:
     value = read(linkage)
     for key in path:
         value = value[key] if isinstance(key, int) else getattr(value, key)

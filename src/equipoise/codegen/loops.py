@@ -30,9 +30,9 @@ from equipoise.mechanism.assembly.loopgroup import FAR, LoopForces
 from equipoise.mechanism.assembly.loops import (
     JUMP,
     Free,
-    Loop,
+    LinkAttachment,
+    LoopEquation,
     LoopGroup,
-    Place,
     Pose,
     Poses,
     Riding,
@@ -41,8 +41,7 @@ from equipoise.mechanism.assembly.loops import (
 from equipoise.mechanism.assembly.steps import along, p, planar, size_of_bodies, u
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.parts.machine import FRAME
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 MOST_UNKNOWNS = 7
 """Beyond which minors are too many."""
@@ -340,7 +339,7 @@ def _bounded(value: Any) -> Any:
 
 # -- forces ----------------------------------------------------------------------------------------
 
-Demand = tuple[Any, Any]
+WrenchTerms = tuple[Any, Any]
 
 
 def trace_loop_forces(trace: Trace, number: int) -> None:
@@ -362,9 +361,9 @@ class _Forces:
         def read(linkage: Linkage) -> Any:
             return attrgetter("loops")(linkage.forces[number])
 
-        self.loops: tuple[Loop, ...] = slotted(trace, step.loops, f"loops {number}", read)
+        self.loops: tuple[LoopEquation, ...] = slotted(trace, step.loops, f"loops {number}", read)
         self.poses = self.solved.final
-        self.demands: dict[str, Demand] = {
+        self.demands: dict[str, WrenchTerms] = {
             link: (trace.state[f"F({link})"], trace.state[f"M({link})"])
             for link in step.group.links
         }
@@ -384,7 +383,7 @@ class _Forces:
         for place in reversed(self.step.group.tree):
             self.supply(place)
 
-    def by_work(self, closing: list[Loop]) -> list[Any]:
+    def by_work(self, closing: list[LoopEquation]) -> list[Any]:
         """Strengths of the joints that close the loops: on every motion that the tree leaves, they
         do the work that the links demand.
         """
@@ -398,7 +397,7 @@ class _Forces:
             ))  # fmt: skip
         return Minors(rows).solve(right)
 
-    def works(self, loop: Loop, moved: Poses) -> Iterator[Any]:
+    def works(self, loop: LoopEquation, moved: Poses) -> Iterator[Any]:
         """Work of a unit of each of a joint's unknowns, on both of its bodies."""
         at = loop.place(self.poses)
         ends = [(sign, moved[end.body]) for sign, end in ((1.0, loop.on), (-1.0, loop.by))
@@ -406,7 +405,7 @@ class _Forces:
         for force, couple in loop.wrenches(self.poses, 0.0):
             yield sum(sign * _work(pose, at, force, couple) for sign, pose in ends)
 
-    def supply(self, place: Place) -> None:
+    def supply(self, place: LinkAttachment) -> None:
         """What the joint supplies by which the tree places a link: all that is left on it."""
         ends = {place.link, place.to.body}  # type: ignore[union-attr]
         k = next(k for k, loop in enumerate(self.step.loops)
@@ -432,7 +431,7 @@ class _Forces:
                 self.demands[end.body] = left - sign * force, moment - sign * turning
 
 
-def _key(loop: Loop) -> tuple[str, str, str]:
+def _key(loop: LoopEquation) -> tuple[str, str, str]:
     return loop.name, loop.on.body, loop.by.body
 
 

@@ -27,12 +27,13 @@ from equipoise.codegen.terms import (
     reached,
     substituted,
 )
-from equipoise.codegen.trace import AngleFunction, Array
+from equipoise.codegen.trace import AngleFunction
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.signals import Array
 
 NO_NUMBERS: Mapping[str, float] = {}
 MOST_LINES = 150

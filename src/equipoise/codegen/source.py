@@ -37,8 +37,9 @@ from equipoise.codegen.terms import (
     replaced,
     root,
 )
-from equipoise.codegen.trace import AngleFunction, Array, Recurrence, Slot, Trace
+from equipoise.codegen.trace import AngleFunction, Recurrence, Slot, Trace
 from equipoise.dataclass import dataclass
+from equipoise.signals import Array
 
 DEEPEST = 12
 """Operations within each other in a line, so that no parser finds a line too deep."""

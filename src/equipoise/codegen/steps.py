@@ -27,7 +27,7 @@ from equipoise.codegen.loops import trace_loop_forces, trace_loops
 from equipoise.codegen.redundant_forces import trace_shared
 from equipoise.codegen.strokes import TracedStrokes, trace_pushes
 from equipoise.codegen.terms import VectorTerm, angle_of, rotation
-from equipoise.codegen.trace import FAR, Array, Read, Trace, running_angle
+from equipoise.codegen.trace import FAR, LinkageReader, Trace, running_angle
 from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
 from equipoise.keys import with_fields
@@ -60,6 +60,7 @@ from equipoise.mechanism.parts.field import PARTS
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.links import moments_across
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Load
+from equipoise.signals import Array
 
 SURFACE = "surface"
 """Name of the slot of the soil's height in the frame."""
@@ -336,7 +337,7 @@ def _joint_plane(trace: Trace, place: int) -> Any:
     return trace.slot(f"plane of joint {place}", lambda linkage: contacts(linkage)[place].plane)
 
 
-def _moment(linkage: Linkage, link: str, place: int) -> Read:
+def _moment(linkage: Linkage, link: str, place: int) -> LinkageReader:
     anchor = linkage.anchors[link]
     return lambda linkage: moments_across(linkage.machine.links[link], anchor)[place]
 
@@ -436,7 +437,7 @@ def _trace_call(trace: Trace, step: KernelCall, steps: str, number: int) -> None
         trace.apart[step.outputs[-1]] = kernels.dot(way, way)
 
 
-def _parameter(steps: str, number: int, place: int) -> Read:
+def _parameter(steps: str, number: int, place: int) -> LinkageReader:
     return lambda linkage: getattr(linkage, steps)[number].parameters[place]
 
 
@@ -556,7 +557,7 @@ def inertial(trace: Trace, link: str) -> tuple[Any, Any, Any]:
     return mass, moment, inertia
 
 
-def _inertial(trace: Trace, link: str, place: int) -> Read:
+def _inertial(trace: Trace, link: str, place: int) -> LinkageReader:
     anchor = trace.linkage.anchors[link]
     return lambda linkage: inertia_moved(linkage.machine, link, anchor)[place]
 

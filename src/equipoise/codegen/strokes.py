@@ -15,7 +15,7 @@ import numpy as np
 
 from equipoise.codegen.loops import ARRIVED, Minors
 from equipoise.codegen.terms import greatest, rotation
-from equipoise.codegen.trace import Array, Trace
+from equipoise.codegen.trace import Trace
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loops import LoopGroup
 from equipoise.mechanism.assembly.steps import demand_names, size_of_bodies, u
@@ -25,6 +25,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.cylinders import push_lines, slider_of
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.signals import Array
 
 Pusher = Drive | FurtherDrive
 Turned = tuple[Any, Any, Any, Any]

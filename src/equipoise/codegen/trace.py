@@ -18,10 +18,10 @@ from equipoise.mechanism.assembly.steps import State, p, planar, u
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
-Read = Callable[[Linkage], Any]
-Body = tuple[Any, Any, Any, Any, Any, Any]
+LinkageReader = Callable[[Linkage], Any]
+BodyTerms = tuple[Any, Any, Any, Any, Any, Any]
 """A body's anchor and rotation, each with two derivatives by the crank angle."""
 FAR = -0.5
 """Cosine of the angle between a link and the base's, beyond which it may go the other way round."""
@@ -40,7 +40,7 @@ class Slot:
 
     name: str
     vector: bool
-    read: Read
+    read: LinkageReader
     column: int
     cyclic: bool = False
 
@@ -145,7 +145,9 @@ class Trace:
 
     # -- what is given -----------------------------------------------------------------------------
 
-    def slot(self, name: str, read: Read, vector: bool = False, cyclic: bool = False) -> Any:
+    def slot(
+        self, name: str, read: LinkageReader, vector: bool = False, cyclic: bool = False
+    ) -> Any:
         """A number or vector that each design has of its own; cyclic : as of `Slot`."""
         if name not in self.slots:
             self.slots[name] = Slot(name, vector, read, self.width, cyclic)
@@ -197,7 +199,7 @@ class Trace:
         """Add values to the state."""
         self.state.update(zip(names, values, strict=True))
 
-    def body(self, link: str) -> Body:
+    def body(self, link: str) -> BodyTerms:
         x, x1, x2 = (self.state[name] for name in p(self.linkage.anchors[link]))
         turn, w, a = (self.state[name] for name in u(link))
         return x, x1, x2, turn, w, a

@@ -196,9 +196,9 @@ class Uniform:
         return self.centre + self.half_width * (2 * np.asarray(u) - 1)
 
 
-Spread = Range | Choices | Normal | Uniform
+NumberSpread = Range | Choices | Normal | Uniform
 """Spread of a number; its `tolerance` is true for scatter of manufacture."""
-SPREADS: dict[str, type[Spread]] = {
+SPREADS: dict[str, type[NumberSpread]] = {
     "range": Range,
     "list": Choices,
     "normal": Normal,
@@ -225,5 +225,5 @@ class Variable:
     """
 
     path: str
-    spread: Spread
+    spread: NumberSpread
     dimension: str | None = None

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from importlib.resources import files
 from pprint import pformat
-from typing import Any
 
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.exchange.exudyn_script import Data
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import (
     Tree,
@@ -26,8 +26,7 @@ from equipoise.mechanism.parts.element_kinds import BetweenPoints
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.support import PLANAR, Support, unit_vector
 
-Data = dict[str, Any]
-End = tuple[str, list[float]]
+ForceEnd = tuple[str, list[float]]
 BASE, GROUND = "support", "ground"
 LISTS = (
     *("pins", "sliders", "geared", "springs", "dampers", "torsion_dampers", "bushings"),
@@ -185,7 +184,7 @@ def _ground(tree: Tree, item: BetweenPoints) -> bool:
     return item.on == FRAME and tree.machine.support is None
 
 
-def _over_ground(tree: Tree, item: BetweenPoints) -> list[End]:
+def _over_ground(tree: Tree, item: BetweenPoints) -> list[ForceEnd]:
     return [_end(tree, FRAME, item.to), _end(tree, item.link, item.point)]
 
 
@@ -219,7 +218,7 @@ def bushings(model: Data, tree: Tree, job: Job) -> None:
             model["loads"].append({"end": _end(tree, item.link, item.point), **couple})
 
 
-def _end(tree: Tree, body: str, point: str) -> End:
+def _end(tree: Tree, body: str, point: str) -> ForceEnd:
     """A point from the centre of mass of its body; the frame is the support, or the ground."""
     machine = tree.machine
     x, y = machine.points_of(body)[point]
@@ -286,7 +285,7 @@ def _support(machine: Machine, support: Support) -> Data:
     return {"mass": support.mass, "inertia": inertia, "pose": pose, "velocity": [0.0, 0.0, 0.0]}
 
 
-def _on_base(machine: Machine, place: tuple[float, float]) -> End:
+def _on_base(machine: Machine, place: tuple[float, float]) -> ForceEnd:
     assert machine.support is not None
     cx, cy = machine.support.center_of_mass[:2]
     return BASE, [place[0] - cx, place[1] - cy]

@@ -27,7 +27,6 @@ from equipoise.exchange.tree import (
 )
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.friction_joints import rubbing_joints
 from equipoise.mechanism.kinematics.motion import PlacedBodies, move
@@ -35,6 +34,7 @@ from equipoise.mechanism.parts.element_kinds import BetweenPoints
 from equipoise.mechanism.parts.links import Link, size_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.support import FREEDOMS, Support, unit_vector
+from equipoise.signals import Array
 
 STEPS = 2000
 """Steps of the integration in a turn of the crank."""

@@ -18,13 +18,13 @@ from equipoise.exchange.formats import Job
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import Structure, joined
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.bodies import inertia_of
 from equipoise.mechanism.parts.couplings import Turning
 from equipoise.mechanism.parts.machine import FRAME, Link, Load, Machine, Slider, Vector
 from equipoise.mechanism.parts.support import Row, Support
+from equipoise.signals import Array
 from equipoise.vibration.free import modes
 from equipoise.vibration.linkages import rows_of
 

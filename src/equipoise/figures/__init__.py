@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Kind = Literal["svg", "png", "pdf"]
+PictureFormat = Literal["svg", "png", "pdf"]
 Picture = Chart
 """What can be drawn."""
 
-__all__ = ["Kind", "Picture", "pictures_of", "plot", "render", "unwritten"]
+__all__ = ["Picture", "PictureFormat", "pictures_of", "plot", "render", "unwritten"]
 
 
-def render(picture: Chart, kind: Kind = "svg") -> bytes:
+def render(picture: Chart, kind: PictureFormat = "svg") -> bytes:
     """The picture as a file; the same bytes for the same picture."""
     from equipoise.figures.layout import lay_out
 

@@ -29,11 +29,12 @@ from equipoise.figures.stage import (
 from equipoise.figures.view import round_below
 from equipoise.i18n import Note, decimals, localized, say
 from equipoise.mechanism.parts.machine import unknown
+from equipoise.signals import Array
 from equipoise.symbols.carrier import mount
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, in_turn, pixels
 from equipoise.symbols.pieces import PieceTrack, pieces
 from equipoise.symbols.scene import Scene, clear_angle
-from equipoise.symbols.shapes import FOOT, Array, Shape, arrow
+from equipoise.symbols.shapes import FOOT, Shape, arrow
 
 
 @dataclass(frozen=True)

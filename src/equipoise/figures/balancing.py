@@ -31,7 +31,7 @@ from equipoise.figures.chart_parts import (
     settled,
     speed_text,
 )
-from equipoise.figures.forces import Read, last_order, order_panel
+from equipoise.figures.forces import OrderSizes, last_order, order_panel
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.declared import Declared
@@ -39,19 +39,9 @@ from equipoise.mechanism.parts.balance import Objective, output_of
 from equipoise.mechanism.parts.machine import Drive
 from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
-from equipoise.results.charts import (
-    Array,
-    Arrow,
-    Axis,
-    Chart,
-    Curve,
-    Line,
-    Mark,
-    Panel,
-    four_digits,
-)
+from equipoise.results.charts import Arrow, Axis, Chart, Curve, Line, Mark, Panel, four_digits
 from equipoise.results.outputs import MEASURES, objective_named, shown_in
-from equipoise.signals import Periodic, figures
+from equipoise.signals import Array, Periodic, figures
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -60,7 +50,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Drive, Machine
 
 
-Pair = Mapping[str, Array]
+PairedSignals = Mapping[str, Array]
 """``before`` and ``after``, or the latter alone."""
 
 WHEN = {"before": to_say("before"), "after": to_say("after"), "unchanged": to_say("unchanged")}
@@ -68,7 +58,7 @@ NOTHING, VISIBLE = 1e-9, 4e-3
 """Over the largest value before: what is left after is rounding; what differs can be seen."""
 
 
-def paired(before: Array, after: Array, least: float) -> Pair:
+def paired(before: Array, after: Array, least: float) -> PairedSignals:
     """Values (N,) before and after; zeros where they are no more than `least`, which is rounding.
 
     After they are also zeros where they are rounding beside those before.
@@ -78,7 +68,7 @@ def paired(before: Array, after: Array, least: float) -> Pair:
     return {"before": before, "after": settled(after, max(least, NOTHING * largest))}
 
 
-def changed(pair: Pair) -> bool:
+def changed(pair: PairedSignals) -> bool:
     """Whether both differ by what can be seen."""
     if "before" not in pair:
         return True
@@ -86,12 +76,12 @@ def changed(pair: Pair) -> bool:
     return bool(np.any(np.abs(pair["after"] - pair["before"]) > VISIBLE * largest))
 
 
-def roles_of(pair: Pair) -> dict[str, Array]:
+def roles_of(pair: PairedSignals) -> dict[str, Array]:
     """What is drawn of a pair by its role: of what is alike one muted line."""
     return dict(pair) if changed(pair) else {"unchanged": pair["after"]}
 
 
-def keys(*pairs: Pair) -> tuple[tuple[str, str], ...]:
+def keys(*pairs: PairedSignals) -> tuple[tuple[str, str], ...]:
     """What the lines of some pairs are, for a legend."""
     roles = {role for pair in pairs for role in roles_of(pair)}
     return tuple((role, say(name)) for role, name in WHEN.items() if role in roles)
@@ -100,7 +90,7 @@ def keys(*pairs: Pair) -> tuple[tuple[str, str], ...]:
 def compare(
     drive: Drive,
     angles: Array,
-    pair: Pair,
+    pair: PairedSignals,
     label: str,
     dimension: Dimension | None,
     **rest: Any,
@@ -150,7 +140,7 @@ class Aim:
         return output_of(self.objectives[0][0].output, self.machine)
 
     @cached_property
-    def pair(self) -> Pair:
+    def pair(self) -> PairedSignals:
         """Values (N,) over a cycle of both machines; of vectors their sizes."""
         turns = lcm(self.before.turns, self.after.turns)
         values = (np.tile(item.start, turns // item.turns) for item in (self.before, self.after))
@@ -158,7 +148,7 @@ class Aim:
         return paired(before, after, self.least)
 
     @cached_property
-    def read(self) -> Read:
+    def read(self) -> OrderSizes:
         """Orders, and the size of each, of the mean with its sign; of a vector of both its parts
         together.
         """
@@ -343,7 +333,7 @@ def signals(balanced: Balanced) -> dict[str, Chart]:
     (least_force, least_moment), point = rounding(analysis), about(analysis)
     title, when = balanced.original.title, _caption(balanced)
 
-    def pair_of(output: str, least: float) -> Pair:
+    def pair_of(output: str, least: float) -> PairedSignals:
         return paired(columns[f"{output}.before"], columns[f"{output}.after"], least)
 
     force = {axis: pair_of(f"shaking_force.{axis}", least_force) for axis in ("x", "y")}
@@ -385,7 +375,7 @@ def _caption(balanced: Balanced) -> str:
     return of_one + say("before and after, at {speed}", speed=speed)
 
 
-def polar(balanced: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart:
+def polar(balanced: Balanced, angles: Array, force: Mapping[str, PairedSignals]) -> Chart:
     """The end of the shaking force's arrow over a cycle, on axes of one scale."""
     ends = {when: force["x"][when] + 1j * force["y"][when] for when in ("before", "after")}
     columns, size = roles_of(ends), extent(*ends.values(), np.zeros(1))
@@ -474,7 +464,7 @@ def combined(original: Machine | None, machine: Machine) -> Chart:
     if original is not None:
         what = say("Shaking force of {count} rows together, before and after, at {speed}", **text)
     least, _ = rounding(analyze(machine, SAMPLES))
-    pairs: dict[str, Pair] = {}
+    pairs: dict[str, PairedSignals] = {}
     for axis in ("x", "y"):
         angles, after = summed(machine, axis)
         pairs[axis] = {"after": settled(after, least)}
@@ -486,7 +476,7 @@ def combined(original: Machine | None, machine: Machine) -> Chart:
     return Chart("rows", machine.title, what, panels, keys=legend, caption=caption)
 
 
-def _along(drive: Drive, angles: Array, pairs: Mapping[str, Pair]) -> tuple[Panel, ...]:
+def _along(drive: Drive, angles: Array, pairs: Mapping[str, PairedSignals]) -> tuple[Panel, ...]:
     """Components of a force by their axes, over crank angles (N,), in one unit."""
     every = np.concatenate(
         [values for pair in pairs.values() for values in roles_of(pair).values()]

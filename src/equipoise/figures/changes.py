@@ -23,7 +23,8 @@ from equipoise.figures.linkage import (
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.results.charts import Array, Arrow, Chart, Curve, Mark, Outline, Panel, quantity
+from equipoise.results.charts import Arrow, Chart, Curve, Mark, Outline, Panel, quantity
+from equipoise.signals import Array
 from equipoise.symbols.scene import Scene, clear_angle
 
 if TYPE_CHECKING:

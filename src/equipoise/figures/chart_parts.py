@@ -18,7 +18,6 @@ from equipoise.quantities import Dimension
 from equipoise.results.charts import (
     DEGREES,
     RPM,
-    Array,
     Axis,
     Chart,
     Curve,
@@ -27,13 +26,13 @@ from equipoise.results.charts import (
     four_digits,
     quantity,
 )
-from equipoise.signals import Figures
+from equipoise.signals import Array, Figures
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
 
-Item = TypeVar("Item")
+ItemT = TypeVar("ItemT")
 
 ROOM = 0.17
 """Share of what is drawn that stays free above and below for the numbers at extremes."""
@@ -127,8 +126,8 @@ def degrees_text(angle: float) -> str:
 
 
 def groups(
-    names: Sequence[Item], most: int = MOST_PANELS, columns: int = 1
-) -> Iterator[tuple[str, Sequence[Item], str]]:
+    names: Sequence[ItemT], most: int = MOST_PANELS, columns: int = 1
+) -> Iterator[tuple[str, Sequence[ItemT], str]]:
     """Names by at most so many for each picture, between what is added to the picture's name and to
     its heading.
 

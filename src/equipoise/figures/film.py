@@ -20,9 +20,9 @@ from equipoise.figures.animation import Moving, MovingGroup, PixelPath, laid_out
 from equipoise.figures.paint import settings
 from equipoise.figures.stage import RATES, ForceArrow, check_seconds, check_width, in_a_turn
 from equipoise.i18n import Note
+from equipoise.signals import Array
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, Look, in_turn
 from equipoise.symbols.scene import clear_angle
-from equipoise.symbols.shapes import Array
 
 if TYPE_CHECKING:
     from equipoise.symbols.scene import Scene

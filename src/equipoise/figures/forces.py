@@ -41,9 +41,10 @@ from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
 from equipoise.mechanism.outputs.declared import body_named, joint_named
 from equipoise.quantities import Dimension
 from equipoise.results.analysis_blocks import display_of_totals
-from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
+from equipoise.results.charts import Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
 from equipoise.results.joint_blocks import contact_named, display_of_joints
 from equipoise.results.outputs import CAUSES, output_named
+from equipoise.signals import Array
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics.forces import Forces
@@ -60,7 +61,7 @@ FEWEST, BAR_WIDE, MOST_NUMBERED = 6, 0.72, {False: 12, True: 7}
 numbered, of one kind or of two."""
 
 
-Signals = tuple[str, Dimension | None, Mapping[str, Array]]
+PanelSignals = tuple[str, Dimension | None, Mapping[str, Array]]
 """Label and dimension of some signals, and these by role, (N,), SI units."""
 
 
@@ -71,7 +72,7 @@ def over_crank(
     analysis: Analysis,
     name: str,
     what: str,
-    panels: Sequence[Signals],
+    panels: Sequence[PanelSignals],
     output: str = "",
     caption: str = "",
 ) -> Chart:
@@ -116,7 +117,7 @@ def force(analysis: Analysis) -> Chart:
         say("along {axis}", axis="y"): np.imag,
         say("magnitude"): np.abs,
     }
-    panels: list[Signals] = [
+    panels: list[PanelSignals] = [
         (label, "force", {role: part(values) for role, values in result.items()})
         for label, part in parts.items()
     ]
@@ -130,7 +131,7 @@ def moment(analysis: Analysis) -> Chart:
     analysis = analysis.resolved
     what = title(analysis, say("Shaking moment about {point}", point=about(analysis)))
     signals = each(analysis, "shaking_moment")
-    panels: list[Signals] = [(say("shaking moment"), "torque", signals)]
+    panels: list[PanelSignals] = [(say("shaking moment"), "torque", signals)]
     if analysis.machine.has_planes:
         rocking, role = (
             analysis.forces.across.rocking_moment,
@@ -284,7 +285,7 @@ def spectrum(analysis: Analysis) -> Chart:
     _ = analysis.by_order  # raises where there are none
     analysis = analysis.resolved
     vector = each(analysis, "shaking_force")
-    signals: list[Signals] = [
+    signals: list[PanelSignals] = [
         (
             say("shaking force along {axis}", axis=axis),
             "force",
@@ -320,7 +321,7 @@ def spectrum(analysis: Analysis) -> Chart:
 
 
 BAR_ROLES = {SINGLE: "bar before", ALL: "bar after"}
-Read = Mapping[str, tuple[Array, Array]]
+OrderSizes = Mapping[str, tuple[Array, Array]]
 """Role -> orders, and the size of each in SI units; of the mean with its sign."""
 MATTERS, VISIBLE, ROOM_BELOW = 0.01, 0.004, 1.1
 """Over the largest amplitude: above this an order is drawn; below this a bar cannot be seen.
@@ -336,12 +337,12 @@ def orders_of(values: Array, motion: Motion) -> tuple[Array, Array]:
     return signal.orders, np.append(signal.amplitudes[:1].real, signal.sizes[1:])
 
 
-def largest_order(read: Read) -> float:
+def largest_order(read: OrderSizes) -> float:
     """The largest size of an order."""
     return max(float(np.max(np.abs(sizes))) for _, sizes in read.values())
 
 
-def last_order(read: Read) -> int:
+def last_order(read: OrderSizes) -> int:
     """Up to where orders matter, a whole number."""
     largest = largest_order(read)
     last = max(
@@ -354,7 +355,7 @@ def last_order(read: Read) -> int:
 def order_panel(
     name: str,
     dimension: Dimension | None,
-    read: Read,
+    read: OrderSizes,
     last: int,
     most_with_numbers: int = MOST_WITH_NUMBERS,
     unit: str | None = None,
@@ -387,7 +388,7 @@ def order_panel(
     return Panel(x, y, bars=tuple(bars), title=name, message=message)
 
 
-def _finest(read: Read, least: float) -> float:
+def _finest(read: OrderSizes, least: float) -> float:
     """Distance of orders: less than 1 where a period of several turns leaves any between."""
     for orders, sizes in read.values():
         if np.any(sizes[np.mod(orders, 1) > 0] > least):

@@ -19,17 +19,8 @@ from equipoise.mechanism.dynamics.link_stress import (
     amplitudes_about_zero,
     largest_stress,
 )
-from equipoise.results.charts import (
-    Array,
-    Axis,
-    Chart,
-    Curve,
-    Line,
-    Mark,
-    Panel,
-    four_digits,
-    quantity,
-)
+from equipoise.results.charts import Axis, Chart, Curve, Line, Mark, Panel, four_digits, quantity
+from equipoise.signals import Array
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.sections import LinkSection

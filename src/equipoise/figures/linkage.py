@@ -17,7 +17,8 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import instant_center, pairs, pinned
-from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, four_digits
+from equipoise.results.charts import Axis, Chart, Curve, Mark, Panel, four_digits
+from equipoise.signals import Array
 from equipoise.symbols.looks import in_turn
 from equipoise.symbols.pieces import GROUND, pieces, placed
 from equipoise.symbols.scene import Scene, called, clear_angle

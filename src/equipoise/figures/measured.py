@@ -16,7 +16,8 @@ from equipoise.figures.chart_parts import by_name, ends
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import decimals, say
 from equipoise.quantities import Display
-from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Line, Mark, Panel, four_digits
+from equipoise.results.charts import Axis, Band, Chart, Curve, Line, Mark, Panel, four_digits
+from equipoise.signals import Array
 
 if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure

@@ -19,7 +19,8 @@ from equipoise.i18n import decimals, say, to_say
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import AXES, Gauge, Mount, unit_vector
 from equipoise.quantities import typeset
-from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, four_digits
+from equipoise.results.charts import Axis, Chart, Curve, Mark, Panel, four_digits
+from equipoise.signals import Array
 from equipoise.symbols import carrier, shapes
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape, hull
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Mode
 
-View = Literal["side", "rear", "top"]
+ViewName = Literal["side", "rear", "top"]
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Sight:
 
 
 FORWARD, UP, RIGHT = to_say("x (forward)"), to_say("y (up)"), to_say("z (to the right)")
-VIEWS: dict[View, Sight] = {
+VIEWS: dict[ViewName, Sight] = {
     "side": Sight(to_say("from the side"), 0, 1, 1, "pitch", (FORWARD, UP)),
     "rear": Sight(to_say("from the rear"), 2, 1, 1, "roll", (RIGHT, UP)),
     "top": Sight(to_say("from above"), 0, 2, -1, "yaw", (FORWARD, RIGHT)),
@@ -135,19 +136,19 @@ class ModeShape:
         """Points (N, 3) at an instant of the mode, m."""
         return np.asarray(points + self._moved(self.motion * phase, points).real)
 
-    def path(self, point: Array, view: View) -> Array:
+    def path(self, point: Array, view: ViewName) -> Array:
         """Where a point (3,) goes in a cycle, complex, m."""
         moved = self._moved(self.motion, point[None])[0]
         return projected(point + np.outer(PHASES, moved).real, view)
 
-    def outline(self, view: View, phase: complex = 0.0) -> Array:
+    def outline(self, view: ViewName, phase: complex = 0.0) -> Array:
         """Closed outline in a view, complex, m: a line drawn tightly around discs at corners."""
         corners = hull(projected(self.displaced(self.corners, phase), view))
         disc = ROUND * self.size * np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
         around = hull((corners[:, None] + disc).ravel())
         return np.append(around, around[0])
 
-    def extent(self, view: View) -> tuple[complex, complex]:
+    def extent(self, view: ViewName) -> tuple[complex, complex]:
         """Lower left and upper right corner of all outlines that are drawn of a view, m."""
         phases = (0, *PHASES[::6])
         every = [projected(self.displaced(self.corners, phase), view) for phase in phases]
@@ -157,7 +158,7 @@ class ModeShape:
         return low - disc, high + disc
 
 
-def projected(points: Any, view: View) -> Array:
+def projected(points: Any, view: ViewName) -> Array:
     """Points (..., 3) or directions in a view, complex, m."""
     sight, points = VIEWS[view], np.asarray(points)
     return np.asarray(points[..., sight.right] + 1j * sight.sense * points[..., sight.up])
@@ -173,7 +174,7 @@ def mode_chart(free: FreeVibration, number: int) -> Chart:
     mode = free.modes[number - 1]
     shape = ModeShape(free, mode)
     planar = free.linear.body.support.planar
-    views: list[View] = ["side"] if planar else [*VIEWS]
+    views: list[ViewName] = ["side"] if planar else [*VIEWS]
     what = say("Mode {number}: {description}", number=number, description=described(mode))
     text = say("Shape: {amplitudes}, or any multiple", amplitudes=", ".join(parts_of(free, mode)))
     panels = tuple(_panel(shape, view, views) for view in VIEWS if view in views)
@@ -219,7 +220,7 @@ def parts_of(free: FreeVibration, mode: Mode) -> list[str]:
     return words
 
 
-def _panel(shape: ModeShape, view: View, views: list[View]) -> Panel:
+def _panel(shape: ModeShape, view: ViewName, views: list[ViewName]) -> Panel:
     """One view; several have one scale, so that the rear stands beside the side, as on a drawing.
 
     Where it is the only one it names all; else each thing is named where it acts.
@@ -248,7 +249,7 @@ def _panel(shape: ModeShape, view: View, views: list[View]) -> Panel:
     )
 
 
-def _corners(shape: ModeShape, view: View, views: list[View]) -> tuple[complex, complex]:
+def _corners(shape: ModeShape, view: ViewName, views: list[ViewName]) -> tuple[complex, complex]:
     """Corners of what is shown: of all views as wide, and as high of those side by side."""
     low, high = shape.extent(view)
     if len(views) == 1:
@@ -271,7 +272,7 @@ def _downward(low: complex, high: complex) -> tuple[tuple[float, str], ...]:
     return tuple((count * step, four_digits(-1000 * count * step + 0.0)) for count in counts)
 
 
-def _curves(shape: ModeShape, view: View) -> Iterator[Curve]:
+def _curves(shape: ModeShape, view: ViewName) -> Iterator[Curve]:
     """Both ends of the swing, one whole and one dashed; and the way of gauges."""
     yield Curve.of(shape.outline(view, 1), say("one end of the swing"), "swing")
     yield Curve.of(shape.outline(view, -1), say("the other"), "other swing")
@@ -281,14 +282,14 @@ def _curves(shape: ModeShape, view: View) -> Iterator[Curve]:
             yield Curve.of(path, say("gauge and its way"), "gauge way")
 
 
-def view_of(item: Mount | Gauge) -> View:
+def view_of(item: Mount | Gauge) -> ViewName:
     """The view in which a mount or gauge is most distinct from others."""
     if item.axis is not None:
         return next(view for view, sight in VIEWS.items() if sight.axis == item.axis)
     return [*VIEWS][int(np.argmax(np.abs(unit_vector(item.direction))))]
 
 
-def _signs(shape: ModeShape, view: View) -> Iterator[Shape]:
+def _signs(shape: ModeShape, view: ViewName) -> Iterator[Shape]:
     """Joints of the linkages, the centre of mass, the pivot, gauges and mounts, at rest."""
     for place in np.unique(np.round(projected(shape.linkages, view), 9)):
         yield shapes.circle("dot", complex(place), grown=2.4)
@@ -302,7 +303,7 @@ def _signs(shape: ModeShape, view: View) -> Iterator[Shape]:
     yield from shapes.mass(complex(projected(support.center_of_mass, view)))
 
 
-def _items(shape: ModeShape, view: View) -> Iterator[tuple[str, complex, list[Shape]]]:
+def _items(shape: ModeShape, view: ViewName) -> Iterator[tuple[str, complex, list[Shape]]]:
     """Gauges and mounts that are seen in a view: name, place in m, and sign."""
     reference, ring = complex(projected(shape.reference, view)), 0
     center = complex(np.mean(shape.outline(view)))
@@ -322,7 +323,7 @@ def _items(shape: ModeShape, view: View) -> Iterator[tuple[str, complex, list[Sh
             yield name, place, carrier.mount(item, place, to)
 
 
-def _names(shape: ModeShape, view: View, named: Collection[str], size: float) -> Iterator[Mark]:
+def _names(shape: ModeShape, view: ViewName, named: Collection[str], size: float) -> Iterator[Mark]:
     """Names at the ends of the signs of mounts and gauges, so that those of one place are apart.
 
     size : of the signs, over the usual one.

@@ -29,7 +29,8 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.outputs.declared import guided, joint_named, pinned
 from equipoise.quantities import Dimension
-from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, four_digits
+from equipoise.results.charts import Arrow, Axis, Chart, Curve, Mark, Panel, four_digits
+from equipoise.signals import Array
 
 if TYPE_CHECKING:
     from equipoise.mechanism.kinematics.motion import Motion, PointMotion

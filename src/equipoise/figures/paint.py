@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from functools import cache
 from io import BytesIO
 from threading import RLock
-from typing import Any, Literal
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -21,11 +21,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 
+from equipoise.figures import PictureFormat
 from equipoise.figures.sheet import Canvas, CanvasStroke, Markers, SheetItem, Words, box_of
 from equipoise.figures.style import PAPER
 from equipoise.figures.vector import BACK, SHAPES
-
-Kind = Literal["svg", "png", "pdf"]
 
 PARAMETERS: Any = {
     "font.sans-serif": ["DejaVu Sans", "Verdana"],
@@ -177,12 +176,12 @@ def _paint_all(axes: Axes, sheet: Canvas, scale: float) -> None:
         _paint(axes, item, order, scale)
 
 
-def painted(sheet: Canvas, kind: Kind) -> bytes:
+def painted(sheet: Canvas, kind: PictureFormat) -> bytes:
     """A sheet as a file of Matplotlib."""
     return _saved(figure_of(sheet), kind, sheet)
 
 
-def _saved(figure: Figure, kind: Kind, sheet: Canvas | None = None) -> bytes:
+def _saved(figure: Figure, kind: PictureFormat, sheet: Canvas | None = None) -> bytes:
     file = BytesIO()
     with settings(sheet):
         figure.savefig(file, format=kind, metadata=METADATA[kind])

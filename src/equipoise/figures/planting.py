@@ -33,7 +33,6 @@ from equipoise.mechanism.kinematics.tip import TipCurve, largest, smallest
 from equipoise.planting.figures import GroundPath
 from equipoise.quantities import Dimension
 from equipoise.results.charts import (
-    Array,
     Arrow,
     Axis,
     Band,
@@ -45,6 +44,7 @@ from equipoise.results.charts import (
     PlaceLabel,
     quantity,
 )
+from equipoise.signals import Array
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape, soil
 

@@ -15,7 +15,8 @@ from equipoise.mechanism.dynamics.out_of_plane import contacts, pushing
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.bodies import outlines
 from equipoise.mechanism.parts.links import masses_of
-from equipoise.results.charts import Array, Axis, Chart, Mark, Panel
+from equipoise.results.charts import Axis, Chart, Mark, Panel
+from equipoise.signals import Array
 from equipoise.symbols.shapes import PIN, Shape, block, circle, cylinder, line, mass, pivot
 
 if TYPE_CHECKING:

@@ -15,9 +15,10 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say
 from equipoise.results.charts import Axis, quantity
+from equipoise.signals import Array
 from equipoise.symbols.pieces import PieceTrack
 from equipoise.symbols.scene import Scene, clear_angle
-from equipoise.symbols.shapes import FOOT, Array
+from equipoise.symbols.shapes import FOOT
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis

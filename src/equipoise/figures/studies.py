@@ -21,7 +21,6 @@ from equipoise.figures.style import SMALL, short
 from equipoise.i18n import Note, all_of, localized, say
 from equipoise.quantities import Dimension, Display, display, typeset
 from equipoise.results.charts import (
-    Array,
     Axis,
     Bars,
     Cells,
@@ -36,8 +35,9 @@ from equipoise.results.charts import (
     four_digits,
 )
 from equipoise.results.outputs import objective_named
-from equipoise.studies.blocks import named_together, unit_in
-from equipoise.studies.selection import SOME, Blocks, Cloud, cloud_of
+from equipoise.signals import Array
+from equipoise.studies.blocks import UnitsByName, named_together, unit_in
+from equipoise.studies.selection import SOME, Cloud, DesignBlocks, NamePair, cloud_of
 
 if TYPE_CHECKING:
     from equipoise.keys.requirement_kinds import Make
@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     from equipoise.studies.tolerances import Cause, IntervalEstimate, Scatter, Tolerances
 
 
-Units = Mapping[str, "Unit"]
 NARROW = 0.05
 """Free at each side, over what is drawn."""
 PERCENT = Display("%", 100.0)
@@ -68,7 +67,7 @@ def unit_of(unit: Unit) -> Display:
 # -- tolerances ------------------------------------------------------------------------------------
 
 
-def tolerance_charts(tolerances: Tolerances, units: Units) -> dict[str, Chart]:
+def tolerance_charts(tolerances: Tolerances, units: UnitsByName) -> dict[str, Chart]:
     """``scatter``: each figure over all machines; ``tighten``: what half of each tolerance does;
     ``shares``: what causes the scatter of each figure.
 
@@ -79,7 +78,7 @@ def tolerance_charts(tolerances: Tolerances, units: Units) -> dict[str, Chart]:
     )
 
 
-def scatter(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
+def scatter(tolerances: Tolerances, units: UnitsByName) -> Iterator[Chart]:
     """A histogram of each figure; bars outside of its limits are pale."""
     every = list(tolerances.scatters)
     keys = [("machines", say("machines")), ("model", say("the model itself"))]
@@ -124,7 +123,7 @@ def _limits(scatter: Scatter) -> list[float]:
     return [end for end in ends if end is not None]
 
 
-def tighten(tolerances: Tolerances, units: Units) -> Chart:
+def tighten(tolerances: Tolerances, units: UnitsByName) -> Chart:
     """By how much the scatter falls where one tolerance is halved."""
     gains = np.array([max(cause.gain, 0.0) for cause in tolerances.causes])
     bars = Bars(np.arange(len(gains)), gains, TALL, across="y", labelled=True)
@@ -135,7 +134,7 @@ def tighten(tolerances: Tolerances, units: Units) -> Chart:
     return Chart("tighten", tolerances.study.title, what, (panel,))
 
 
-def shares(tolerances: Tolerances, units: Units) -> Iterator[Chart]:
+def shares(tolerances: Tolerances, units: UnitsByName) -> Iterator[Chart]:
     """Share of each tolerance in the variance of each figure, each with its 95 % interval."""
     causes = tolerances.causes
     every = [name for name in tolerances.scatters if name in causes[0].effects]
@@ -172,7 +171,7 @@ def _shares(estimates: Sequence[IntervalEstimate], rows: Array, role: str) -> Ba
 
 
 def _bars_of(
-    causes: Sequence[Cause], units: Units, bars: tuple[Bars, ...], x: Axis, **rest: Any
+    causes: Sequence[Cause], units: UnitsByName, bars: tuple[Bars, ...], x: Axis, **rest: Any
 ) -> Panel:
     """Lying bars, one for each cause, the first at the top."""
     names = (short(named_together(cause.numbers, units), 38) for cause in causes)
@@ -281,9 +280,8 @@ def landscape(result: Landscape) -> Chart:
 
 # -- designs ---------------------------------------------------------------------------------------
 
-Own = tuple[Array, Array]
+ModelDesign = tuple[Array, Array]
 """Values (d,) and figures (m,) of the model itself."""
-Pair = tuple[str, str]
 
 MARGIN = 0.05
 """Free at each side, over what all designs reach."""
@@ -307,12 +305,12 @@ class CloudDesigns:
     by: Mapping[str, Make]
     numbers: Sequence[str]
     outputs: Sequence[Output]
-    units: Units
+    units: UnitsByName
     table: Array
     labels: Sequence[str]
-    blocks: Blocks
+    blocks: DesignBlocks
     size: int
-    own: Own | None = None
+    own: ModelDesign | None = None
     line: Array | None = None
     aimed: bool = True
 
@@ -337,7 +335,7 @@ class CloudDesigns:
         return {} if self.own is None else dict(zip(self.names, np.hstack(self.own), strict=True))
 
     @property
-    def pairs(self) -> list[Pair]:
+    def pairs(self) -> list[NamePair]:
         """What is drawn against what: the first aim over each number, and aims over each other."""
         over = [(name, self.aim) for name in self.numbers if name != self.aim]
         return [*over, *combinations(self.by, 2)]
@@ -384,7 +382,7 @@ def in_words(designs: CloudDesigns, names: Iterable[str]) -> list[str]:
     return [unit_in(designs.units, name).called for name in names]
 
 
-def keys_for(designs: CloudDesigns, pairs: Iterable[Pair] = ()) -> tuple[tuple[str, str], ...]:
+def keys_for(designs: CloudDesigns, pairs: Iterable[NamePair] = ()) -> tuple[tuple[str, str], ...]:
     """Entries of the legend: of points over these pairs, or without pairs of lines across axes."""
     cloud, pairs = designs.cloud, [*pairs]
     sign = "" if pairs else " line"
@@ -494,9 +492,9 @@ BELOW = -0.06
 def best_charts(
     best: Best,
     title: str,
-    units: Units,
+    units: UnitsByName,
     store: Store,
-    own: Own | None = None,
+    own: ModelDesign | None = None,
     aimed: bool = True,
 ) -> dict[str, Chart]:
     """``front`` where there are several aims; ``designs``: the first aim over every number;
@@ -514,7 +512,9 @@ def best_charts(
     return charts_of(designs)
 
 
-def searched_charts(searched: Searched, units: Units, own: Own | None = None) -> dict[str, Chart]:
+def searched_charts(
+    searched: Searched, units: UnitsByName, own: ModelDesign | None = None
+) -> dict[str, Chart]:
     """Charts of a search, and ``search``: how it got better from generation to generation."""
     study = searched.study
     labels = [str(number) for number in range(len(searched.values))]
@@ -566,7 +566,7 @@ def over_numbers(designs: CloudDesigns) -> Iterator[Chart]:
         yield Chart(own, designs.title, what, panels, columns, False, keys, words=parts)
 
 
-def _against(designs: CloudDesigns, pair: Pair, alone: bool = False) -> Panel:
+def _against(designs: CloudDesigns, pair: NamePair, alone: bool = False) -> Panel:
     """All designs, the chosen ones and the model itself over two columns."""
     first, second = pair
     x, y = (designs.axis(name, way=alone or name not in designs.numbers) for name in pair)
@@ -607,7 +607,7 @@ def _labelled(designs: CloudDesigns, column: Array, alone: bool) -> Sequence[int
     return sorted({int(np.argmin(column)), int(np.argmax(column))}) if alone else ()
 
 
-def _all(cloud: Cloud, pair: Pair) -> tuple[tuple[Cells, ...], list[Curve]]:
+def _all(cloud: Cloud, pair: NamePair) -> tuple[tuple[Cells, ...], list[Curve]]:
     """All designs over two columns: shades and dots of many, points of few."""
     first, second = pair
     if cloud.each:
@@ -623,7 +623,7 @@ def _all(cloud: Cloud, pair: Pair) -> tuple[tuple[Cells, ...], list[Curve]]:
 # -- a search --------------------------------------------------------------------------------------
 
 
-def grown(searched: Searched, units: Units) -> Chart:
+def grown(searched: Searched, units: UnitsByName) -> Chart:
     """How good the best designs were after each generation."""
     counts = {"count": searched.computed, "generations": searched.generations}
     what = say("{count} designs in {generations} generations", **counts)

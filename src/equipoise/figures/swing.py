@@ -16,9 +16,9 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, PLANAR
 from equipoise.results.charts import four_digits, quantity
+from equipoise.signals import Array
 from equipoise.symbols.carrier import SupportSwing
 from equipoise.symbols.scene import DriveSign, Scene, clear_angle
-from equipoise.symbols.shapes import Array
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis

@@ -38,7 +38,6 @@ from equipoise.results.charts import (
     DEGREES,
     RPM,
     Area,
-    Array,
     Axis,
     Chart,
     Curve,
@@ -49,7 +48,7 @@ from equipoise.results.charts import (
     four_digits,
     quantity,
 )
-from equipoise.signals import highest_at
+from equipoise.signals import Array, highest_at
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign

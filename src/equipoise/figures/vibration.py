@@ -34,7 +34,6 @@ from equipoise.i18n import say, to_say
 from equipoise.quantities import Display
 from equipoise.results.charts import (
     RPM,
-    Array,
     Aside,
     Axis,
     Band,
@@ -47,6 +46,7 @@ from equipoise.results.charts import (
     PlaceLabel,
     four_digits,
 )
+from equipoise.signals import Array
 from equipoise.vibration.simplified import linear_of
 
 if TYPE_CHECKING:

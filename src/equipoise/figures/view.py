@@ -23,7 +23,8 @@ from equipoise.figures.sheet import (
 )
 from equipoise.figures.style import INK, SMALL, DrawingStyle
 from equipoise.quantities import typeset
-from equipoise.results.charts import Array, Axis, Panel
+from equipoise.results.charts import Axis, Panel
+from equipoise.signals import Array
 
 Ticks = list[tuple[float, str]]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import cached_property
 from typing import Any, ClassVar
 
@@ -24,16 +24,14 @@ from equipoise.handheld.hand_exposure import (
     values_of,
 )
 from equipoise.handheld.model import Tool, changed
-from equipoise.handheld.response import Number, respond_tool, rms_over_time
+from equipoise.handheld.response import ToolNumber, respond_tool, rms_over_time
 from equipoise.handheld.shaft import KEYS
 from equipoise.handheld.sweep import speeds_between
 from equipoise.i18n import Note, to_say
-from equipoise.results.result import Result
+from equipoise.results.result import ProgressCallback, Result
 from equipoise.sequences import sobol
 from equipoise.signals import Array
 
-SearchProgress = Callable[[int, int], None]
-"""Is called with how many searches are done, and how many there are."""
 TRIED, FOLLOWED = 256, 8
 """Designs spread over the room, and how many of the best are followed downhill."""
 STEPS, TOLERANCE = 200, 1e-9
@@ -61,13 +59,13 @@ class Search(DesignProblem):
         tool: Tool,
         design: DesignPlan,
         speed: Array,
-        report: SearchProgress = lambda done, total: None,
+        report: ProgressCallback = lambda done, total: None,
         starts: Array | None = None,
     ) -> None:
         self.solvers = (QuadraticPrograms(report, starts),)
         self.tool, self.design, self.band = tool, design, SpeedBand(tool, speed, LEAST)
         self.variables = [entry.variable for entry in design.variables]
-        self.numbers: list[Number] = [(entry.station, entry.key) for entry in design.variables]
+        self.numbers: list[ToolNumber] = [(entry.station, entry.key) for entry in design.variables]
         self.low = np.array([spread.low for spread in self.spreads])
         self.wide = np.array([spread.high for spread in self.spreads]) - self.low
         self.hands = design.hands or tuple(grip.name for grip in tool.grips)
@@ -140,7 +138,7 @@ class QuadraticPrograms:
     starts : places (K, d) that are followed instead.
     """
 
-    progress: SearchProgress
+    progress: ProgressCallback
     starts: Array | None = None
     name: ClassVar[str] = "sequential quadratic programs"
 
@@ -305,7 +303,7 @@ class ToolDesign(Result):
         }
 
 
-def design_tool(tool: Tool, progress: SearchProgress | None = None) -> ToolDesign:
+def design_tool(tool: Tool, progress: ProgressCallback | None = None) -> ToolDesign:
     """Change what the tool's [design] allows so that the hands feel least over its band.
 
     Designs spread over the whole room are tried, and the best of them followed downhill with exact

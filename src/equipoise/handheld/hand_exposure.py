@@ -19,8 +19,8 @@ from equipoise.handheld.layout import HarmonicField, Layout, check_coverage
 from equipoise.handheld.model import PLANES, Tool, Work, number_of
 from equipoise.handheld.response import (
     NOTHING,
-    Number,
     Reciprocal,
+    ToolNumber,
     ToolResponse,
     loads_on,
     loud,
@@ -246,7 +246,7 @@ class SpeedBand:
 
     def felt(
         self,
-        numbers: Sequence[Number],
+        numbers: Sequence[ToolNumber],
         values: Array | None = None,
         force_names: Sequence[str] = (),
         slopes: bool = True,
@@ -282,7 +282,7 @@ class SpeedBand:
         return Dual(value, slopes)
 
 
-def values_of(tool: Tool, numbers: Sequence[Number]) -> Array:
+def values_of(tool: Tool, numbers: Sequence[ToolNumber]) -> Array:
     """What these numbers are in the tool, (P,)."""
     return np.array([number_of(tool, station, key) for station, key in numbers])
 
@@ -295,7 +295,7 @@ def mean_over_band(square: Dual) -> Dual:
     return Dual((square.value @ weights)[None], (square.slopes @ weights)[:, None])
 
 
-def tool_sensitivities(tool: Tool, speed: Array) -> dict[Number, float]:
+def tool_sensitivities(tool: Tool, speed: Array) -> dict[ToolNumber, float]:
     """Derivative of the RMS over speeds (S,) of the worst hand's a_hv by every number of the tool.
 
     In m/s2 for each SI unit; of a pair of numbers, by both together.

@@ -74,7 +74,7 @@ def check_coverage(tool: Tool, lowest: float, highest: float) -> None:
             )
 
 
-Kind = Literal["undamped", "free", "forced"]
+ChainKind = Literal["undamped", "free", "forced"]
 """What counts: masses and springs; all that is known at any complex frequency; tables of hands too,
 which are known at real frequencies alone."""
 MOST_CELLS, MOST_SHAKEN = 1000, 100
@@ -194,7 +194,7 @@ class Layout:
         """Number of the node at which each station sits."""
         return {station.name: k for k, stations in enumerate(self.nodes) for station in stations}
 
-    def chain(self, s: Any, kind: Kind = "forced") -> Chain:
+    def chain(self, s: Any, kind: ChainKind = "forced") -> Chain:
         """The chain at complex frequencies s (1 or 2, F), 1/s; a row for each plane.
 
         Without damping s^2 is negative, and all is real.
@@ -207,19 +207,21 @@ class Layout:
         whole = self._transfers(self.cells, lengths, square, kind)
         return Chain([whole.part(k) for k in range(len(self.cells))], stations)
 
-    def part(self, which: Array, length: Array, s: Array, kind: Kind) -> Transfer:
+    def part(self, which: Array, length: Array, s: Array, kind: ChainKind) -> Transfer:
         """Transfer matrices (X, 1 or 2, F) from the left end of some cells (X) over a length, m."""
         square = np.real(s * s) if kind == "undamped" else s * s
         return self._transfers([self.cells[k] for k in which], length[:, None, None], square, kind)
 
-    def _transfers(self, cells: list[ShaftCell], length: Any, square: Any, kind: Kind) -> Transfer:
+    def _transfers(
+        self, cells: list[ShaftCell], length: Any, square: Any, kind: ChainKind
+    ) -> Transfer:
         """Transfer matrices (C, 1 or 2, F) from the left end of cells over lengths (C, 1, 1), m."""
         beam = self.beam(cells, square, kind)
         if self.tool.shaft.theory != "timoshenko":
             return transfer(length, beam.flexibility, beam.mass)
         return shear_transfer(length, *beam)
 
-    def beam(self, cells: list[ShaftCell], square: Any, kind: Kind) -> Beam:
+    def beam(self, cells: list[ShaftCell], square: Any, kind: ChainKind) -> Beam:
         """The coefficients (C, 1 or 2, F) of cells (C)."""
         sections, factor = [cell.section for cell in cells], self.tool.shaft.loss_factor
         loss = 1 + 1j * factor if factor and kind != "undamped" else 1.0
@@ -231,7 +233,7 @@ class Layout:
         )
 
     def station_impedance(
-        self, stations: Sequence[Station], s: Any, square: Any, kind: Kind
+        self, stations: Sequence[Station], s: Any, square: Any, kind: ChainKind
     ) -> NodePair:
         """Dynamic stiffness of what sits at a node."""
         across: Any = np.zeros((2, 1))
@@ -250,7 +252,7 @@ class Layout:
         hand = station.hand
         return self.of(station, "mass") + (0.0 if hand is None else hand.hands * hand.mass)
 
-    def holding(self, station: Station, s: Any, kind: Kind = "forced") -> dict[str, Any]:
+    def holding(self, station: Station, s: Any, kind: ChainKind = "forced") -> dict[str, Any]:
         """Dynamic stiffness (N/m) of what holds a station: ``ground``, ``harness``, ``hand``."""
         values = {"ground": self._spring(station, "", s, kind)}
         if station.harness is not None:
@@ -269,13 +271,13 @@ class Layout:
             values["hand"] = values["hand"] + station.hand.hands * station.hand.mass * s * s
         return values
 
-    def _spring(self, station: Station, owner: str, s: Any, kind: Kind) -> Any:
+    def _spring(self, station: Station, owner: str, s: Any, kind: ChainKind) -> Any:
         stiffness = self.of(station, f"{owner}stiffness")
         if kind == "undamped":
             return stiffness
         return stiffness + self.of(station, f"{owner}damping") * s
 
-    def absorber(self, station: Station, s: Any, square: Any, kind: Kind) -> Any:
+    def absorber(self, station: Station, s: Any, square: Any, kind: ChainKind) -> Any:
         """A mass behind a spring: m s^2 k / (k + m s^2)."""
         spring = self._spring(station, "absorber.", s, kind)
         inertia = self.of(station, "absorber.mass") * square
@@ -284,7 +286,7 @@ class Layout:
             below = below + (TUNED * np.abs(value_of(spring)) + NEARLY_NOTHING)
         return spring * inertia / below
 
-    def absorbers(self, s: Any, kind: Kind) -> list[Any]:
+    def absorbers(self, s: Any, kind: ChainKind) -> list[Any]:
         """What the dynamic stiffness of each absorber is divided by, k + m s^2, (2, F), N/m."""
         return [
             self._spring(station, "absorber.", s, kind)
@@ -323,7 +325,7 @@ class HarmonicField:
     layout: Layout
     s: Array
     states: States
-    kind: Kind = "forced"
+    kind: ChainKind = "forced"
 
     def at(self, places: Array) -> ShaftDeflection:
         """Shape at some places (X), m from the left end.

@@ -34,10 +34,10 @@ from equipoise.keys import (
     PLANES,
     SCHEMA_VERSION,
     VERSION,
-    Conditions,
     File,
     Frozen,
     Key,
+    KeyConditions,
     Keys,
     KeyTable,
     Number,
@@ -75,7 +75,7 @@ DIRECTIONS = ("vertical", "lateral", "rotating")
 CAUSES = ("force", "unbalance", "linkage")
 """Of which an excitation has exactly one."""
 
-Direction = Literal["vertical", "lateral", "rotating"]
+VibrationDirection = Literal["vertical", "lateral", "rotating"]
 
 
 def usual_name(station: str, cause: str) -> str:
@@ -104,7 +104,7 @@ class Excitation(Frozen):
         ),
     }
     file_order = ("name", "station", "force", "unbalance", "linkage", "direction")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [{"required": [cause]} for cause in CAUSES],
         "dependentRequired": {"direction": ["force"]},
         "allOf": [{"properties": {"ratio": {"not": {"const": 0}}}}],
@@ -125,7 +125,7 @@ class Excitation(Frozen):
         default=None,
         example="engine.toml",
     )
-    direction: Direction = inside(TextKind(DIRECTIONS), default="vertical")
+    direction: VibrationDirection = inside(TextKind(DIRECTIONS), default="vertical")
     phase: float = key(
         "angle",
         "by which it is ahead; of an unbalance or linkage, the angle of its shaft",

@@ -22,7 +22,7 @@ from equipoise.handheld.frequencies import (
     rigid_modes,
     scale_of,
 )
-from equipoise.handheld.layout import HarmonicField, Kind, Layout
+from equipoise.handheld.layout import ChainKind, HarmonicField, Layout
 from equipoise.handheld.model import NOTHING, PLANES, Station, Tool, changed
 from equipoise.i18n import Note, to_say
 from equipoise.results.declaring import NOTES, Declarations, ResultOutput
@@ -270,16 +270,21 @@ def still_shapes(layout: Layout, frequency: Array, places: Array) -> Array:
     return np.asarray(scaled(shapes).real)
 
 
-Shape = tuple[Array, Array]
+DeflectionAndSlope = tuple[Array, Array]
 """Displacement and slope at the places, (X,) each."""
 
 
 def _share(
-    layout: Layout, plane: int, frequency: float, places: Array, item: Shape, other: Shape
+    layout: Layout,
+    plane: int,
+    frequency: float,
+    places: Array,
+    item: DeflectionAndSlope,
+    other: DeflectionAndSlope,
 ) -> float:
     """How much of one shape is in another, by the momentum that they share."""
 
-    def momentum(shape: Shape) -> float:
+    def momentum(shape: DeflectionAndSlope) -> float:
         total = 0.0
         for start, stop, section in layout.tool.shaft.pieces:
             inside = (places >= start) & (places <= stop)
@@ -310,7 +315,7 @@ def _mass(layout: Layout, station: Station, plane: int, frequency: float) -> flo
     return total
 
 
-def shapes_beside(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array, Array]:
+def shapes_beside(layout: Layout, s: Array, places: Array, kind: ChainKind) -> tuple[Array, Array]:
     """Displacement and slope (X, 2, K) of the shaft for each eigenvalue (1 or 2, K), 1/s.
 
     Its answer close beside each to a load that knows no symmetry; nothing where that is no louder
@@ -321,7 +326,7 @@ def shapes_beside(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[
     return np.where(still, 0.0, close[0]), np.where(still, 0.0, close[1])
 
 
-def _loaded(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array, Array]:
+def _loaded(layout: Layout, s: Array, places: Array, kind: ChainKind) -> tuple[Array, Array]:
     """Displacement and slope (X, 2, K) under that load."""
     numbers = np.arange(s.shape[-1])
     loads = [

@@ -42,7 +42,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.result import Result
 from equipoise.signals import Array, Periodic
 
-Number = tuple[str, str]
+ToolNumber = tuple[str, str]
 """Station and key of a number of the tool."""
 
 
@@ -58,7 +58,7 @@ class Reciprocal:
         field: HarmonicField,
         carried: CondensedStiffness,
         watched: Sequence[str],
-        numbers: Sequence[Number],
+        numbers: Sequence[ToolNumber],
     ) -> None:
         self.field, self.carried, self.numbers = field, carried, numbers
         self.row = {name: k for k, name in enumerate(dict.fromkeys(watched))}
@@ -123,7 +123,7 @@ class Reciprocal:
         bent = v * t_u + t * v_u + v * (shear * v_u) + m * (flexibility * m_u)
         return np.asarray(w * (mass * w_u) + t * (rotary * t_u) - bent)
 
-    def _along(self, number: Number) -> Layout:
+    def _along(self, number: ToolNumber) -> Layout:
         """The layout with a derivative by a number, for what sits on the shaft."""
         layout = self.field.layout
         value = np.asarray(value_of(layout.changed[number]))

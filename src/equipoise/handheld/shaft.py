@@ -19,10 +19,10 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     PLANES,
     ROW,
-    Conditions,
     File,
     Frozen,
     Key,
+    KeyConditions,
     Keys,
     KeyTable,
     Number,
@@ -277,7 +277,7 @@ class Segment(Profiled):
 
     called = to_say("{what} of segment {number}")
     extra_keys: ClassVar[Keys] = PROFILE
-    conditions: ClassVar[Conditions] = profile_conditions("mass_per_length")
+    conditions: ClassVar[KeyConditions] = profile_conditions("mass_per_length")
 
     start: float = key("length", "where it begins", name="from", example="1.2 m")
     stop: float = key("length", "where it ends", name="to", example="1.35 m")
@@ -301,7 +301,7 @@ class Shaft(Profiled):
         ),
     }
     file_order = ("length", *PROFILE, "mass", "loss_factor", "theory", "segments")
-    conditions: ClassVar[Conditions] = profile_conditions("mass_per_length", "mass")
+    conditions: ClassVar[KeyConditions] = profile_conditions("mass_per_length", "mass")
 
     length: float = key("length", "from end to end", example="1.5 m", above=0)
     profile: Section | Tube = inside(KeyTable(Frozen, flat=True))
@@ -411,7 +411,7 @@ class Hand(Frozen):
     """
 
     called = to_say("{what} of the hand")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "if": {"required": ["impedance"]},
         "then": {"properties": dict.fromkeys(OF_HAND, False)},
         "else": {"anyOf": [{"required": [item]} for item in OF_HAND]},
@@ -500,7 +500,7 @@ class ShaftTable(Frozen):
             "stations", Tables(KeyTable(Station)), "what sits on it and holds it", default=()
         ),
     }
-    conditions: ClassVar[Conditions] = Shaft.conditions
+    conditions: ClassVar[KeyConditions] = Shaft.conditions
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> tuple[Shaft, tuple[Station, ...]]:

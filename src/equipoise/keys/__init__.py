@@ -16,9 +16,9 @@ from equipoise.keys.declaring import REQUIRED as REQUIRED
 from equipoise.keys.declaring import ROW as ROW
 from equipoise.keys.declaring import SCHEMA_VERSION as SCHEMA_VERSION
 from equipoise.keys.declaring import VERSION as VERSION
-from equipoise.keys.declaring import Conditions as Conditions
 from equipoise.keys.declaring import Frozen as Frozen
 from equipoise.keys.declaring import Key as Key
+from equipoise.keys.declaring import KeyConditions as KeyConditions
 from equipoise.keys.declaring import Keys as Keys
 from equipoise.keys.declaring import all_keys as all_keys
 from equipoise.keys.declaring import any_of as any_of
@@ -41,7 +41,7 @@ from equipoise.keys.kinds import NO_INERTIA as NO_INERTIA
 from equipoise.keys.kinds import PLANES as PLANES
 from equipoise.keys.kinds import Anything as Anything
 from equipoise.keys.kinds import DependentQuantity as DependentQuantity
-from equipoise.keys.kinds import Direction as Direction
+from equipoise.keys.kinds import DirectionKind as DirectionKind
 from equipoise.keys.kinds import File as File
 from equipoise.keys.kinds import Flag as Flag
 from equipoise.keys.kinds import KeyTable as KeyTable

@@ -110,7 +110,7 @@ class Key:
 
 
 Keys = Mapping[str, Key]
-Conditions = Mapping[str, Any]
+KeyConditions = Mapping[str, Any]
 
 
 def key(
@@ -170,7 +170,7 @@ class Frozen(TableRecord):
     extra_keys: ClassVar[Keys] = {}
     handed_on: ClassVar[frozenset[str]] = frozenset()
     file_order: ClassVar[tuple[str, ...]] = ()
-    conditions: ClassVar[Conditions] = {}
+    conditions: ClassVar[KeyConditions] = {}
     called: ClassVar[str] = ""
     __dataclass_fields__: ClassVar[dict[str, Any]]
 

@@ -243,7 +243,7 @@ class Point(Kind):
 
 
 @dataclass(frozen=True)
-class Direction(Kind):
+class DirectionKind(Kind):
     """An angle in the plane of the drawing, or a vector of three plain numbers."""
 
     wanted = Note("an angle, or three numbers")

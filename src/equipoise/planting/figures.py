@@ -24,7 +24,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.kinematics.tip import (
     STEP,
-    Signal,
+    CurveFunction,
     TipCurve,
     crossings,
     integral,
@@ -35,7 +35,7 @@ from equipoise.mechanism.kinematics.tip import (
 )
 from equipoise.planting.names import SHAKING_FIGURES
 from equipoise.planting.stroke import (
-    Figures,
+    StrokeFigures,
     acceleration_of_drive,
     clearances,
     direction,
@@ -316,7 +316,7 @@ def tip_figures(
     leave: Array,
     breaks: Array | None = None,
     wanted: Collection[str] | None = None,
-) -> Figures:
+) -> StrokeFigures:
     """Every figure of the path, of the instants and of the stay in the soil.
 
     entry, leave : (P,) crank angles at which the tip enters and leaves the soil, running on in the
@@ -336,7 +336,7 @@ def tip_figures(
     }
     if curve.planting.tray is not None:
         instants["pick_up"] = lambda: pick_up(curve, entry)
-    groups: dict[str, Callable[[str], Figures]] = {
+    groups: dict[str, Callable[[str], StrokeFigures]] = {
         "surface": lambda name: {name: curve.surface},
         "curve": lambda name: size_of_curve(curve),
         "curve.smallest_radius": lambda name: sharpest_bend(curve, "curve", 0.0),
@@ -360,7 +360,7 @@ def tip_figures(
     return {name: values for result in known for name, values in result.items()}
 
 
-def size_of_curve(curve: TipCurve) -> Figures:
+def size_of_curve(curve: TipCurve) -> StrokeFigures:
     """Extent and length of the curve relative to the machine."""
     left, right = (
         find(
@@ -380,7 +380,7 @@ def size_of_curve(curve: TipCurve) -> Figures:
     }
 
 
-def sharpest_bend(curve: TipCurve, name: str, drive: Any, share: Any = 1.0) -> Figures:
+def sharpest_bend(curve: TipCurve, name: str, drive: Any, share: Any = 1.0) -> StrokeFigures:
     """Smallest radius of curvature and its crank angle: one over the largest curvature.
 
     drive : way of the machine along x by crank angle, m; 0 for the path relative to the machine.
@@ -411,7 +411,7 @@ def sharpest_bend(curve: TipCurve, name: str, drive: Any, share: Any = 1.0) -> F
     }
 
 
-def _slow_bend(curve: TipCurve, drive: Any, slope: Signal) -> Array:
+def _slow_bend(curve: TipCurve, drive: Any, slope: CurveFunction) -> Array:
     """Crank angle (P,) of the bend at the slowest place, which may lie between samples."""
 
     def rate2(theta: Array) -> Any:
@@ -428,7 +428,7 @@ def _slow_bend(curve: TipCurve, drive: Any, slope: Signal) -> Array:
     return np.asarray(roots(slope, at - width, at + width)[:, 0])
 
 
-def extreme(curve: TipCurve, name: str) -> Figures:
+def extreme(curve: TipCurve, name: str) -> StrokeFigures:
     """Largest or smallest velocity or acceleration relative to the machine, with its direction.
 
     name : ``max_speed``, ``min_speed``, ``max_acceleration`` or ``min_acceleration``.
@@ -450,9 +450,9 @@ def extreme(curve: TipCurve, name: str) -> Figures:
     }
 
 
-def ratios(curve: TipCurve) -> Figures:
+def ratios(curve: TipCurve) -> StrokeFigures:
     """Extremes of the angular velocity of every link but the drive, over that of the drive."""
-    result: Figures = {}
+    result: StrokeFigures = {}
     machine, family = curve.machines[0], curve.family
     for link in machine.links:
         if link == machine.drive.link:
@@ -469,7 +469,7 @@ def ratios(curve: TipCurve) -> Figures:
     return result
 
 
-def transmission(curve: TipCurve) -> Figures:
+def transmission(curve: TipCurve) -> StrokeFigures:
     """Smallest transmission angle of any dyad; an obtuse one counts by what it lacks to 180 deg."""
     family = curve.family
     if not any(group.margin for group in family.first.groups):
@@ -486,7 +486,7 @@ def transmission(curve: TipCurve) -> Figures:
     return {"transmission.min": angle, "transmission.min_at": wrapped(curve, at)}
 
 
-def in_soil(curve: TipCurve, entry: Array, leave: Array, breaks: Array | None) -> Figures:
+def in_soil(curve: TipCurve, entry: Array, leave: Array, breaks: Array | None) -> StrokeFigures:
     """What the tip does between entry and exit.  Ground figures are NaN for a machine at rest."""
     travel = np.abs(leave - entry)
     time = travel / np.abs(curve.speed[:, 0])
@@ -543,12 +543,12 @@ def _hole_length(curve: TipCurve, entry: Array, leave: Array) -> Array:
     return np.where(upright, -right - left, np.nan)
 
 
-def limits(curve: TipCurve, entry: Array, leave: Array) -> Figures:
+def limits(curve: TipCurve, entry: Array, leave: Array) -> StrokeFigures:
     """Highest speeds of the drive (rad/s, without acceleration) that keep within the limits.
 
     The forward speed is the one at which hills stay as far apart as they are.
     """
-    result: Figures = {}
+    result: StrokeFigures = {}
     for name, limit, ends in (
         ("acceleration", curve.planting.acceleration_limit, whole_cycle(curve)),
         ("soil_acceleration", curve.planting.soil_acceleration_limit, (entry, leave)),
@@ -565,10 +565,10 @@ def limits(curve: TipCurve, entry: Array, leave: Array) -> Figures:
     return result
 
 
-Signals = dict[str, Array]
+TipSignals = dict[str, Array]
 
 
-def shaking(curve: TipCurve) -> Figures:
+def shaking(curve: TipCurve) -> StrokeFigures:
     """RMS and largest value of shaking force, shaking moment about the drive's pivot, and torque
     of the drive without loads, springs and soil; none where masses are missing.
     """
@@ -576,7 +576,7 @@ def shaking(curve: TipCurve) -> Figures:
         return {}
     parts = _Parts(curve)
     sampled = parts.signals(curve.grid.state)
-    figures: Figures = {}
+    figures: StrokeFigures = {}
     for name, values in sampled.items():
         figures[f"{name}.rms"] = np.sqrt(np.mean(values**2, axis=1))
         figures[f"{name}.peak"] = _peak(curve, parts.of(name))
@@ -606,7 +606,7 @@ class _Parts:
         """One of the signals."""
         return lambda theta: self.signals(self.curve.family.solve(theta))[name]
 
-    def signals(self, state: State) -> Signals:
+    def signals(self, state: State) -> TipSignals:
         """Sizes of force, moment and torque at the crank angles of a state, (P, K)."""
         curve, family = self.curve, self.curve.family
         pivot = state[f"p({family.first.pivot})"]
@@ -648,7 +648,7 @@ def of_arm(tip: str, figures: Mapping[str, Value]) -> Iterator[tuple[str, Value]
     return ((f"arms.{tip}.{name}", value) for name, value in figures.items() if name not in SHARED)
 
 
-def machine_figures(curve: TipCurve, wanted: Collection[str] | None = None) -> Figures:
+def machine_figures(curve: TipCurve, wanted: Collection[str] | None = None) -> StrokeFigures:
     """Every figure of the first arm, of the further ones, of the hills of all, and of what shakes.
 
     wanted : names of those that are needed; None for all.
@@ -676,7 +676,7 @@ def _group(name: str) -> str:
     return bend if name.startswith(bend) else name.partition(".")[0]
 
 
-def hills(curve: TipCurve) -> Figures:
+def hills(curve: TipCurve) -> StrokeFigures:
     """Distances over ground from hill to hill of a row, where each arm plants one a turn.
 
     NaN for a machine at rest.

@@ -409,7 +409,7 @@ class Fit(Result):
         return {**requested, "met": self.met.get(goal.figure), **values}
 
 
-Progress = Callable[[int, int, float], None]
+GenerationProgress = Callable[[int, int, float], None]
 """Is called with the generation, the most there can be, and the cost of the best design."""
 
 
@@ -422,7 +422,7 @@ def fit_planting(
     seed: int = 1,
     generations: int = GENERATIONS,
     population: int = POPULATION,
-    progress: Progress | None = None,
+    progress: GenerationProgress | None = None,
     workers: int | None = None,
 ) -> Fit:
     """Look for the geometry that meets targets and limits on planting figures.
@@ -459,7 +459,7 @@ def fit_planting(
 class EvolutionAndPolish:
     """Differential evolution of the whole range, then least squares or an evolution nearby."""
 
-    progress: Progress | None = None
+    progress: GenerationProgress | None = None
     name: ClassVar[str] = "differential evolution"
 
     def suits(self, problem: PlantingProblem) -> bool:
@@ -524,7 +524,7 @@ def _planting_figures(machine: Machine) -> PlantingFigures | None:
 class _Evolution:
     """Differential evolution, round after round, within a number of generations in all."""
 
-    def __init__(self, problem: PlantingProblem, progress: Progress | None) -> None:
+    def __init__(self, problem: PlantingProblem, progress: GenerationProgress | None) -> None:
         self.problem, self.progress = problem, progress
         self.generations = problem.generations
         self.generator = np.random.default_rng(problem.seed)

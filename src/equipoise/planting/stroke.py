@@ -22,7 +22,7 @@ from equipoise.mechanism.assembly.family import Family, column
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.tip import (
-    Signal,
+    CurveFunction,
     TipCurve,
     crossings,
     lowest_within,
@@ -147,7 +147,7 @@ def _angles(machine: Machine, places: Sequence[tuple[int, float]]) -> Array:
     return angles
 
 
-Figures = dict[str, Array]
+StrokeFigures = dict[str, Array]
 """Figures by dotted name; (P,), one value for each machine."""
 
 
@@ -355,7 +355,7 @@ def release(curve: TipCurve) -> Array:
     return curve.lowest[1] if given is None else np.full(curve.count, given)
 
 
-def instant(curve: TipCurve, instant: str, theta: Array) -> Figures:
+def instant(curve: TipCurve, instant: str, theta: Array) -> StrokeFigures:
     """Place, velocity, acceleration and attitude at crank angles (P,)."""
     tip = curve.at(theta[:, None])
     velocity = in_time(curve, theta[:, None], 1)[:, 0]
@@ -462,7 +462,7 @@ def tray_crossings(curve: TipCurve) -> tuple[float, ...]:
     return tuple(float(angle) for angle in angles[edge.reached(angles[None])[0]])
 
 
-def clearances(curve: TipCurve, entry: Array) -> Figures:
+def clearances(curve: TipCurve, entry: Array) -> StrokeFigures:
     """Smallest distance of each link from the soil and from the tray's edge.
 
     A link is the lines between its points, the tip left out, which is meant to go into the soil
@@ -470,7 +470,7 @@ def clearances(curve: TipCurve, entry: Array) -> Figures:
 
     entry : (P,) crank angles at which the tip enters the soil.
     """
-    result: Figures = {}
+    result: StrokeFigures = {}
     tip, tray = curve.arm.tip, curve.planting.tray
     outlines = _outlines(curve)
 
@@ -512,6 +512,6 @@ def _outlines(curve: TipCurve) -> dict[str, list[str]]:
     return {name: points for name, points in outlines.items() if points}
 
 
-def _smallest(curve: TipCurve, name: str, signal: Signal) -> Figures:
+def _smallest(curve: TipCurve, name: str, signal: CurveFunction) -> StrokeFigures:
     value, at = lowest_within(signal, *whole_cycle(curve), samples=len(curve.theta) + 1)
     return {f"{name}.value": value, f"{name}.crank_angle": wrapped(curve, at)}

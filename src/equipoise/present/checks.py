@@ -27,7 +27,7 @@ from equipoise.results.blocks import Block, Cell, Column, FileText, Notes, Table
 from equipoise.results.cam_blocks import cam_descriptions, preloads_to_hold
 from equipoise.results.machine_blocks import bodies_tables, driven, point_text
 from equipoise.signals import Array
-from equipoise.studies.blocks import Units, in_unit, labelled, spread_text, unit_in
+from equipoise.studies.blocks import UnitsByName, in_unit, labelled, spread_text, unit_in
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, estimated
 from equipoise.studies.run import Route
@@ -65,7 +65,7 @@ COMPUTED_HEADS = (
 """Of the table of outputs of a study."""
 
 
-def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
+def study_blocks(study: Study, units: UnitsByName, file: str) -> Iterator[Block]:
     """Blocks on a study before it is computed: its numbers, limits, designs and expected time."""
     compute = evaluator(study)
     own = study.own
@@ -150,14 +150,14 @@ def _is_tolerance(study: Study) -> bool:
     return all(item.spread.tolerance for item in study.vary)
 
 
-def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
+def _varied(study: Study, units: UnitsByName, own: Array) -> Iterator[tuple[Cell, ...]]:
     for variable, value in zip(study.vary, own.tolist(), strict=True):
         unit = unit_in(units, variable.path)
         spread = spread_text(variable.spread, unit)
         yield labelled(unit), variable.path, in_unit(value, unit), spread
 
 
-def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Cell, ...]]:
+def _computed(study: Study, units: UnitsByName, outcome: Outcome) -> Iterator[tuple[Cell, ...]]:
     for output, figure in zip(study.outputs, outcome.figures[0].tolist(), strict=True):
         unit = unit_in(units, output.name)
         ends = (in_unit(end, unit) for end in (output.at_least, output.at_most))

@@ -20,7 +20,7 @@ from equipoise.planting.blocks import planting_blocks
 from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.headlines import outstanding, seen_in
 from equipoise.present.pages import ReportDocument, check_pdf, page, pdf
-from equipoise.present.pictures import Drawings, drawings
+from equipoise.present.pictures import PicturesBySection, drawings
 from equipoise.present.summary import answers, check_whole_cycle, tiles, tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number
 from equipoise.results.analysis import Analysis
@@ -148,7 +148,7 @@ def build(
 
 
 def _of_linkage(
-    findings: Findings, pictures: Drawings, language: str, command: str
+    findings: Findings, pictures: PicturesBySection, language: str, command: str
 ) -> ReportDocument:
     machine, analysis = findings.machine, findings.analysis
     blocks: Parts = {"model": [*model_blocks(machine), *pictures.get("model", [])]}
@@ -243,7 +243,7 @@ def balance_blocks(findings: Findings) -> Iterator[Block]:
 
 
 def _of_tool(
-    findings: ToolFindings, drawings: Drawings, language: str, command: str
+    findings: ToolFindings, drawings: PicturesBySection, language: str, command: str
 ) -> ReportDocument:
     pictures = drawings.get("tool", [])
     blocks: list[Block | ReportSection] = []

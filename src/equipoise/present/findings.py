@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Response
 
-Part = TypeVar("Part")
+PartT = TypeVar("PartT")
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,12 +57,12 @@ class _ComputedParts:
         return tuple(at_place(Note(part), why) for part, why in self.failed.items())
 
 
-def part(name: str) -> Callable[[Callable[[Any], Part]], cached_property[Part | None]]:
+def part(name: str) -> Callable[[Callable[[Any], PartT]], cached_property[PartT | None]]:
     """A part that is computed when it is first asked for; None, with a note, where that fails."""
 
-    def of(compute: Callable[[Any], Part]) -> cached_property[Part | None]:
+    def of(compute: Callable[[Any], PartT]) -> cached_property[PartT | None]:
         @wraps(compute)
-        def part_or_none(self: _ComputedParts) -> Part | None:
+        def part_or_none(self: _ComputedParts) -> PartT | None:
             try:
                 return compute(self)
             except EquipoiseError as error:

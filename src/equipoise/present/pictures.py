@@ -279,13 +279,13 @@ OF_LINKAGE: dict[str, Callable[[Findings], Iterator[_Picture]]] = {
 }
 
 
-Drawings = dict[str, list[SvgPicture]]
+PicturesBySection = dict[str, list[SvgPicture]]
 """Pictures by section."""
 
 
 def drawings(
     findings: Findings | ToolFindings, parallel: bool = False, by_rows: bool = False
-) -> Drawings:
+) -> PicturesBySection:
     """All pictures.
 
     parallel : whether a copy of this process may draw half of them, where there are two processors,
@@ -311,7 +311,7 @@ def drawings(
     try:
         rest = [section for section in SECTIONS if section not in other]
         pictures = _draw(findings, rest, by_rows)
-        of_helper: Drawings = here.recv()
+        of_helper: PicturesBySection = here.recv()
         return pictures | of_helper
     except EOFError:  # the helper failed: drawing here raises its error again
         return pictures | _draw(findings, other, by_rows)
@@ -341,8 +341,10 @@ def _send(
         pipe.close()
 
 
-def _draw(findings: Findings | ToolFindings, sections: Collection[str], by_rows: bool) -> Drawings:
-    pictures: Drawings = {}
+def _draw(
+    findings: Findings | ToolFindings, sections: Collection[str], by_rows: bool
+) -> PicturesBySection:
+    pictures: PicturesBySection = {}
     for picture in each(findings, sections=sections):
         chart = picture.chart
         text = say("; ").join((chart.what, *chart.words))

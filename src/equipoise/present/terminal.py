@@ -24,7 +24,7 @@ from equipoise.results.blocks import (
     Facts,
     FileText,
     Notes,
-    Picture,
+    PictureBlock,
     ReportSection,
     Table,
 )
@@ -430,7 +430,7 @@ class _Printer:
                 self.words(block.title, "title")
             self.lines += map(plain, block.text.splitlines())
         else:
-            assert isinstance(block, Picture)  # a terminal draws none
+            assert isinstance(block, PictureBlock)  # a terminal draws none
 
     def space(self) -> None:
         """An empty line, but not at the very beginning."""

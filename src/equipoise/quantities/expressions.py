@@ -79,12 +79,12 @@ class Amount:
         return Amount(self.number + sign * other.number, self.powers)
 
 
-Names = Mapping[str, Amount]
+NamedAmounts = Mapping[str, Amount]
 """What names in an expression stand for."""
-NO_NAMES: Names = MappingProxyType({})
+NO_NAMES: NamedAmounts = MappingProxyType({})
 
 
-def parse_expression(text: str, dimension: Dimension, names: Names = NO_NAMES) -> float:
+def parse_expression(text: str, dimension: Dimension, names: NamedAmounts = NO_NAMES) -> float:
     """Read a quantity, or a sum or product of quantities and numbers that is one.
 
     Parameters
@@ -122,7 +122,7 @@ def parse_expression(text: str, dimension: Dimension, names: Names = NO_NAMES) -
     return _float(amount, text)
 
 
-def parse_number(text: str, names: Names = NO_NAMES) -> float:
+def parse_number(text: str, names: NamedAmounts = NO_NAMES) -> float:
     """Read a number without a unit, or a sum or product of such numbers.
 
     Parameters
@@ -142,7 +142,7 @@ def parse_number(text: str, names: Names = NO_NAMES) -> float:
     return _float(amount, text)
 
 
-def parse_amount(text: str, names: Names = NO_NAMES) -> Amount:
+def parse_amount(text: str, names: NamedAmounts = NO_NAMES) -> Amount:
     """Read a quantity of any dimension or a plain number, or a sum or product that is either.
 
     Parameters
@@ -232,7 +232,7 @@ def _float(amount: Amount, text: str) -> float:
 # -- reading ---------------------------------------------------------------------------------------
 
 
-def _amount(text: str, names: Names, wrong: Callable[[str], Note]) -> Amount:
+def _amount(text: str, names: NamedAmounts, wrong: Callable[[str], Note]) -> Amount:
     """What an expression comes to; `wrong` says what is wrong where it is none."""
     short = _short(text)
     if len(text) > LONGEST:
@@ -257,7 +257,7 @@ def _amount(text: str, names: Names, wrong: Callable[[str], Note]) -> Amount:
             raise UsageError(Note("got {text!r}, which divides by 0", text=short)) from error
 
 
-def _unknown(text: str, name: str, names: Names, wrong: Callable[[str], Note]) -> Note:
+def _unknown(text: str, name: str, names: NamedAmounts, wrong: Callable[[str], Note]) -> Note:
     """What is said of a name that stands for nothing."""
     if not names:
         return wrong(text)
@@ -320,7 +320,7 @@ def _names_in(tree: ast.expr) -> set[str]:
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
 
 
-def _value(node: ast.expr, names: Names) -> Amount:
+def _value(node: ast.expr, names: NamedAmounts) -> Amount:
     """The amount of a part of an expression; a ValueError where it has none."""
     match node:
         case ast.Name(id=name) if name in names:

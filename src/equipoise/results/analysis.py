@@ -49,7 +49,6 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-Values = dict[str, Any]
 
 SPLIT = 1000
 """Bytes that forces by cause and link, and their text, take at a crank angle for the square of the
@@ -315,7 +314,7 @@ class Analysis(Result):
         outputs: Iterable[str] = (),
         strokes: bool = True,
         wanted: Collection[str] | None = None,
-    ) -> Values:
+    ) -> dict[str, Any]:
         """The machine-readable output, in SI units: dicts, numbers and arrays (N,).
 
         split : whether to add every force by cause and by link.
@@ -325,7 +324,7 @@ class Analysis(Result):
             some milliseconds.
         wanted : names of the outputs that stand in arrays and summary; None for all.
         """
-        result: Values = {
+        result: dict[str, Any] = {
             **self._heading,
             "crank_angle": self.crank_angle,
             "links": {},
@@ -363,13 +362,13 @@ class Analysis(Result):
             result["notes"] = list(map(str, self.notes))
         return result | {"summary": self._summary_of(wanted)}
 
-    def _summary_of(self, wanted: Collection[str] | None) -> Values:
+    def _summary_of(self, wanted: Collection[str] | None) -> dict[str, Any]:
         """The summary as plain data, of outputs of some names, or of all."""
         if wanted is None:
             figures = self.summary
         else:
             figures = self._figures([item for item in self.outputs.summed if item.name in wanted])
-        summary: Values = {
+        summary: dict[str, Any] = {
             name: {**vars(figure), "peak_to_peak": figure.peak_to_peak}
             for name, figure in figures.items()
         }
@@ -378,8 +377,8 @@ class Analysis(Result):
         return summary
 
     @property
-    def _heading(self) -> Values:
-        heading: Values = {"title": self.machine.title, **values_of(self.motion, HEADING)}
+    def _heading(self) -> dict[str, Any]:
+        heading: dict[str, Any] = {"title": self.machine.title, **values_of(self.motion, HEADING)}
         return heading | (values_of(self.motion, CYCLE) if self.motion.whole_cycle else {})
 
     def to_dataset(self) -> xarray.Dataset:
@@ -469,7 +468,7 @@ BY_ORDER: Declarations = {
 """What an analysis has of each output by order."""
 
 
-def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
+def order_values(analysis: Analysis, orders: int, zero: float) -> dict[str, Any]:
     """Outputs by order, as in `Analysis.by_order`, up to an order; SI units and rad.
 
     zero : rad, direction from which crank angles count.
@@ -484,7 +483,7 @@ def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
     return result
 
 
-def _split(forces: Forces) -> Values:
+def _split(forces: Forces) -> dict[str, Any]:
     """Every force by cause, and by link: output -> cause or link -> array, or x and y.
 
     Raises
@@ -496,7 +495,7 @@ def _split(forces: Forces) -> Values:
     split_of = to_say("forces by cause and link at {count} crank angles, of {turns} turns")
     check_memory(SPLIT * links**2 * count, Note(split_of, count=count, turns=motion.turns))
     read = OutputSource(forces.motion, forces.split)
-    result: Values = {key: {"joints": {}} for key in ("by_cause", "by_link")}
+    result: dict[str, Any] = {key: {"joints": {}} for key in ("by_cause", "by_link")}
     for entry in DECLARED.values():
         if entry.part in ("x", "y") or not entry.is_split:
             continue
@@ -514,7 +513,7 @@ def _split(forces: Forces) -> Values:
     return result
 
 
-def _friction(losses: Losses | None) -> Values:
+def _friction(losses: Losses | None) -> dict[str, Any]:
     """What friction in joints costs, where there is some."""
     if losses is None:
         return {}
@@ -524,10 +523,10 @@ def _friction(losses: Losses | None) -> Values:
     return {"friction": {**given, **total, "joints": joints}}
 
 
-def _undecided(linkage: Linkage) -> Values:
+def _undecided(linkage: Linkage) -> dict[str, Any]:
     """Joints with statically indeterminate reactions; empty where there are none."""
     outcome = indeterminate_reactions(linkage)
-    result: Values = {}
+    result: dict[str, Any] = {}
     if outcome.open:
         rule = "stiffness" if outcome.by_stiffness else "least squares"
         result["open"] = {"joints": [*outcome.open], "rule": rule}

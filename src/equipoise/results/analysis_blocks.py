@@ -50,7 +50,7 @@ from equipoise.results.machine_blocks import (
     span,
 )
 from equipoise.results.outputs import CAUSES, TOTALS, tops_of
-from equipoise.results.remarks import Place, remarks_of
+from equipoise.results.remarks import RemarkPlace, remarks_of
 from equipoise.results.rotors import rotor_sentence
 from equipoise.results.yardsticks import (
     FigureAssessment,
@@ -202,7 +202,7 @@ def question_blocks(analysis: Analysis) -> Iterator[Block]:
     """What may not be meant as the file gives it; without masses also what else stands beside
     tables of forces, which there are none of.
     """
-    place: Place | None = "end" if analysis.has_forces else None
+    place: RemarkPlace | None = "end" if analysis.has_forces else None
     if questions := (*remarks_of(analysis, place),):
         yield Notes(questions)
 

@@ -186,7 +186,7 @@ class Notes:
 
 
 @dataclass(frozen=True)
-class Picture:
+class PictureBlock:
     """A chart, or a drawing that is made when it is wanted.
 
     chart : its data.  draw : makes it otherwise, as `figures` renders it.
@@ -232,7 +232,7 @@ class FileText:
     text: str
 
 
-Block = Text | Facts | Table | Notes | Picture | SvgPicture | FileText
+Block = Text | Facts | Table | Notes | PictureBlock | SvgPicture | FileText
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.i18n import say
 from equipoise.quantities import Dimension, Display, display, typeset
+from equipoise.signals import Array
 from equipoise.symbols.shapes import Shape
 
-Array = np.ndarray[Any, Any]
 Across = Literal["x", "y"]
 """Which axis a line, a band or bars stand on."""
 

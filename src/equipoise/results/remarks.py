@@ -22,7 +22,7 @@ from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import format_quantity, number, percent
 from equipoise.results.outputs import LEAST_MEAN, AnalysisOutputs, motor_torque
 
-Place = Literal["parts", "joints", "sections", "end"]
+RemarkPlace = Literal["parts", "joints", "sections", "end"]
 
 
 class AnalyzedMachine(Protocol):
@@ -49,7 +49,7 @@ class RemarkKind(NamedTuple):
     of_linkage : remarks of a linkage, where they need no motion; in the place of `of`.
     """
 
-    place: Place
+    place: RemarkPlace
     of: Callable[[AnalyzedMachine], Iterable[Note | str]] = lambda _: ()
     of_forces: bool = False
     of_linkage: Callable[[Linkage], Iterable[Note | str]] = lambda _: ()
@@ -84,7 +84,7 @@ KINDS = (
 )
 
 
-def remarks_of(analysis: AnalyzedMachine, place: Place | None = None) -> Iterator[Note | str]:
+def remarks_of(analysis: AnalyzedMachine, place: RemarkPlace | None = None) -> Iterator[Note | str]:
     """What may not be meant, and where the machine fails; of one place alone if that is given."""
     for kind in KINDS:
         if place in (None, kind.place) and (analysis.has_forces or not kind.of_forces):

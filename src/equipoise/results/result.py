@@ -174,10 +174,11 @@ def words_of(model: Any) -> Mapping[str, str]:
     return words
 
 
-Values = dict[str, Any]
 PLAIN = (str, int, float, np.ndarray)
 
 
+ProgressCallback = Callable[[int, int], None]
+"""Called as work goes on, with how much is done, and of how much."""
 Along = tuple[tuple[str, ...], Array]
 """Names of the axes of an array, and the array."""
 
@@ -209,7 +210,7 @@ class Result(Displayed):
         """Inside, values are shown in the units and words of the machine, as of `in_own_words`."""
         return in_own_words(self.owner)
 
-    def to_dict(self) -> Values:
+    def to_dict(self) -> dict[str, Any]:
         """The machine-readable output, in SI units: dicts, numbers and arrays.
 
         What it declares; where that is nothing, its fields that are plain values.

@@ -47,7 +47,7 @@ from equipoise.running.strokes import Strokes
 from equipoise.signals import Array
 from equipoise.vibration.support_motion import NO_MOUNTS, SpatialMounts, SupportMotion, SupportPlace
 
-Read = Callable[[Array, Array], SupportPlace]
+SupportReader = Callable[[Array, Array], SupportPlace]
 """Where the support is, by coordinates (C, K) of a machine and their rates."""
 AT_CONTACT = 1e-9
 """Share of a mount's usual force within which it is just letting go, or touching."""
@@ -73,7 +73,7 @@ class MountContacts:
     one_sided : names of mounts that push only, and their places.
     """
 
-    def __init__(self, mounts: SpatialMounts, size: float, read: Read) -> None:
+    def __init__(self, mounts: SpatialMounts, size: float, read: SupportReader) -> None:
         """size : of usual displacements, m.  read : where the support is."""
         self.read = read
         contacts = mounts.contacts

@@ -49,7 +49,7 @@ FARTHEST = 0.5
 """Share of the speed by which a step may change it."""
 MOST_CYCLES = 40
 
-Start = tuple[float, float, float | None]
+InitialState = tuple[float, float, float | None]
 """Speed, rad/s, current, A, and lag, rad, with which `Integration.follow` begins."""
 
 
@@ -143,7 +143,7 @@ class Shooting:
             raise Stopped
         return self.end_of(run), np.vstack(run.track)
 
-    def start_of(self, state: Array) -> Start:
+    def start_of(self, state: Array) -> InitialState:
         """What is followed from a state on; the lag is None without a servo motor."""
         speed, *others = (np.array(self.sizes) * state).tolist()
         current = others[0] if self.driver.lags else 0.0
@@ -557,7 +557,7 @@ class MotorCycles:
         ------
         ResponseError : it takes too many turns.
         """
-        start: Start = (speed, 0.0, None)
+        start: InitialState = (speed, 0.0, None)
         count = FIRST_CYCLES
         in_cycle = max(round(shooting.equation.period / (2 * pi)), 1)
         while (count := min(count, (MOST_TURNS - self.turns) // in_cycle)) > 0:
@@ -581,7 +581,7 @@ class MotorCycles:
             )
         )
 
-    def _turned(self, equation: CrankEquation, start: Start, turns: int) -> Integration:
+    def _turned(self, equation: CrankEquation, start: InitialState, turns: int) -> Integration:
         """So many turns from speed, current and lag on, or until something ends the run before."""
         before = self.turns
         run = Integration(

@@ -13,6 +13,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.run_plans import MOST_TURNS, RunPlan
 from equipoise.quantities import Dimension, in_si
+from equipoise.results.result import ProgressCallback
 from equipoise.running.collocation import ELECTRIC
 from equipoise.running.drivers import Driver
 from equipoise.running.drives_equation import BRAKE, DrivesEquation
@@ -40,7 +41,6 @@ TURNS = 300
 TURNS_OF_DRIVES = 30
 """The same of several drives, each turn of which takes longer to follow; two motors of their own
 speeds never come to a steady state."""
-Progress = Callable[[int, int], None]
 
 
 def _check_turns(turns: float | None) -> None:
@@ -80,7 +80,7 @@ def run(
     off_turns: float | None = None,
     fluctuation: float | str | None = None,
     support: bool | None = None,
-    progress: Progress | None = None,
+    progress: ProgressCallback | None = None,
 ) -> Run | DrivesRun:
     """Let a machine run: its crank follows from motor, weight, springs and loads.
 
@@ -184,7 +184,7 @@ def _start(usual: float, speed: float | str | None, angle: float | str | None) -
     return start
 
 
-def _turns_counted(limits: Limits, progress: Progress | None) -> Callable[[float], None]:
+def _turns_counted(limits: Limits, progress: ProgressCallback | None) -> Callable[[float], None]:
     """What is called with the turns of the crank so far."""
     if progress is None or not 1 <= limits.turns < inf:
         return lambda turns: None

@@ -10,7 +10,7 @@ from equipoise.keys import Frozen
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import write
 from equipoise.schema.models import dumped, loads_linkage, loads_tool, save_model
-from equipoise.schema.open_files import Folder, Opened, kind_of_text, opened
+from equipoise.schema.open_files import FolderPath, Opened, kind_of_text, opened
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -37,7 +37,7 @@ def load(path_or_name: str | os.PathLike[str]) -> Any:
     return _loaded(opened(path_or_name))
 
 
-def loads(text: str, source: str = "<text>", folder: Folder = None) -> Any:
+def loads(text: str, source: str = "<text>", folder: FolderPath = None) -> Any:
     """Read the text of a file of any kind, as `load`.
 
     Parameters

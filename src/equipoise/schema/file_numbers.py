@@ -40,12 +40,12 @@ from equipoise.schema.numbers import (
     POLAR,
     XYZ,
     FileNumber,
+    FileVector,
     PlanePair,
-    Vector,
     read_number,
     vector_of,
 )
-from equipoise.schema.open_files import Kind, document_of
+from equipoise.schema.open_files import ModelKind, document_of
 from equipoise.schema.writing import plain_default
 
 Content = Mapping[str, Any]
@@ -62,13 +62,13 @@ class NumberLocation:
 
     place: KeyPath
     number: FileNumber | None = None
-    whole: Vector | PlanePair | None = None
+    whole: FileVector | PlanePair | None = None
     part: str = ""
     rest: str = ""
     defaults: Mapping[KeyPath, Any] = field(default_factory=dict)
 
 
-def find(content: Content, kind: Kind, path: str) -> NumberLocation:
+def find(content: Content, kind: ModelKind, path: str) -> NumberLocation:
     """Where the number of a path stands.
 
     Raises
@@ -97,12 +97,12 @@ def find(content: Content, kind: Kind, path: str) -> NumberLocation:
     return NumberLocation(place, number, defaults=defaults)
 
 
-def all_numbers(content: Content, kind: Kind) -> dict[str, FileNumber]:
+def all_numbers(content: Content, kind: ModelKind) -> dict[str, FileNumber]:
     """Every number that is written in a model file, by its path."""
     return dict(_walk(content, KeyPath(), kind))
 
 
-def _walk(here: Any, place: KeyPath, kind: Kind) -> Iterator[tuple[str, FileNumber]]:
+def _walk(here: Any, place: KeyPath, kind: ModelKind) -> Iterator[tuple[str, FileNumber]]:
     vector, number = _vector_at(kind, place, here), read_number(here)
     if vector is not None:
         for part, component in vector.numbers.items():
@@ -114,7 +114,7 @@ def _walk(here: Any, place: KeyPath, kind: Kind) -> Iterator[tuple[str, FileNumb
             yield from _walk(below, place / key, kind)
 
 
-def _vector_at(kind: Kind, place: KeyPath, here: Any) -> Vector | None:
+def _vector_at(kind: ModelKind, place: KeyPath, here: Any) -> FileVector | None:
     """The vector at a place, or None: lengths in a list that is no point are values of their own,
     such as the two ends of a lift.
     """
@@ -124,7 +124,9 @@ def _vector_at(kind: Kind, place: KeyPath, here: Any) -> Vector | None:
     return vector
 
 
-def _group(here: Any, step: str | int, kind: Kind, place: KeyPath) -> Vector | PlanePair | None:
+def _group(
+    here: Any, step: str | int, kind: ModelKind, place: KeyPath
+) -> FileVector | PlanePair | None:
     """The vector or pair of planes that has a number of that name, or None."""
     if kind == "tool" and step in PLANES and isinstance(here, str):
         number = read_number(here)
@@ -140,18 +142,18 @@ def _group(here: Any, step: str | int, kind: Kind, place: KeyPath) -> Vector | P
 # -- what the file can have at a place -------------------------------------------------------------
 
 
-def key_at(kind: Kind, place: KeyPath) -> Key | None:
+def key_at(kind: ModelKind, place: KeyPath) -> Key | None:
     """The key at the end of a place; None where it is a name of the user's, or unknown."""
     above = _kind_at(kind, place.parent)
     return all_keys(above.type).get(str(place[-1])) if isinstance(above, KeyTable) else None
 
 
-def is_whole(kind: Kind, place: KeyPath) -> bool:
+def is_whole(kind: ModelKind, place: KeyPath) -> bool:
     """Whether only whole numbers will do at a place."""
     return isinstance(_kind_at(kind, place), Whole)
 
 
-def _kind_at(kind: Kind, place: KeyPath) -> KeyKind | None:
+def _kind_at(kind: ModelKind, place: KeyPath) -> KeyKind | None:
     """What stands at a place; None where nothing is known of it."""
     key_kind: KeyKind | None = KeyTable(document_of(kind))
     for step in place:
@@ -168,7 +170,7 @@ def _kind_at(kind: Kind, place: KeyPath) -> KeyKind | None:
 # -- one step --------------------------------------------------------------------------------------
 
 
-def _below(content: Content, kind: Kind, path: str, place: KeyPath, here: Any) -> Any:
+def _below(content: Content, kind: ModelKind, path: str, place: KeyPath, here: Any) -> Any:
     """What stands at a place, of which `here` stands above; what is left out is its default."""
     step = place[-1]
     if isinstance(step, int) and isinstance(here, list) and step < len(here):
@@ -231,11 +233,11 @@ def _no_number(path: str, here: Any) -> Note:
     return Note("{path} is {what}; give the path of one number", path=path, what=what)
 
 
-Given = tuple[str, NumberLocation, float]
+NumberChange = tuple[str, NumberLocation, float]
 """Path of a number, where it stands, and what is to stand there."""
 
 
-def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
+def replaced(content: Content, given: Iterable[NumberChange]) -> dict[str, Any]:
     """The content with other numbers.
 
     Raises
@@ -245,7 +247,7 @@ def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
     changes: dict[KeyPath, Any] = {}
     defaults: dict[KeyPath, Any] = {}
     parts: dict[KeyPath, dict[str, float]] = {}
-    wholes: dict[KeyPath, Vector | PlanePair] = {}
+    wholes: dict[KeyPath, FileVector | PlanePair] = {}
     for path, result, value in given:
         if isinstance(value, bool) or not isinstance(value, Real):
             raise ModelError(path, Note("got {value!r}; give a number", value=value))
@@ -270,7 +272,7 @@ def _check_company(
             path, Note("{path} is a number that varies already; leave one of them out", path=path)
         )
     forms = {key in POLAR for key in (location.part, *siblings)}
-    if isinstance(location.whole, Vector) and len(forms) == 2:
+    if isinstance(location.whole, FileVector) and len(forms) == 2:
         above = path.rpartition(".")[0]
         raise ModelError(
             path,
@@ -382,7 +384,7 @@ def plain_word(key: Key) -> str:
 
 def words_of(
     content: Content,
-    kind: Kind,
+    kind: ModelKind,
     location: NumberLocation,
     others: Collection[str] = (),
     known: int = 0,
@@ -423,7 +425,7 @@ def _number(layer: Layer) -> str:
     return "" if flag else layer.names.get("number", "")
 
 
-def _layers(content: Content, kind: Kind, place: KeyPath) -> list[Layer]:
+def _layers(content: Content, kind: ModelKind, place: KeyPath) -> list[Layer]:
     """Keys on the way to a place; none where they are not known."""
     key_kind: KeyKind = KeyTable(document_of(kind))
     here: Any = content

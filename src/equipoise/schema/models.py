@@ -20,7 +20,7 @@ from equipoise.quantities import format_exact, parse, showing_by_default
 from equipoise.schema.files import printable, write
 from equipoise.schema.numbers import format_share, parse_share
 from equipoise.schema.open_files import (
-    Folder,
+    FolderPath,
     Opened,
     bundled,
     content_of,
@@ -40,7 +40,7 @@ def load_linkage(path_or_name: str | os.PathLike[str]) -> Machine:
     return loads_linkage(*opened(path_or_name))
 
 
-def loads_linkage(text: str, source: str = "<text>", folder: Folder = None) -> Machine:
+def loads_linkage(text: str, source: str = "<text>", folder: FolderPath = None) -> Machine:
     """Read the text of the file of a linkage and of nothing else; as `loads`."""
     with in_file(source):
         return machine_of(content_of(text, "linkage"), AdjacentFiles(folder))
@@ -51,7 +51,7 @@ def load_tool(path_or_name: str | os.PathLike[str]) -> Tool:
     return loads_tool(*opened(path_or_name))
 
 
-def loads_tool(text: str, source: str = "<text>", folder: Folder = None) -> Tool:
+def loads_tool(text: str, source: str = "<text>", folder: FolderPath = None) -> Tool:
     """Read the text of a tool's file and of nothing else; as `loads`."""
     with in_file(source):
         return tool_of(content_of(text, "tool"), AdjacentFiles(folder))
@@ -127,7 +127,7 @@ class AdjacentFiles:
     folder : None where the model did not come from a file; then every table is refused.
     """
 
-    def __init__(self, folder: Folder) -> None:
+    def __init__(self, folder: FolderPath) -> None:
         self.folder = None if folder is None else Path(folder)
 
     def read(self, sort: str, file: str) -> Any:

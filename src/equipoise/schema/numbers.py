@@ -196,7 +196,7 @@ def si_value(where: str, given: Any, dimension: str | None) -> float:
 
 
 @dataclass(frozen=True)
-class Vector:
+class FileVector:
     """Two or three components in a list, or a point by distance and direction.
 
     given : as it stands in the file.
@@ -257,7 +257,7 @@ class PlanePair:
         return dict.fromkeys(PLANES, self.number)
 
     def changed(self, values: Mapping[str, float]) -> Any:
-        """As `Vector.changed`."""
+        """As `FileVector.changed`."""
         if all(value == self.number.value for value in values.values()):
             return self.given
         return {
@@ -265,7 +265,7 @@ class PlanePair:
         }
 
 
-def vector_of(given: Any) -> Vector | None:
+def vector_of(given: Any) -> FileVector | None:
     """A list of two or three quantities, or a point by distance and direction; else None."""
     if isinstance(given, dict) and set(given) == set(POLAR):
         distance, direction = (read_number(given[key]) for key in POLAR)
@@ -278,11 +278,11 @@ def vector_of(given: Any) -> Vector | None:
                 "angle",
             )
         ):
-            return Vector(given, from_polar(distance.value, direction.value), "length")
+            return FileVector(given, from_polar(distance.value, direction.value), "length")
     if isinstance(given, list) and len(given) in (2, 3):
         numbers = [read_number(item) for item in given]
         kinds = {None if number is None else number.dimension for number in numbers}
         dimension = kinds.pop()
         if not kinds and dimension in VECTORS:
-            return Vector(given, tuple(number.value for number in numbers if number), dimension)
+            return FileVector(given, tuple(number.value for number in numbers if number), dimension)
     return None

@@ -175,7 +175,7 @@ def _unassigned(line: str) -> Note | None:
     return None
 
 
-Kind = Literal["linkage", "tool"]
+ModelKind = Literal["linkage", "tool"]
 FileKind = Literal["linkage", "tool", "study"]
 TABLES: dict[FileKind, set[str]] = {
     "linkage": {"drive", "frame", "links"},
@@ -198,7 +198,7 @@ MIGRATIONS: dict[int, Callable[[dict[str, Any]], dict[str, Any]]] = {}
 _ENDLESS_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]++["']?[ \t]*+\.[ \t]*+){50}""")
 
 
-Folder = str | os.PathLike[str] | None
+FolderPath = str | os.PathLike[str] | None
 
 
 class Opened(NamedTuple):
@@ -218,7 +218,7 @@ def in_file(source: str) -> Iterator[None]:
         raise error.at(printable(error.where), source) from error
 
 
-def opened(path_or_name: str | os.PathLike[str], *, within: Folder = None) -> Opened:
+def opened(path_or_name: str | os.PathLike[str], *, within: FolderPath = None) -> Opened:
     """Open a file, or a bundled example by its name.
 
     within : folder out of which no link may lead, where a file in it has named this one.

@@ -22,7 +22,7 @@ from equipoise.keys.paths import KeyPath, quoted
 from equipoise.mechanism.checks import FRAME, unknown
 from equipoise.mechanism.parts.shown_units import SIGN, worked_out
 from equipoise.quantities import KINDS, Dimension, as_written, described, format_exact, parse
-from equipoise.quantities.expressions import Names, is_expression
+from equipoise.quantities.expressions import NamedAmounts, is_expression
 from equipoise.quantities.reading import got
 from equipoise.schema.numbers import Polar
 
@@ -59,7 +59,7 @@ class Context:
     makers: Mapping[type[keys.Frozen], Callable[[dict[str, Any]], Any]] = field(
         default_factory=dict
     )
-    names: Names = field(default_factory=dict)
+    names: NamedAmounts = field(default_factory=dict)
     bodies: Mapping[str, Any] = field(default_factory=dict)
     problems: list[tuple[KeyPath, Note]] = field(default_factory=list)
     expressions: dict[KeyPath, str] = field(default_factory=dict)
@@ -458,7 +458,7 @@ def _point(kind: keys.Point, given: Any, place: KeyPath, context: Context) -> An
 _VECTOR = Note('an angle such as "90 deg", or three plain numbers such as [0, 1, 0]')
 
 
-def _direction(kind: keys.Direction, given: Any, place: KeyPath, context: Context) -> Any:
+def _direction(kind: keys.DirectionKind, given: Any, place: KeyPath, context: Context) -> Any:
     if isinstance(given, list):
         return _listing(keys.Listing(keys.Number(), (3,), _VECTOR), given, place, context)
     if not isinstance(given, str):
@@ -517,7 +517,7 @@ def _read_dependent(
 READERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Context], Any]] = {
     keys.ParameterValue: lambda kind, given, place, context: given,
     keys.Anything: lambda kind, given, place, context: given,
-    keys.Direction: _direction,
+    keys.DirectionKind: _direction,
     keys.File: _file,
     keys.Flag: lambda kind, given, place, context: (
         given

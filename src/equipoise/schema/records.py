@@ -28,7 +28,7 @@ from equipoise.mechanism.parts.support import TIME_IN_PERIOD
 from equipoise.schema.files import read_text
 from equipoise.schema.tables import (
     TIMES,
-    Forms,
+    ColumnForms,
     Taken,
     arrays_of,
     check_width,
@@ -46,7 +46,7 @@ from equipoise.signals import Array
 
 LARGEST, LARGEST_SIGNAL = 100_000_000, 300_000_000
 """Bytes of a decay, and of accelerations: some millions of rows."""
-_RECORD: Forms = (("time", "displacement"), ("time", "angle"))
+_RECORD: ColumnForms = (("time", "displacement"), ("time", "angle"))
 ACCELERATION = "m/s^2"
 _GAUGE = re.compile(rf"gauges\.(?P<name>.+)\.acceleration \[{re.escape(ACCELERATION)}\]")
 """The column of a gauge's acceleration in a response over time."""
@@ -54,9 +54,9 @@ SWEPT = Note(
     "there are gauges, but none with accelerations over time, which "
     "`equipoise respond FILE --csv` writes at one speed"
 )
-_TASKS: Forms = (("acceleration", "duration"),)
-_SIGNAL: Forms = (("time", *AXES),)
-_SPECTRUM: Forms = (("frequency", *AXES),)
+_TASKS: ColumnForms = (("acceleration", "duration"),)
+_SIGNAL: ColumnForms = (("time", *AXES),)
+_SPECTRUM: ColumnForms = (("frequency", *AXES),)
 
 
 def read_record(path: str | os.PathLike[str]) -> Record:

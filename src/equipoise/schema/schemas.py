@@ -163,7 +163,7 @@ def _named(kind: keys.Named, definitions: Definitions) -> Schema:
     return {"anyOf": [table, names]} if kind.listed else table
 
 
-def _direction(kind: keys.Direction, definitions: Definitions) -> Schema:
+def _direction(kind: keys.DirectionKind, definitions: Definitions) -> Schema:
     vector = _listing(keys.Listing(keys.Number(), (3,)), definitions)
     either = [_schema(keys.Quantity(dimension="angle"), definitions), vector]
     text = "angle in the plane of the drawing, or a vector of three plain numbers"
@@ -207,7 +207,7 @@ def _table(kind: keys.KeyTable, definitions: Definitions) -> Schema:
 SCHEMAS: Mapping[type[keys.Kind], Callable[[Any, Definitions], Schema]] = {
     keys.ParameterValue: lambda kind, _: {"type": ["string", "number"]},
     keys.Anything: lambda kind, _: dict(kind.schema or {}),
-    keys.Direction: _direction,
+    keys.DirectionKind: _direction,
     keys.File: lambda kind, _: {"type": "string"},
     keys.Flag: lambda kind, _: {"type": "boolean"},
     keys.Listing: _listing,

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from equipoise.design.variables import Choices, Normal, Range, Spread, Uniform, Variable
+from equipoise.design.variables import Choices, Normal, NumberSpread, Range, Uniform, Variable
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.keys.requirement_kinds import REQUIREMENT_KINDS
@@ -164,7 +164,7 @@ def _vary(where: str, given: VaryTable, template: Template) -> Variable:
     return Variable(given.path, spread, dimension)
 
 
-def _spread(where: str, given: VaryTable, value: float, dimension: str | None) -> Spread:
+def _spread(where: str, given: VaryTable, value: float, dimension: str | None) -> NumberSpread:
     def read(key: str, item: Any) -> float:
         return value if item is None else si_value(f"{where}{key}", item, dimension)
 

@@ -9,8 +9,8 @@ from equipoise.keys import (
     SCHEMA_VERSION,
     VERSION,
     Anything,
-    Conditions,
     Frozen,
+    KeyConditions,
     Keys,
     KeyTable,
     Listing,
@@ -61,7 +61,7 @@ class UniformTable(Frozen):
 class VaryTable(Frozen):
     """A number of the model that varies: over a range or a list, or by a tolerance."""
 
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [{"required": [spread]} for spread in SPREADS],
         "dependentRequired": {"steps": ["range"]},
     }
@@ -123,7 +123,7 @@ class OutputTable(Frozen):
 class AccuracyTable(Frozen):
     """How exactly figures of an analysis are computed."""
 
-    conditions: ClassVar[Conditions] = {"maxProperties": 1}
+    conditions: ClassVar[KeyConditions] = {"maxProperties": 1}
 
     angles: int | None = key(ANY_WHOLE, "crank angles in a turn", default=None)
     tolerance: float | None = key(Number(), "to which figures stand still", default=None)

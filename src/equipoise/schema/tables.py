@@ -22,7 +22,7 @@ from contextvars import ContextVar
 from dataclasses import fields
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal
 
 from equipoise.errors import ModelError, UsageError, at_place
 from equipoise.i18n import Note, all_of, any_of
@@ -44,9 +44,9 @@ from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import from_polar
 
 if TYPE_CHECKING:
-    import numpy as np
+    from equipoise.signals import Array
 
-Row = tuple[int, list[str]]
+NumberedRow = tuple[int, list[str]]
 """The number of a line, and the cells of its row."""
 
 COMMENTS = ("#", "%", "//")
@@ -72,7 +72,7 @@ def wrong(line: int, what: Note, column: str = "") -> ModelError:
     )
 
 
-def rows_of(text: str, columns: Mapping[str, str] | None = None) -> Iterator[Row]:
+def rows_of(text: str, columns: Mapping[str, str] | None = None) -> Iterator[NumberedRow]:
     """Rows that are neither blank nor comments; decimal commas as points where they are certain.
 
     The first is the header, which may be a comment right above the numbers.
@@ -84,7 +84,7 @@ def rows_of(text: str, columns: Mapping[str, str] | None = None) -> Iterator[Row
     return rows if columns is None else _taken(rows, columns)
 
 
-def _taken(rows: Iterator[Row], columns: Mapping[str, str]) -> Iterator[Row]:
+def _taken(rows: Iterator[NumberedRow], columns: Mapping[str, str]) -> Iterator[NumberedRow]:
     line, header = next(rows)
     places = [header.index(head) for head in columns]
     yield line, [*columns.values()]
@@ -93,7 +93,7 @@ def _taken(rows: Iterator[Row], columns: Mapping[str, str]) -> Iterator[Row]:
         yield line, [row[place] for place in places]
 
 
-def _rows(text: str) -> Iterator[Row]:
+def _rows(text: str) -> Iterator[NumberedRow]:
     at, header = _header(text)
     separator = _separator(at + 1, header)
     rows = _separated(text, at, header, separator)
@@ -127,7 +127,7 @@ def _separator(line: int, header: str) -> str:
     return matching_separators[0] if matching_separators else ","
 
 
-def _separated(text: str, at: int, header: str, separator: str) -> Iterator[Row]:
+def _separated(text: str, at: int, header: str, separator: str) -> Iterator[NumberedRow]:
     def lines() -> Iterator[str]:
         for number, line in enumerate(io.StringIO(text, newline="")):
             bare = line.lstrip()
@@ -148,7 +148,7 @@ def _separated(text: str, at: int, header: str, separator: str) -> Iterator[Row]
         raise wrong(reader.line_num, what) from error
 
 
-def _has_decimal_commas(rows: list[Row]) -> bool:
+def _has_decimal_commas(rows: list[NumberedRow]) -> bool:
     """Whether a comma is the decimal sign everywhere, and somewhere can be nothing else."""
     cells = [cell for _, row in rows[1:] for cell in row if _NUMBER.fullmatch(cell)]
     commas = [cell for cell in cells if "," in cell]
@@ -157,7 +157,7 @@ def _has_decimal_commas(rows: list[Row]) -> bool:
     return any(not all(readings(cell)) for cell in commas)
 
 
-def _with_points(rows: list[Row]) -> list[Row]:
+def _with_points(rows: list[NumberedRow]) -> list[NumberedRow]:
     return [rows[0], *((line, [_pointed(cell) for cell in row]) for line, row in rows[1:])]
 
 
@@ -198,9 +198,8 @@ def shortened(cell: str) -> str:
     return repr(cell if len(cell) <= 60 else f"{cell[:57]}...")
 
 
-Array: TypeAlias = "np.ndarray[Any, Any]"
-Columns = dict[str, tuple[float, ...]]
-Forms = tuple[tuple[str, ...], ...]
+NumbersByName = dict[str, tuple[float, ...]]
+ColumnForms = tuple[tuple[str, ...], ...]
 """Columns of each form of a table; the first must rise from row to row."""
 Taken = Mapping[str, str] | None
 
@@ -237,7 +236,7 @@ TIMES = ("time", TIME_IN_PERIOD)
 """Columns of time: of any record, and of one that is whole periods of a steady vibration."""
 
 
-def _column(name: str, forms: Forms) -> tuple[Dimension, str]:
+def _column(name: str, forms: ColumnForms) -> tuple[Dimension, str]:
     """Dimension of a column, and the unit that it is shown with."""
     first = forms[0][0] if forms else ""
     return CsvTable.like(first).columns.get(name) or COLUMNS[name]
@@ -258,7 +257,7 @@ def in_table(path: str | os.PathLike[str]) -> Iterator[None]:
         raise ModelError("", Note("{place}, {what}", place=place, what=error.what)) from error
 
 
-def headers_wanted(forms: Forms, first: str = "") -> Note:
+def headers_wanted(forms: ColumnForms, first: str = "") -> Note:
     """Say which headers would be right; `first` begins each."""
     return one_header_of(headers_of(forms, first))
 
@@ -268,7 +267,7 @@ def one_header_of(headers: Sequence[str]) -> Note:
     return Note("the header is {headers}", headers=any_of(headers))
 
 
-def headers_of(forms: Forms, first: str = "") -> list[str]:
+def headers_of(forms: ColumnForms, first: str = "") -> list[str]:
     """Headers that would be right; `first` begins each."""
 
     whole = [form for form in forms if not any(set(form) < set(other) for other in forms)]
@@ -279,7 +278,7 @@ def headers_of(forms: Forms, first: str = "") -> list[str]:
 # -- reading ---------------------------------------------------------------------------------------
 
 
-def columns_of(text: str, forms: Forms, taken: Taken = None) -> Columns:
+def columns_of(text: str, forms: ColumnForms, taken: Taken = None) -> NumbersByName:
     """Columns of a table by name, in SI units and radians; `taken` as of `rows_of`."""
     rows = rows_of(text, taken)
     number, header = next(rows, (1, []))
@@ -304,7 +303,7 @@ def columns_of(text: str, forms: Forms, taken: Taken = None) -> Columns:
     return by_name
 
 
-def arrays_of(text: str, forms: Forms, taken: Taken = None) -> dict[str, Array]:
+def arrays_of(text: str, forms: ColumnForms, taken: Taken = None) -> dict[str, Array]:
     """Columns of a table as arrays (N,), for files of a million rows: cell by cell only to locate
     an error.
     """
@@ -317,7 +316,7 @@ def arrays_of(text: str, forms: Forms, taken: Taken = None) -> dict[str, Array]:
     return arrays
 
 
-def _whole(lines: Iterator[Row], forms: Forms) -> dict[str, Array] | None:
+def _whole(lines: Iterator[NumberedRow], forms: ColumnForms) -> dict[str, Array] | None:
     """All columns together; None where a row or cell is not what it should be."""
     import numpy as np
 
@@ -344,7 +343,7 @@ def _whole(lines: Iterator[Row], forms: Forms) -> dict[str, Array] | None:
 
 
 def header_of(
-    line: int, cells: list[str], forms: Forms, right: Note | None = None
+    line: int, cells: list[str], forms: ColumnForms, right: Note | None = None
 ) -> tuple[list[str], list[str]]:
     """Names and units of the columns; a wrong one is refused with its line.
 
@@ -387,7 +386,7 @@ def header_of(
     return names, unit_of
 
 
-def value_of(line: int, name: str, unit: str, cell: str, forms: Forms = ()) -> float:
+def value_of(line: int, name: str, unit: str, cell: str, forms: ColumnForms = ()) -> float:
     """A cell in SI units."""
     try:
         return parse(f"{cell} {unit}", _column(name, forms)[0])

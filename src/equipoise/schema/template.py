@@ -35,7 +35,7 @@ from equipoise.schema.file_numbers import (
 )
 from equipoise.schema.models import AdjacentFiles, HeldFiles, machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import FileNumber
-from equipoise.schema.open_files import Kind, Opened, in_file, kind_of, model_content, opened
+from equipoise.schema.open_files import ModelKind, Opened, in_file, kind_of, model_content, opened
 from equipoise.schema.tables import TABLES
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class Template:
         return cls(text_of(model, names), model.title, known=known)
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> ModelKind:
         """``linkage`` or ``tool``."""
         return "tool" if kind_of(self._content) == "tool" else "linkage"
 

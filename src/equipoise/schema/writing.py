@@ -15,7 +15,7 @@ from equipoise.i18n import Worded
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts.shown_units import SIGN, worked_out
 from equipoise.quantities import KINDS, Dimension, format_exact, parse
-from equipoise.quantities.expressions import Names
+from equipoise.quantities.expressions import NamedAmounts
 from equipoise.schema.numbers import POLAR, written_point
 from equipoise.schema.reading import within
 
@@ -28,7 +28,7 @@ class WorkedOut:
     """
 
     expressions: Mapping[str, str] = field(default_factory=dict)
-    names: Names = field(default_factory=dict)
+    names: NamedAmounts = field(default_factory=dict)
 
     def of(self, value: float, dimension: Dimension | None, place: KeyPath) -> str | None:
         """The expression that gives exactly the value at a place; None where none does."""
@@ -160,7 +160,7 @@ def _length(value: float, place: KeyPath, writer: Writer) -> str:
     return writer.worked_out.of(value, "length", place) or format_exact(value, "length")
 
 
-def _direction(kind: keys.Direction, value: Any, place: KeyPath, writer: Writer) -> Any:
+def _direction(kind: keys.DirectionKind, value: Any, place: KeyPath, writer: Writer) -> Any:
     if isinstance(value, tuple):
         return [tidy(component) for component in value]
     return _number(keys.Quantity(dimension="angle"), value, place, writer)
@@ -206,7 +206,7 @@ WRITERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Writer], Any]] = {
         value if isinstance(value, str) else tidy(value)
     ),
     keys.Anything: lambda kind, value, place, writer: value,
-    keys.Direction: _direction,
+    keys.DirectionKind: _direction,
     keys.File: lambda kind, value, place, writer: writer.names[place.abbreviated],
     keys.Flag: lambda kind, value, place, writer: value,
     keys.Listing: _listing,
@@ -319,7 +319,7 @@ HEADINGS = ("key", "kind", "default", "meaning")
 _COUNTS = {2: "two", 3: "three"}
 WORDS: dict[type[keys.Kind], str] = {
     keys.Anything: "value",
-    keys.Direction: "angle, or vector",
+    keys.DirectionKind: "angle, or vector",
     keys.File: "file",
     keys.Flag: "true or false",
     keys.Number: "number",

@@ -21,7 +21,7 @@ from equipoise.signals import Array
 from equipoise.studies.outcomes import far_apart, signs_of
 
 if TYPE_CHECKING:
-    from equipoise.design.variables import Spread
+    from equipoise.design.variables import NumberSpread
     from equipoise.keys.requirement_kinds import Make
     from equipoise.studies.objective_map import Landscape
     from equipoise.studies.searching import Searched
@@ -60,16 +60,16 @@ class Unit:
         return value / self.factor
 
 
-Units = Mapping[str, Unit]
+UnitsByName = Mapping[str, Unit]
 
 
-def unit_in(units: Units | None, name: str) -> Unit:
+def unit_in(units: UnitsByName | None, name: str) -> Unit:
     """Unit and label of a number or figure; SI and its path or name, where nothing is known."""
     result = (units or {}).get(name, Unit())
     return result if result.label else replace(result, label=name)
 
 
-def named_together(names: Sequence[str], units: Units | None) -> str:
+def named_together(names: Sequence[str], units: UnitsByName | None) -> str:
     """Numbers that vary together in words; what they are of is said once."""
     result = _joined([unit_in(units, name).label for name in names])
     return result.localized() if isinstance(result, Note) else result
@@ -97,7 +97,7 @@ def labelled(unit: Unit) -> str:
     return say(", ").join(filter(None, (unit.called, unit.name)))
 
 
-def spread_text(spread: Spread, unit: Unit) -> str:
+def spread_text(spread: NumberSpread, unit: Unit) -> str:
     """How a number varies, such as ``60.00 to 80.00`` or ``71.50 +- 0.2000``, without its unit."""
 
     def formatted(value: float) -> str:
@@ -137,7 +137,7 @@ def designs_table(
     labels: Sequence[str],
     columns: Mapping[str, Array],
     first: Iterable[str],
-    units: Units | None,
+    units: UnitsByName | None,
 ) -> Table:
     """Designs (K), one row each, with columns (K,) in SI units by name.
 
@@ -150,13 +150,13 @@ def designs_table(
     return Table(title, (Column(say("design")), *heads), tuple(zip(labels, *cells, strict=True)))
 
 
-def wanted(by: Mapping[str, Make], units: Units | None) -> str:
+def wanted(by: Mapping[str, Make], units: UnitsByName | None) -> str:
     """Goals in words, such as ``vertical smallest, swing largest``."""
     ways = {"smallest": say("smallest"), "largest": say("largest")}
     return say(", ").join(f"{unit_in(units, name).called} {ways[way]}" for name, way in by.items())
 
 
-def limits(outputs: Iterable[Output], units: Units | None) -> list[str]:
+def limits(outputs: Iterable[Output], units: UnitsByName | None) -> list[str]:
     """Every limit as one says it, such as ``vertical at most 12.00 N``."""
     names = []
     for output in outputs:
@@ -168,13 +168,13 @@ def limits(outputs: Iterable[Output], units: Units | None) -> list[str]:
     return names
 
 
-def _limits(outputs: Iterable[Output], units: Units | None) -> Iterator[Block]:
+def _limits(outputs: Iterable[Output], units: UnitsByName | None) -> Iterator[Block]:
     if text := limits(outputs, units):
         yield Text(say("Limits: {limits}", limits=say(", ").join(text)))
 
 
 def best_blocks(
-    best: Best, outputs: Sequence[Output] = (), units: Units | None = None
+    best: Best, outputs: Sequence[Output] = (), units: UnitsByName | None = None
 ) -> Iterator[Block]:
     """What is best of how many, within which limits, and the designs."""
     counted = {"stored": best.stored, "computed": best.computed, "kept": best.kept}
@@ -195,7 +195,7 @@ def best_blocks(
         yield Facts(say("Names for --by:"), paths)
 
 
-def best_table(best: Best, units: Units | None = None) -> Table:
+def best_table(best: Best, units: UnitsByName | None = None) -> Table:
     """The designs, the best first."""
     columns = columns_of(best.numbers, best.values, best.outputs, best.figures)
     labels = [str(design) for design in best.designs]
@@ -213,7 +213,7 @@ def best_table(best: Best, units: Units | None = None) -> Table:
 
 
 def searched_blocks(
-    searched: Searched, units: Units | None = None, own: tuple[Array, Array] | None = None
+    searched: Searched, units: UnitsByName | None = None, own: tuple[Array, Array] | None = None
 ) -> Iterator[Block]:
     """How the search went, and the front.
 
@@ -242,7 +242,7 @@ def searched_blocks(
         yield Notes((Note(UNPROVED),))
 
 
-def _front(searched: Searched, units: Units | None, own: tuple[Array, Array] | None) -> Table:
+def _front(searched: Searched, units: UnitsByName | None, own: tuple[Array, Array] | None) -> Table:
     signs = signs_of(searched.objectives.values())
     outputs = [searched.study.names.index(name) for name in searched.objectives]
     shown = far_apart(signs * searched.figures[:, outputs], MOST)
@@ -294,7 +294,9 @@ class Summary:
         return any(output.limited for output in self.outputs)
 
 
-def summary_blocks(summary: Summary, units: Units | None = None, run: str = "") -> Iterator[Block]:
+def summary_blocks(
+    summary: Summary, units: UnitsByName | None = None, run: str = ""
+) -> Iterator[Block]:
     """Counts, the best designs, and what can be done with the store.
 
     run : how long it took.
@@ -376,7 +378,7 @@ CHANCE, FINE = 4, 1000
 """Machines that a change has to bring within all limits not to be chance; rows for two digits."""
 
 
-def tolerances_blocks(tolerances: Tolerances, units: Units | None = None) -> Iterator[Block]:
+def tolerances_blocks(tolerances: Tolerances, units: UnitsByName | None = None) -> Iterator[Block]:
     """Scatter, limits, causes, and a sentence on what to do."""
     sampling = say(
         "{count} machines drawn, seed {seed}",
@@ -398,7 +400,7 @@ def tolerances_blocks(tolerances: Tolerances, units: Units | None = None) -> Ite
         yield Notes(notes)
 
 
-def _scatters(tolerances: Tolerances, units: Units | None) -> Table:
+def _scatters(tolerances: Tolerances, units: UnitsByName | None) -> Table:
     scatters = tolerances.scatters.values()
     every = sorted({p for scatter in scatters for p in scatter.percentiles})
     shared = [p for p in every if all(p in scatter.percentiles for scatter in scatters)]
@@ -412,7 +414,7 @@ def _scatters(tolerances: Tolerances, units: Units | None) -> Table:
     return Table(title, tuple(map(Column, labels)), tuple(rows))
 
 
-def _limits_table(tolerances: Tolerances, units: Units | None) -> Table:
+def _limits_table(tolerances: Tolerances, units: UnitsByName | None) -> Table:
     rows = []
     for name, scatter in tolerances.scatters.items():
         if scatter.within is None:
@@ -434,7 +436,7 @@ def _share(share: IntervalEstimate) -> str:
     return f"{value} % ({say('{low} to {high}', low=low, high=high)} %)"
 
 
-def _causes(tolerances: Tolerances, units: Units | None) -> Table:
+def _causes(tolerances: Tolerances, units: UnitsByName | None) -> Table:
     digits, has_unchanged = _digits(tolerances), tolerances.unchanged is not None
     rows: list[tuple[Cell, ...]] = []
     for cause in tolerances.causes:
@@ -453,7 +455,7 @@ def _causes(tolerances: Tolerances, units: Units | None) -> Table:
     return Table(title, columns, tuple(rows))
 
 
-def tolerance_text(tolerances: Tolerances, path: str, units: Units | None) -> str:
+def tolerance_text(tolerances: Tolerances, path: str, units: UnitsByName | None) -> str:
     """A tolerance as text: ``+- 0.1000 mm`` or ``deviation 2.000 g``."""
     unit = unit_in(units, path)
     (spread,) = (item.spread for item in tolerances.study.vary if item.path == path)
@@ -466,7 +468,7 @@ def tolerance_text(tolerances: Tolerances, path: str, units: Units | None) -> st
     return say("deviation {size}, cut at {cut}", size=size, cut=f"{spread.cut:g}")
 
 
-def _variances(tolerances: Tolerances, units: Units | None) -> Table:
+def _variances(tolerances: Tolerances, units: UnitsByName | None) -> Table:
     """The share of each cause in the variance of each figure."""
     names = [name for name in tolerances.scatters if name in tolerances.causes[0].effects]
     causes = ((named_together(cause.numbers, units), cause) for cause in tolerances.causes)
@@ -488,7 +490,7 @@ def _digits(tolerances: Tolerances) -> int:
     return 2 if tolerances.rows >= FINE else 1
 
 
-def advice(tolerances: Tolerances, units: Units | None) -> str:
+def advice(tolerances: Tolerances, units: UnitsByName | None) -> str:
     """What to tighten first, and what that brings."""
     first = tolerances.causes[0]
     if first.gain < LITTLE:

@@ -39,15 +39,14 @@ from equipoise.results.declaring import (
     flat,
 )
 from equipoise.results.outputs import dimensions_by_path
-from equipoise.signals import figures
+from equipoise.signals import Array, figures
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.quantities import Dimension
     from equipoise.studies.study import Output, Study
 
-Array = np.ndarray[Any, Any]
-Values = Mapping[str, Any]
+ResultValues = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ class Of:
     name: str
 
 
-Step = str | int | Order | Of
+PathStep = str | int | Order | Of
 """A key, a place in a list from 0, or one of those above."""
 
 AMPLITUDES = ("harmonics", "a", "b")
@@ -74,7 +73,7 @@ _INDEX = re.compile(r"\[\s*(order\s+)?([0-9]{1,9}(?:\.[0-9]{1,9})?)\s*\]")
 _QUOTED = re.compile(r'"([^"]*)"')
 
 
-def resolve(values: Values, path: str, short: str | None = None) -> tuple[Step, ...]:
+def resolve(values: ResultValues, path: str, short: str | None = None) -> tuple[PathStep, ...]:
     """The steps of a path through nested values to a number.
 
     short : key of the table below which a path may begin too; it goes first.
@@ -93,7 +92,7 @@ def resolve(values: Values, path: str, short: str | None = None) -> tuple[Step, 
     raise UsageError(Note("got {path!r}; {sentence}", path=path, sentence=text))
 
 
-def read(values: Values, steps: Sequence[Step]) -> float:
+def read(values: ResultValues, steps: Sequence[PathStep]) -> float:
     """The number at the end of steps; NaN where there is none."""
     above: Any = None
     here: Any = values
@@ -111,12 +110,12 @@ def read(values: Values, steps: Sequence[Step]) -> float:
         return nan
 
 
-def figure_name(steps: Sequence[Step]) -> Any:
+def figure_name(steps: Sequence[PathStep]) -> Any:
     """Name of the last step, such as ``rms``."""
     return steps[-1].name if isinstance(steps[-1], Of) else steps[-1]
 
 
-def scale(values: Values, steps: Sequence[Step]) -> float:
+def scale(values: ResultValues, steps: Sequence[PathStep]) -> float:
     """By what the error of a figure is measured: the RMS of the signal that it is a figure of.
 
     A turn where it is a crank angle, itself where it is of a part, 1 where it is another number.
@@ -131,14 +130,14 @@ def scale(values: Values, steps: Sequence[Step]) -> float:
     return abs(read(values, steps)) or 1.0 if steps[0] in part_kinds(Machine) else 1.0
 
 
-def _of_order(numbers: Any, order: float, orders: Any, key: Step) -> Any:
+def _of_order(numbers: Any, order: float, orders: Any, key: PathStep) -> Any:
     """Orders beyond the last are left out of lists because they are zero."""
     if order > orders[-1] and key in AMPLITUDES:
         return 0.0
     return numbers[int(np.flatnonzero(np.asarray(orders) == order)[0])]
 
 
-def _figure(numbers: Any, of: Of, whole: Values) -> float:
+def _figure(numbers: Any, of: Of, whole: ResultValues) -> float:
     samples = np.asarray(numbers, dtype=float)
     along = _abscissa(whole, len(samples))
     turns = whole.get("turns") if along is whole.get("crank_angle") else None
@@ -147,7 +146,7 @@ def _figure(numbers: Any, of: Of, whole: Values) -> float:
     return float(getattr(result, of.name))
 
 
-def _abscissa(whole: Values, count: int) -> Array | None:
+def _abscissa(whole: ResultValues, count: int) -> Array | None:
     """What a list of so many numbers runs along, if it does."""
     along = (whole.get(key) for key in ALONG)
     return next((x for x in along if isinstance(x, np.ndarray) and x.shape == (count,)), None)
@@ -162,7 +161,7 @@ class _Finder:
         there are in its place.
     """
 
-    whole: Values
+    whole: ResultValues
     stuck: list[tuple[int, Note]] = field(default_factory=list)
     tables: list[tuple[int, str, list[str]]] = field(default_factory=list)
 
@@ -179,7 +178,7 @@ class _Finder:
         every = dict.fromkeys(name for _, names in ends for name in names)
         return unknown(ends[-1][0], every, "figure")
 
-    def ways(self, here: Any, rest: str, above: Any = None) -> Iterator[tuple[Step, ...]]:
+    def ways(self, here: Any, rest: str, above: Any = None) -> Iterator[tuple[PathStep, ...]]:
         """Every way to take the rest of a path from here to a number."""
         if isinstance(here, Mapping):
             yield from self.into_table(here, rest)
@@ -197,7 +196,7 @@ class _Finder:
     def ends(self, rest: str, wrong: Note) -> None:
         self.stuck.append((len(rest), wrong))
 
-    def into_table(self, here: Values, rest: str) -> Iterator[tuple[Step, ...]]:
+    def into_table(self, here: ResultValues, rest: str) -> Iterator[tuple[PathStep, ...]]:
         """Names may hold dots, so the longest that fits goes first."""
         if not rest:
             wrong = Note("that is no number; below it there are {names}", names=_listed(here))
@@ -218,7 +217,7 @@ class _Finder:
             self.tables.append((len(rest), given, known))
             self.ends(rest, unknown(given, known, "figure"))
 
-    def into_list(self, here: Any, rest: str, above: Any) -> Iterator[tuple[Step, ...]]:
+    def into_list(self, here: Any, rest: str, above: Any) -> Iterator[tuple[PathStep, ...]]:
         index = _INDEX.match(rest)
         if index is None:
             yield from self.of_list(here, rest)
@@ -237,7 +236,7 @@ class _Finder:
             for steps in self.ways(here[place], after, here):
                 yield (place, *steps)
 
-    def of_list(self, here: Any, rest: str) -> Iterator[tuple[Step, ...]]:
+    def of_list(self, here: Any, rest: str) -> Iterator[tuple[PathStep, ...]]:
         known: tuple[str, ...] = ()
         if len(here) and _of_numbers(here):
             along = _abscissa(self.whole, len(here)) is not None
@@ -254,7 +253,9 @@ class _Finder:
             template = to_say("that is a list of {count}; it is empty here")
         self.ends(rest, Note(template, count=len(here), known=_listed(known)))
 
-    def of_order(self, here: Any, number: str, rest: str, above: Any) -> Iterator[tuple[Step, ...]]:
+    def of_order(
+        self, here: Any, number: str, rest: str, above: Any
+    ) -> Iterator[tuple[PathStep, ...]]:
         orders: Any = above.get("orders", ()) if isinstance(above, Mapping) else ()
         order, count = float(number), len(here)
         if not count or len(orders) != count:
@@ -361,8 +362,8 @@ def analyzed(
     machine: Machine,
     angles: int,
     wanted: Wanted,
-    ways: Sequence[tuple[Step, ...]] | None = None,
-) -> Values:
+    ways: Sequence[tuple[PathStep, ...]] | None = None,
+) -> ResultValues:
     """`equipoise analyze`, with ``--split`` and ``--orders`` where their keys are wanted.
 
     ways : to figures, whose outputs alone are in arrays and summary; None for all outputs.
@@ -392,7 +393,7 @@ def analyzed(
     return values
 
 
-def _lead_to(ways: Sequence[tuple[Step, ...]], name: str, path: tuple[str, ...]) -> bool:
+def _lead_to(ways: Sequence[tuple[PathStep, ...]], name: str, path: tuple[str, ...]) -> bool:
     """Whether one of several ways leads to an output, by its name or its path in nested values."""
     return any(
         way[: len(path)] == path or (way[0] in BY_NAME and way[1:2] == (name,)) for way in ways
@@ -408,7 +409,7 @@ class CommandOutputs:
     declared : of each result of the command.
     """
 
-    compute: Callable[[Any, Wanted], Values]
+    compute: Callable[[Any, Wanted], ResultValues]
     declared: tuple[Declarations, ...]
 
 
@@ -442,7 +443,7 @@ def _tool() -> CommandOutputs:
     from equipoise.handheld.modes import ToolModes, vibrate_tool
     from equipoise.handheld.sweep import MODES, ToolSweep, default_answers, sweep_tool
 
-    answers: dict[str, tuple[Callable[[Tool, Wanted], Values], Declarations]] = {
+    answers: dict[str, tuple[Callable[[Tool, Wanted], ResultValues], Declarations]] = {
         "modes": (lambda tool, _: vibrate_tool(tool, MODES).to_dict(), ToolModes.declared),
         "respond": (
             lambda tool, wanted: sweep_tool(tool, _speeds(tool)).to_dict(wanted),
@@ -451,7 +452,7 @@ def _tool() -> CommandOutputs:
         "exposure": (_exposure, ToolExposure.declared),
     }
 
-    def compute(tool: Tool, wanted: Wanted) -> Values:
+    def compute(tool: Tool, wanted: Wanted) -> ResultValues:
         values: dict[str, Any] = {"title": tool.title}
         for name in default_answers(tool):
             answer, declared = answers[name]
@@ -463,7 +464,7 @@ def _tool() -> CommandOutputs:
     return CommandOutputs(compute, tuple(declared for _, declared in answers.values()))
 
 
-def _exposure(tool: Tool, wanted: Wanted) -> Values:
+def _exposure(tool: Tool, wanted: Wanted) -> ResultValues:
     """The exposure of a hand, at the working speed alone where no list over speeds is wanted."""
     from equipoise.handheld.hand_exposure import ToolExposure, expose_tool
 
@@ -511,7 +512,7 @@ class Request:
 
     command: str
     columns: tuple[int, ...]
-    steps: tuple[tuple[Step, ...], ...]
+    steps: tuple[tuple[PathStep, ...], ...]
 
     @property
     def wanted(self) -> set[str]:
@@ -600,7 +601,7 @@ def _models(study: Study) -> Iterator[Callable[[], Machine | Tool]]:
 
 def _steps(
     study: Study, asked: Mapping[int, Output], model: Machine | Tool, command: str
-) -> tuple[tuple[Step, ...], ...] | ModelError:
+) -> tuple[tuple[PathStep, ...], ...] | ModelError:
     """Steps to the figures that a command gives of one machine, or what leads nowhere."""
     begins = {_FIRST.split(output.value, maxsplit=1)[0] for output in asked.values()}
     values = _values(study, model, command, begins)
@@ -631,7 +632,7 @@ def _values(
     return analyzed(cast("Machine", model), study.angles or ANGLES, wanted)
 
 
-def _resolved(study: Study, values: Mapping[str, Any], output: Output) -> tuple[Step, ...]:
+def _resolved(study: Study, values: Mapping[str, Any], output: Output) -> tuple[PathStep, ...]:
     """The steps of one path; of an analysis it may begin below ``summary``."""
     if output.of != "analyze":
         return resolve(values, output.value)

@@ -32,12 +32,14 @@ from equipoise.errors import ChangePointError, EquipoiseError, ModelError, Motio
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.declaring import PLACES
+from equipoise.signals import Array
 from equipoise.studies.clusters import elsewhere
 from equipoise.studies.commands import (
     ANGLES,
     COMMANDS,
+    PathStep,
     Request,
-    Step,
+    ResultValues,
     analyzed,
     figure_name,
     find_outputs,
@@ -50,8 +52,6 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.studies.study import Study
 
-Array = np.ndarray[Any, Any]
-Values = Mapping[str, Any]
 
 AT_ONCE = 64
 """Designs of which all commands are run before the next ones are made."""
@@ -303,8 +303,8 @@ def _figures_of(model: Machine | Tool, asked: Request, study: Study) -> tuple[li
 
 
 def _still(
-    values: Values,
-    steps: Sequence[tuple[Step, ...]],
+    values: ResultValues,
+    steps: Sequence[tuple[PathStep, ...]],
     before: Sequence[float],
     now: Sequence[float],
     noise: _NoiseFloor,
@@ -339,11 +339,11 @@ class _NoiseFloor:
         return FAINT * _limit_value(self._values, table)
 
     @cached_property
-    def _values(self) -> Values:
+    def _values(self) -> ResultValues:
         return analyzed(self._machine, ANGLES, self._asked.wanted)
 
 
-def _limit_value(values: Values, key: str) -> float:
+def _limit_value(values: ResultValues, key: str) -> float:
     """RMS of the largest signal in a table, of which others may be the rounding."""
     table = values["summary" if key == "by_order" else key] if key in values else None
     return max(_sizes(table), default=0.0)
@@ -360,7 +360,7 @@ def _sizes(table: Any) -> Iterator[float]:
         yield float(np.sqrt(np.mean(np.square(table))))
 
 
-def planting_figures(machines: Sequence[Machine], steps: Sequence[Sequence[Step]]) -> Array:
+def planting_figures(machines: Sequence[Machine], steps: Sequence[Sequence[PathStep]]) -> Array:
     """Figures (P, m) of machines of one build whose cranks turn fully; NaN where one is missing."""
     from equipoise.mechanism.kinematics.tip import TipCurve
     from equipoise.planting.figures import machine_figures

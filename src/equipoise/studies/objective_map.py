@@ -39,19 +39,17 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.parameters import parameters_of
-from equipoise.mechanism.parts.balance import GAUGES, Balance, Measure, Objective, output_of
+from equipoise.mechanism.parts.balance import GAUGES, Balance, Objective, Statistic, output_of
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.results.result import Result
-from equipoise.signals import highest_at
+from equipoise.results.result import ProgressCallback, Result
+from equipoise.signals import Array, highest_at
 from equipoise.studies.clusters import elsewhere
 from equipoise.studies.study import Model
 
-Array = np.ndarray[Any, Any]
-Point = Mapping[str, float]
-Values = Callable[[Array], Array]
+MapPoint = Mapping[str, float]
+ObjectiveFunction = Callable[[Array], Array]
 """An objective (P,) at values (P, 2) of the two numbers; NaN where the linkage cannot turn."""
 
-Progress = Callable[[int, int], None]
 
 MOST = 1_000
 """Values of either number."""
@@ -103,7 +101,7 @@ class MachineVariants:
     model: Model
     given: Mapping[str, float]
 
-    def parameters(self, point: Point) -> tuple[Machine, dict[str, Array]]:
+    def parameters(self, point: MapPoint) -> tuple[Machine, dict[str, Array]]:
         """The machine without counterweights, and inertial parameters (4,) by link with them."""
         values = {**self.given, **point}
         own = {path: v for path, v in values.items() if not COUNTERWEIGHT.fullmatch(path)}
@@ -135,7 +133,7 @@ class SingleValues:
             [self._value(dict(zip(self.paths, point, strict=True))) for point in points.tolist()]
         )
 
-    def _value(self, point: Point) -> float:
+    def _value(self, point: MapPoint) -> float:
         try:
             return Problem.value_of(self.maker.machine(point), self.of)
         except EquipoiseError:
@@ -187,7 +185,7 @@ class LinearValues:
     machine: Machine
     start: Mapping[str, Array]
     signal: Signal
-    measure: Measure
+    measure: Statistic
 
     @classmethod
     def of(
@@ -362,7 +360,7 @@ def landscape(
     over: Mapping[str, Sequence[float] | Array],
     of: Objective,
     given: Mapping[str, float] | None = None,
-    progress: Progress | None = None,
+    progress: ProgressCallback | None = None,
     workers: int | None = None,
     cluster: str | None = None,
 ) -> Landscape:
@@ -435,7 +433,7 @@ def landscape(
 def _computed(
     value: LinearValues | SingleValues,
     points: Array,
-    progress: Progress | None,
+    progress: ProgressCallback | None,
     workers: int | None,
     others: Callable[[ChunkTask], Pool] | None,
 ) -> Array:
@@ -458,7 +456,7 @@ def _computed(
         return np.concatenate(result)
 
 
-def _itself(value: Values) -> Values:
+def _itself(value: ObjectiveFunction) -> ObjectiveFunction:
     return value
 
 
@@ -503,7 +501,9 @@ def _check_weights(lowest: Mapping[str, float], largest: Mapping[str, float]) ->
             )
 
 
-def _refined(values: Values, start: Array, x: Array, y: Array) -> tuple[tuple[float, float], float]:
+def _refined(
+    values: ObjectiveFunction, start: Array, x: Array, y: Array
+) -> tuple[tuple[float, float], float]:
     """The best place about the best point (2,) of the grid, and the objective there."""
     from scipy.optimize import minimize
 

@@ -71,7 +71,7 @@ class Evaluator(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class DesignBlock:
     """Some designs (P), one after the other: values (P, d) in SI units, and what came of them."""
 
     values: Array
@@ -279,7 +279,7 @@ class Tally:
         self.start = monotonic()
         self.of_late = deque([(self.start, 0)])
 
-    def add(self, block: Block, *, computed: bool) -> None:
+    def add(self, block: DesignBlock, *, computed: bool) -> None:
         """Count a chunk in: one that was stored before, or one that was computed just now."""
         count = len(block.values)
         self.done += count

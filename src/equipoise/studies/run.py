@@ -23,7 +23,7 @@ from equipoise.i18n import Note
 from equipoise.quantities import SI
 from equipoise.studies.clusters import elsewhere
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import Block, Progress, Tally
+from equipoise.studies.outcomes import DesignBlock, Progress, Tally
 from equipoise.studies.store import (
     ABOUT,
     CHECKSUM,
@@ -136,7 +136,7 @@ def resume(
 
 
 def _fill(
-    store: Store, study: Study, runner: Runner[range, Block], progress: OnProgress | None
+    store: Store, study: Study, runner: Runner[range, DesignBlock], progress: OnProgress | None
 ) -> None:
     """Compute and store what is missing or damaged."""
     with store.writing():
@@ -164,7 +164,7 @@ def _fill(
             ) from error
 
 
-def _store(store: Store, designs: range, block: Block) -> None:
+def _store(store: Store, designs: range, block: DesignBlock) -> None:
     try:
         store.write(designs, block)
     except OSError as error:
@@ -229,12 +229,12 @@ class Route:
         self.engine: str = getattr(self.evaluate, "engine", "general")
         self.chunk = chunk_of(study, self.compiled)
 
-    def __call__(self, designs: range) -> Block:
+    def __call__(self, designs: range) -> DesignBlock:
         values = samples(self.study, designs.start, len(designs))
-        return Block(values, self.evaluate(values))
+        return DesignBlock(values, self.evaluate(values))
 
 
-def _runner(route: Route, workers: int | None, cluster: str | None) -> Runner[range, Block]:
+def _runner(route: Route, workers: int | None, cluster: str | None) -> Runner[range, DesignBlock]:
     make, threads = partial(Route, route.study), route.compiled
     return Runner(route, make, workers, threads=threads, elsewhere=elsewhere(cluster, workers))
 

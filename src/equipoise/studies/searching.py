@@ -28,7 +28,7 @@ from equipoise.signals import Array
 from equipoise.studies.evaluate import pooled
 from equipoise.studies.evolution import SOLVERS
 from equipoise.studies.outcomes import (
-    Block,
+    DesignBlock,
     Evaluator,
     Hypervolumes,
     Outcome,
@@ -96,7 +96,7 @@ class Searched(Result):
     stood_still: bool
     volumes: Array
     seed: int
-    tried: Block
+    tried: DesignBlock
     solver: str = ""
     proof: Note | None = None
 
@@ -329,7 +329,7 @@ def _result(archive: _Archive, volumes: Hypervolumes, reported: Array, seed: int
         stood_still=False,
         volumes=volumes.all * (archive.signs[0] if len(archive.signs) == 1 else 1),
         seed=seed,
-        tried=Block(archive.values, archive.outcome),
+        tried=DesignBlock(archive.values, archive.outcome),
     )
 
 

@@ -28,7 +28,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
 from equipoise.signals import Array
 from equipoise.studies.outcomes import (
-    Block,
+    DesignBlock,
     design_records,
     far_apart,
     feasible,
@@ -43,7 +43,7 @@ from equipoise.studies.study import Output, random_numbers
 if TYPE_CHECKING:
     from equipoise.studies.study import Output
 
-Blocks = Callable[[], Iterable[tuple[int, Block]]]
+DesignBlocks = Callable[[], Iterable[tuple[int, DesignBlock]]]
 """Gives all designs, each time anew, some at a time with the number of the first."""
 NamePair = tuple[str, str]
 
@@ -117,7 +117,7 @@ class Cloud:
 
 
 def cloud_of(
-    blocks: Blocks,
+    blocks: DesignBlocks,
     numbers: Sequence[str],
     outputs: Sequence[Output],
     pairs: Sequence[NamePair],
@@ -164,7 +164,7 @@ def cloud_of(
     return Cloud(inside, outside, without, spreads, some, good[there], counts, middles)
 
 
-def _table(block: Block, outputs: Sequence[Output]) -> tuple[Array, Array]:
+def _table(block: DesignBlock, outputs: Sequence[Output]) -> tuple[Array, Array]:
     """Values and figures (P, d + m), NaN where there are none; which designs keep every limit, keep
     not all, and fail, (3, P).
     """
@@ -185,7 +185,7 @@ def _spread(low: float, high: float, some: Array, figure: bool) -> Spread:
 
 
 def _counts(
-    blocks: Blocks,
+    blocks: DesignBlocks,
     names: Sequence[str],
     outputs: Sequence[Output],
     pairs: Sequence[NamePair],
@@ -340,7 +340,7 @@ class _Choice:
         self.rows = np.empty((0, len(columns)))
         self.near = np.empty((0, 2 + len(columns)))  # what they lack, their numbers, their rows
 
-    def add(self, start: int, block: Block) -> None:
+    def add(self, start: int, block: DesignBlock) -> None:
         """Take in designs that follow each other from a number on."""
         self.reasons += block.outcome.counts
         computed = np.flatnonzero(block.outcome.computed)
@@ -477,7 +477,7 @@ def _schema(store: Store) -> Any:
     return arrow.schema([arrow.field("design", arrow.int64()), *numbers, reason], metadata=about)
 
 
-def _arrow_table(schema: Any, start: int, block: Block, rows: Array) -> Any:
+def _arrow_table(schema: Any, start: int, block: DesignBlock, rows: Array) -> Any:
     """Some rows of designs."""
     arrow = needed("pyarrow", "an export")
     reason = block.outcome.reason

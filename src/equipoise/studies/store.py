@@ -36,7 +36,7 @@ from equipoise.folders import NOWHERE, Folder, LinkError, is_nowhere
 from equipoise.i18n import Note, to_say, worded
 from equipoise.results.result import Result
 from equipoise.signals import Array
-from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.outcomes import DesignBlock, Outcome
 from equipoise.studies.study import Output
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ class Store(Result):
 
     # -- reading -----------------------------------------------------------------------------------
 
-    def read(self, designs: range) -> Block:
+    def read(self, designs: range) -> DesignBlock:
         """Designs that follow each other; those not stored have NaN and the reason `UNKNOWN`.
 
         Raises
@@ -125,11 +125,11 @@ class Store(Result):
         for table, names in ((values, self.numbers), (figures, self.outputs)):
             for column, name in enumerate(names):
                 table[:, column] = self._column(name, designs)
-        block = Block(values, Outcome(figures, self._column(REASON, designs)))
+        block = DesignBlock(values, Outcome(figures, self._column(REASON, designs)))
         self._check_whole(designs, block)
         return block
 
-    def _check_whole(self, designs: range, block: Block) -> None:
+    def _check_whole(self, designs: range, block: DesignBlock) -> None:
         """Refuse chunks of which a part was lost, which Zarr reads as never stored."""
         reason = block.outcome.reason
         known = reason != UNKNOWN
@@ -157,7 +157,7 @@ class Store(Result):
                         self._column(name, part)  # which of several it is
                 raise DamagedError(self, name, designs) from error
 
-    def in_blocks(self) -> Iterator[tuple[int, Block]]:
+    def in_blocks(self) -> Iterator[tuple[int, DesignBlock]]:
         """All designs, some ten thousand at a time, each time with the number of the first."""
         most = min(BLOCK, NUMBERS // len(self.arrays))
         step = self.chunk * max(1, most // self.chunk)
@@ -184,7 +184,7 @@ class Store(Result):
                             chunks.remove(left_over)
             yield
 
-    def write(self, designs: range, block: Block) -> None:
+    def write(self, designs: range, block: DesignBlock) -> None:
         """Store the designs of a chunk; they count for nothing until all of them are there.
 
         Raises

@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine
 
 Method = Literal["grid", "sobol", "latin-hypercube", "monte-carlo"]
-Command = Literal["analyze", "plant", "respond", "balance", "tool"]
-METHODS, COMMANDS = get_args(Method), get_args(Command)
+StudiedCommand = Literal["analyze", "plant", "respond", "balance", "tool"]
+METHODS, COMMANDS = get_args(Method), get_args(StudiedCommand)
 
 
 class Model(Protocol):
@@ -78,14 +78,14 @@ class Output(RequiredFigure):
     """
 
     name: str
-    of: Command = "analyze"
+    of: StudiedCommand = "analyze"
     value: str = ""
     dimension: str | None = None
 
     def __init__(
         self,
         name: str,
-        of: Command = "analyze",
+        of: StudiedCommand = "analyze",
         value: str = "",
         dimension: str | None = None,
         *,

@@ -12,7 +12,7 @@ scatter that is left; that is computed, not inferred.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict
 from math import isnan
@@ -26,8 +26,9 @@ from equipoise.dataclass import dataclass
 from equipoise.design.variables import Normal, Uniform
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.results.result import Result
+from equipoise.results.result import ProgressCallback, Result
 from equipoise.sequences import sobol
+from equipoise.signals import Array
 from equipoise.studies.evaluate import pooled
 from equipoise.studies.outcomes import Evaluator, Outcome, failures, feasible, why_none
 from equipoise.studies.study import BITS, SLOW_CHUNK, random_numbers, samples, values_at
@@ -35,7 +36,6 @@ from equipoise.studies.study import BITS, SLOW_CHUNK, random_numbers, samples, v
 if TYPE_CHECKING:
     from equipoise.studies.study import Output, Study
 
-Array = np.ndarray[Any, Any]
 
 TWICE = 7
 """Stream of random numbers of A and B, apart from those of designs; of what is drawn again, one on.
@@ -257,9 +257,6 @@ QUICK = 0.1
 LEAST_ROWS = 32
 """Rows of A, at least, by which causes are separated."""
 
-OnProgress = Callable[[int, int], None]
-"""Is called with how many machines are computed, and how many there are."""
-
 
 @dataclass(frozen=True)
 class Cause:
@@ -334,7 +331,7 @@ class Tolerances(Result):
 def tolerance(
     study: Study,
     *,
-    progress: OnProgress | None = None,
+    progress: ProgressCallback | None = None,
     compute: Evaluator | None = None,
     workers: int | None = None,
     cluster: str | None = None,
@@ -345,7 +342,7 @@ def tolerance(
     ----------
     study : varies by normal and uniform tolerances; `sampling.designs` machines are drawn for the
         scatter, and about as many again to separate the tolerances.
-    progress : see `OnProgress`.
+    progress : see `ProgressCallback`.
     compute : computes designs instead of the study's own evaluator.
     workers : processes that compute what no loop does, where that takes more than some seconds; as
         many as this machine has processors if not given.
@@ -366,7 +363,7 @@ def tolerance(
         return _tolerances(study, evaluate, progress)
 
 
-def _tolerances(study: Study, evaluate: Evaluator, progress: OnProgress | None) -> Tolerances:
+def _tolerances(study: Study, evaluate: Evaluator, progress: ProgressCallback | None) -> Tolerances:
     causes = causes_of(study)
     rows, total = rows_of(study.size, len(causes)), machines_of(study)
     step = min(study.chunk, SLOW_CHUNK)
@@ -447,7 +444,7 @@ class _Run:
     compute: Evaluator
     step: int
     most: int
-    progress: OnProgress | None
+    progress: ProgressCallback | None
     total: int
     done: int = 0
 

@@ -10,8 +10,9 @@ from equipoise.mechanism.assembly.cam_shapes import CamFit, CamShape, fitted, sh
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.parts.cams import Cam
+from equipoise.signals import Array
 from equipoise.symbols.part_signs import DraggedCircle, Surroundings
-from equipoise.symbols.shapes import Array, BodyMark, circle, line
+from equipoise.symbols.shapes import BodyMark, circle, line
 
 CORNERS = 360
 """Of a cam's surface."""

@@ -10,7 +10,8 @@ from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Gauge, Mount, Support, unit_vector
-from equipoise.symbols.shapes import PIN, PISTON, Array, Shape, circle, hatching, hull, sign
+from equipoise.signals import Array
+from equipoise.symbols.shapes import PIN, PISTON, Shape, circle, hatching, hull, sign
 
 MOUNT = 40.0, 7.0
 """Length of a spring or damper between support and ground, and half its width."""

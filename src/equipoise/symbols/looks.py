@@ -9,8 +9,9 @@ from itertools import combinations, zip_longest
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.signals import Array
 from equipoise.symbols.scene import LinkOutline, Scene
-from equipoise.symbols.shapes import Array, off_outline
+from equipoise.symbols.shapes import off_outline
 
 Colors = Mapping[str, str]
 

@@ -10,12 +10,12 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.support import Mount, unit_vector
+from equipoise.signals import Array
 from equipoise.symbols.carrier import MOUNT, foot, gauge, ground, strut, turning
 from equipoise.symbols.looks import LAYERS
 from equipoise.symbols.scene import WIDE, DriveSign, GuideSign, LinkOutline, Scene
 from equipoise.symbols.shapes import (
     PIN,
-    Array,
     Shape,
     block,
     circle,

@@ -20,12 +20,13 @@ from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.bodies import BodyOutline, outlines, place_of
-from equipoise.mechanism.parts.couplings import Coupling, Law
+from equipoise.mechanism.parts.couplings import Coupling, DerivedLaw
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Link
+from equipoise.signals import Array
 from equipoise.symbols.carrier import MOUNT, Carrier, SupportSwing
 from equipoise.symbols.constraints import constraint_marks
 from equipoise.symbols.part_signs import Surroundings, in_order, load_line_marks, signs_of
-from equipoise.symbols.shapes import Array, BodyMark, hull, off_outline
+from equipoise.symbols.shapes import BodyMark, hull, off_outline
 
 if TYPE_CHECKING:
     from equipoise.mechanism.kinematics.motion import Motion
@@ -88,7 +89,7 @@ def _distance(joints: Structure, bodies: Bodies, coupling: Coupling) -> float:
 
 
 def _curves(
-    gear: Coupling, law: Law, centres: complex, angles: Mapping[str, float]
+    gear: Coupling, law: DerivedLaw, centres: complex, angles: Mapping[str, float]
 ) -> Iterator[Array]:
     """Corners of driver's and driven gear's curve, in their axes: where the pitch point comes."""
     turned = {FRAME: 0.0, **angles}

@@ -16,8 +16,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.kernels import cross
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 PIN = 3.6
 """Radius."""

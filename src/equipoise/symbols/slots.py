@@ -8,8 +8,9 @@ import numpy as np
 
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
+from equipoise.signals import Array
 from equipoise.symbols.part_signs import Surroundings
-from equipoise.symbols.shapes import PIN, Array, BodyMark, Shape
+from equipoise.symbols.shapes import PIN, BodyMark, Shape
 
 PLAY = 1.4
 """Between a pin and either edge of its slot, units."""

@@ -12,8 +12,9 @@ from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.formulas.rolling import LEFT, RIGHT
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.racks import Rack
+from equipoise.signals import Array
 from equipoise.symbols.part_signs import Surroundings
-from equipoise.symbols.shapes import Array, BodyMark, line
+from equipoise.symbols.shapes import BodyMark, line
 
 MOST_TEETH = 80
 """That are drawn of a rack."""

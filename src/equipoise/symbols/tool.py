@@ -8,10 +8,11 @@ from functools import cached_property
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.signals import Array
 from equipoise.symbols.carrier import MOUNT, SPRING, foot, ground, turning
 from equipoise.symbols.pieces import PieceTrack
 from equipoise.symbols.scene import WIDE
-from equipoise.symbols.shapes import Array, Shape, circle, line, sign
+from equipoise.symbols.shapes import Shape, circle, line, sign
 
 DENSITY = 1000.0
 """Of bodies of which the mass alone is known, kg/m3: they are drawn as cubes of water."""

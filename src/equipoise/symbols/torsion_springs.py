@@ -7,8 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
+from equipoise.signals import Array
 from equipoise.symbols.part_signs import Surroundings
-from equipoise.symbols.shapes import Array, BodyMark, sign
+from equipoise.symbols.shapes import BodyMark, sign
 
 INNER, OUTER, TURNS, CORNERS = 6.0, 17.0, 2.25, 64
 """Radii of the spiral, units; its turns, and the corners of its line."""

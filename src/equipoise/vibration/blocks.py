@@ -39,10 +39,10 @@ from equipoise.vibration.forced import readings_of
 from equipoise.vibration.linear import around, resonance_note, resonances
 from equipoise.vibration.response import (
     MODELS,
+    ExcitationModel,
     GaugeSignals,
     HandVibration,
     Joint,
-    Model,
     MountForce,
     members_of,
 )
@@ -239,19 +239,19 @@ def _loud(sweep: Sweep) -> Iterator[str]:
 
 # -- figures as cells ------------------------------------------------------------------------------
 
-Kind = tuple[Dimension, str | None]
+UsualUnit = tuple[Dimension, str | None]
 """A dimension, and the unit in which it is usual here."""
 
 NOTHING = 1e-2
 """m, rad and their rates: scale beside which what is smaller than atoms is rounding."""
-MOST_COMPLETE: tuple[Model, ...] = ("exact", "moment")
+MOST_COMPLETE: tuple[ExcitationModel, ...] = ("exact", "moment")
 """Models with which others are compared, the one that leaves out least first."""
 AGREEING, ROUNDING = 0.05, 1e-9
 """Share by which readings of models may differ without a note; and what of them is rounding."""
 PARTS = 5
 """Equal stretches of a time, of which the first and the last show whether it has settled."""
-MOVED: tuple[Kind, ...] = (("length", "mm"), ("speed", "mm/s"), ("acceleration", "m/s^2"))
-TURNED: tuple[Kind, ...] = (
+MOVED: tuple[UsualUnit, ...] = (("length", "mm"), ("speed", "mm/s"), ("acceleration", "m/s^2"))
+TURNED: tuple[UsualUnit, ...] = (
     ("angle", "mrad"),
     ("angular speed", None),
     ("angular acceleration", None),
@@ -259,7 +259,7 @@ TURNED: tuple[Kind, ...] = (
 """Of a gauge's displacement, velocity and acceleration, along a line or about an axis."""
 
 
-def model_text(model: Model) -> str:
+def model_text(model: ExcitationModel) -> str:
     """Sentence on the excitation model, and on what it assumes."""
     return say("Vibration by the {model} model: {what}", model=model, what=say(MODELS[model]))
 
@@ -272,7 +272,7 @@ def reading(
     return Value(value, scale, speed, dimension=kind, unit=unit)
 
 
-def _row(name: str, values: Iterable[float], kind: Kind) -> tuple[Cell, ...]:
+def _row(name: str, values: Iterable[float], kind: UsualUnit) -> tuple[Cell, ...]:
     """Values of a kind of their own in a row, rounded beside the largest."""
     values = [*map(float, values)]
     scale, (dimension, unit) = max(map(abs, values)), kind
@@ -492,7 +492,7 @@ def _drive(response: Response) -> Iterator[Block]:
         )
 
 
-def _extremes(name: str, figures: Figures, kind: Kind) -> tuple[Cell, ...]:
+def _extremes(name: str, figures: Figures, kind: UsualUnit) -> tuple[Cell, ...]:
     return _row(name, (figures.mean, figures.max, figures.min, figures.peak_to_peak), kind)
 
 
@@ -527,14 +527,14 @@ def transient_blocks(transient: Transient) -> Iterator[Block]:
         )
     )
     count = max(1, len(transient.time) // PARTS)
-    ends: Ends = slice(count), slice(-count, None)
+    ends: TimeStretches = slice(count), slice(-count, None)
     rows = [] if transient.support is None else [*support_rows(transient.support, ends)]
     speed = transient.crank_speed
     rows.append(_in_stretches(say("crank speed"), speed, ends, ("angular speed", "rpm")))
     yield Table.of(say("Gauges, mounts and drive"), extreme_labels(), rows)
 
 
-Ends = tuple[slice, slice]
+TimeStretches = tuple[slice, slice]
 """Instants in the first and the last stretch of a time."""
 
 
@@ -544,7 +544,7 @@ def extreme_labels() -> tuple[str, ...]:
     return ("", say("smallest"), say("largest"), *ranges)
 
 
-def support_rows(motion: SupportMotion, ends: Ends) -> Iterator[tuple[Cell, ...]]:
+def support_rows(motion: SupportMotion, ends: TimeStretches) -> Iterator[tuple[Cell, ...]]:
     """Extremes of every gauge and mount, and their ranges in the first and the last stretch."""
     turning = members_of("gauges")(motion.body.machine)
     for name, values in motion.gauges.items():
@@ -554,7 +554,9 @@ def support_rows(motion: SupportMotion, ends: Ends) -> Iterator[tuple[Cell, ...]
         yield _in_stretches(name, values, ends, ("torque" if turning[name] else "force", None))
 
 
-def _in_stretches(name: str, values: Array, ends: Ends, kind: Kind) -> tuple[Cell, ...]:
+def _in_stretches(
+    name: str, values: Array, ends: TimeStretches, kind: UsualUnit
+) -> tuple[Cell, ...]:
     ranges = (np.ptp(values[end]) for end in ends)
     return _row(name, (np.min(values), np.max(values), *ranges), kind)
 

@@ -24,6 +24,7 @@ from equipoise.mechanism.dynamics.reactions import JointReactions
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.results.analysis import analyze
+from equipoise.results.result import ProgressCallback
 from equipoise.signals import GAUSS_POINTS, Array, JumpSampling, Periodic, mean, smooth_tops
 from equipoise.vibration.body import IN_PLANE, PITCH, Reading, SupportBody, gauges_of
 from equipoise.vibration.coupled import TO_SETTLE, Coupled, StallError, follow, settled
@@ -371,10 +372,8 @@ class ExactSolution:
 
 # -- along a range of speeds -----------------------------------------------------------------------
 
-Progress = Callable[[int, int], None]
 
-
-Answers = list[Response | None]
+Responses = list[Response | None]
 
 
 APPROACHES = ((1.0,), (0.8, 0.84, 0.88, 0.92, 0.96, 1.0), (1.2, 1.16, 1.12, 1.08, 1.04, 1.0))
@@ -386,8 +385,8 @@ DIFFERENT = 1e-3
 
 
 def follow_speeds(
-    machine: Machine, speeds: list[float], drive: bool, progress: Progress
-) -> tuple[Answers, list[str]]:
+    machine: Machine, speeds: list[float], drive: bool, progress: ProgressCallback
+) -> tuple[Responses, list[str]]:
     """Response at every speed, the louder one where there are two; and what to say of that."""
     count = len(speeds)
     upward = _along(machine, speeds, drive, lambda done: progress(done, count))
@@ -397,7 +396,7 @@ def follow_speeds(
     ):
         return upward, []
     downward = _along(machine, speeds[::-1], drive, lambda done: progress(count + done, 2 * count))
-    louder: Answers = []
+    louder: Responses = []
     both: dict[float, float] = {}  # speeds with two states, and how much less one of them shakes
     for speed, up, down in zip(speeds, upward, downward[::-1], strict=True):
         ratio = _ratio(up, down)
@@ -459,9 +458,9 @@ def _along(
     drive: bool,
     progress: Callable[[int], None],
     brief: bool = True,
-) -> Answers:
+) -> Responses:
     """Response at every speed, one after the other; None where no steady state was found."""
-    answers: Answers = []
+    answers: Responses = []
     guess = None
     for speed in speeds:
         try:

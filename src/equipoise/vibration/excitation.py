@@ -22,7 +22,7 @@ from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import SupportBody, moved
 from equipoise.vibration.linkages import rows_of, spread
-from equipoise.vibration.response import Model
+from equipoise.vibration.response import ExcitationModel
 
 ANGLES = 720
 """Crank angles in a turn from which orders are taken; more where loads have kinks."""
@@ -45,7 +45,7 @@ class SupportExcitation(ABC):
 
     @property
     @abstractmethod
-    def model(self) -> Model:
+    def model(self) -> ExcitationModel:
         """The model that this is, by name."""
 
     @property
@@ -261,7 +261,7 @@ class WholeExcitation(SupportExcitation):
     """
 
     @property
-    def model(self) -> Model:
+    def model(self) -> ExcitationModel:
         return "moment"
 
     @property

@@ -19,16 +19,16 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import HUGE, Dimension, in_si
 from equipoise.results.declaring import NOTES, TITLE, Declarations, ResultOutput
-from equipoise.results.result import Result
+from equipoise.results.result import ProgressCallback, Result
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import MISSING
-from equipoise.vibration.exact import Progress, follow_speeds, respond_exact
+from equipoise.vibration.exact import follow_speeds, respond_exact
 from equipoise.vibration.linear import Linear, Resonance, resonances, warned
 from equipoise.vibration.response import (
     MODELS,
+    ExcitationModel,
     GaugeSignals,
     Mode,
-    Model,
     Response,
     of_support,
     range_shown,
@@ -44,7 +44,7 @@ WITH_CRANK = {"torque", "coupled", "exact"}
 """Models in which the crank's torque acts on the support, or the support on the crank."""
 
 
-def chosen_model(machine: Machine, model: Model | None, drive: bool) -> Model:
+def chosen_model(machine: Machine, model: ExcitationModel | None, drive: bool) -> ExcitationModel:
     """The model asked for, or the default one; refused where the machine has no part for it."""
     check_model(model)
     if drive and machine.drive.motor is None:
@@ -140,11 +140,11 @@ def left_out(machine: Machine) -> list[Note | str]:
     return sentences
 
 
-def models_of(machine: Machine) -> tuple[Model, ...]:
+def models_of(machine: Machine) -> tuple[ExcitationModel, ...]:
     """The models that can answer for a machine's support, from the plainest to the exact one."""
     if machine.support is None:
         return ()
-    known: tuple[Model, ...] = tuple(MODELS)
+    known: tuple[ExcitationModel, ...] = tuple(MODELS)
     if not machine.support.planar:
         known = ("linear", "torque", "moment")
     return known if machine.has_crank else tuple(item for item in known if item not in WITH_CRANK)
@@ -153,7 +153,7 @@ def models_of(machine: Machine) -> tuple[Model, ...]:
 def respond(
     machine: Machine,
     speed: float | str | None = None,
-    model: Model | None = None,
+    model: ExcitationModel | None = None,
     drive: bool = False,
 ) -> Response:
     """Steady vibration of a machine on its support, at one speed.
@@ -291,7 +291,7 @@ class Sweep(Result):
     headline_in = "vibration.blocks.sweep_headline"
 
     machine: Machine
-    model: Model
+    model: ExcitationModel
     speed: Array
     gauges: Mapping[str, GaugeCurve]
     mounts: Mapping[str, MountCurve]
@@ -358,10 +358,10 @@ def sweep_speed(
     machine: Machine,
     slowest: float | str,
     fastest: float | str,
-    model: Model | None = None,
+    model: ExcitationModel | None = None,
     drive: bool = False,
     speeds: int = SPEEDS,
-    progress: Progress | None = None,
+    progress: ProgressCallback | None = None,
 ) -> Sweep:
     """Steady vibration of a machine on its support, over a range of speeds.
 
@@ -455,7 +455,7 @@ def _kind(note: Note | str) -> str:
 
 def _gathered(
     machine: Machine,
-    model: Model,
+    model: ExcitationModel,
     grid: Array,
     answers: list[Response | None],
     linear: Linear,

@@ -14,7 +14,7 @@ from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.support import Place
+from equipoise.mechanism.parts.support import SpaceVector
 from equipoise.quantities import in_si
 from equipoise.results.declaring import NOTES, TITLE, Declarations, ResultOutput
 from equipoise.results.result import Result
@@ -73,7 +73,7 @@ class FreeVibration(Result):
         return self.linear.body.support.coordinates
 
     @property
-    def reference(self) -> Place:
+    def reference(self) -> SpaceVector:
         """The point (x, y, z), m, in the frame about which matrices and shapes are: the support's
         pivot, or its centre of mass.
         """

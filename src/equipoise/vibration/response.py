@@ -24,8 +24,8 @@ from equipoise.results.declaring import NOTES, OWN, TITLE, Declarations, ResultO
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, Periodic
 
-Model = Literal["linear", "torque", "moment", "coupled", "exact"]
-MODELS: dict[Model, str] = {
+ExcitationModel = Literal["linear", "torque", "moment", "coupled", "exact"]
+MODELS: dict[ExcitationModel, str] = {
     "linear": to_say("the shaking force at the drive's pivot (equation (59) of Yamashita et al.)"),
     "torque": to_say(
         "the shaking force at the drive's pivot, and the drive torque (equation (57) of "
@@ -469,7 +469,7 @@ class Response(Result):
     headline_in = "vibration.blocks.response_headline"
 
     machine: Machine
-    model: Model
+    model: ExcitationModel
     speed: float
     turns: int
     gauges: Mapping[str, GaugeSignals]

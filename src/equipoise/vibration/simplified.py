@@ -34,7 +34,7 @@ from equipoise.vibration.collocation import BoundaryConditions, Rates
 from equipoise.vibration.excitation import SupportExcitation
 from equipoise.vibration.linear import Linear, gauge_signals, mount_forces, respond_linear
 from equipoise.vibration.linkages import rows_of
-from equipoise.vibration.response import MODELS, Model, Response, in_words
+from equipoise.vibration.response import MODELS, ExcitationModel, Response, in_words
 from equipoise.vibration.steady import ROUGH, SAMPLES, steady
 
 # -- what linkages do ------------------------------------------------------------------------------
@@ -51,7 +51,7 @@ class PivotExcitation(SupportExcitation):
     has_torque: bool = False
 
     @property
-    def model(self) -> Model:
+    def model(self) -> ExcitationModel:
         return "torque" if self.has_torque else "linear"
 
     @property
@@ -97,7 +97,7 @@ def check_model(model: str | None) -> None:
         )
 
 
-def response_by(model: Model) -> Callable[[Linear, float], Response]:
+def response_by(model: ExcitationModel) -> Callable[[Linear, float], Response]:
     """What computes the response of a model of small motion, of its linear system at a speed."""
     return respond_coupled if model == "coupled" else respond_linear
 

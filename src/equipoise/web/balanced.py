@@ -37,8 +37,8 @@ from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
 from equipoise.web.edits import Computed, solved
 from equipoise.web.figures import compared, figures_of
+from equipoise.web.messages import JsonObject
 
-Values = dict[str, Any]
 MAIN = ("rms", "peak")
 """Measures that come first."""
 ROUNDED = 1e-7
@@ -253,7 +253,7 @@ def _center(link: Link) -> tuple[float, float]:
     return link.center_of_mass or (0.0, 0.0)
 
 
-def balanced_values(base: Computed, after: Computed, balanced: Balanced) -> Values:
+def balanced_values(base: Computed, after: Computed, balanced: Balanced) -> JsonObject:
     """What to change, aims and every figure before and after, and what is proved.
 
     base, after : the design before and after, computed; their figures
@@ -294,7 +294,7 @@ def _read(base: Computed, after: Computed) -> dict[str, tuple[float, float]]:
 
 def _aim(
     balanced: Balanced, objective: Objective, figures: Mapping[str, tuple[float, float]]
-) -> Values:
+) -> JsonObject:
     """What was to become small."""
     rows, pair = len(balanced.machine.rows), balanced.aims[objective]
     if not (objective.about or objective.orders or objective.speeds):
@@ -305,7 +305,7 @@ def _aim(
     return {"label": objective_named(objective, rows), "unit": unit.name, **compared(before, after)}
 
 
-def _figure(balanced: Balanced, name: str, before: float, after: float) -> Values:
+def _figure(balanced: Balanced, name: str, before: float, after: float) -> JsonObject:
     """A figure before and after; `main` where it is of a whole signal on the frame, or the mass."""
     main = True
     if name == "mass":
@@ -333,7 +333,7 @@ class Balancing:
 
     nothing: str | None = None
     design: Design | None = None
-    content: Values = field(default_factory=dict)
+    content: JsonObject = field(default_factory=dict)
 
 
 def balancing_of(

@@ -22,6 +22,7 @@ from equipoise.results.outputs import figures_by_name
 from equipoise.symbols.scene import Scene
 from equipoise.web.edits import Computed, kept_with_first
 from equipoise.web.figures import chart, gauge_choice, text_of, was_of
+from equipoise.web.messages import JsonObject
 from equipoise.web.replies import FloatBlock
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from equipoise.vibration.forced import Sweep
     from equipoise.vibration.response import Response
 
-Values = dict[str, Any]
 SAMPLES = 360
 """In a turn."""
 
@@ -57,7 +57,7 @@ def _curves(computed: Computed, speed: float, progress: Callable[[int, int], Non
     return sweep_speed(computed.analysis.machine, *ends, speeds=COARSE, progress=progress)
 
 
-def response_of(computed: Computed) -> tuple[Values, bytes] | None:
+def response_of(computed: Computed) -> tuple[JsonObject, bytes] | None:
     """What the gauges read over a turn at the machine's speed; None where nothing can be shaken.
 
     Where there is no steady state, no gauges and a note that says so.
@@ -78,7 +78,9 @@ def response_of(computed: Computed) -> tuple[Values, bytes] | None:
     return _displacements(computed, response, block), block.data
 
 
-def swept(computed: Computed, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
+def swept(
+    computed: Computed, progress: Callable[[int, int], None]
+) -> tuple[JsonObject, bytes] | None:
     """Response over speeds around the machine's own, which is kept with it.
 
     progress : as of `sweep_speed`; what it raises ends the work.
@@ -91,7 +93,7 @@ def swept(computed: Computed, progress: Callable[[int, int], None]) -> tuple[Val
     block = FloatBlock()
     content = _displacements(computed, response, block)
     block.add("sweep.speed", curves.speed)
-    choices: list[Values] = []
+    choices: list[JsonObject] = []
     for name, curve in curves.gauges.items():
         array = f"sweep.{name}"
         block.add(array, curve.peak_to_peak)
@@ -104,10 +106,10 @@ def swept(computed: Computed, progress: Callable[[int, int], None]) -> tuple[Val
     return content, block.data
 
 
-def _displacements(computed: Computed, response: Response, block: FloatBlock) -> Values:
+def _displacements(computed: Computed, response: Response, block: FloatBlock) -> JsonObject:
     """Displacements against the crank angle, which runs as the crank does, and how to draw them."""
     count = SAMPLES * response.turns
-    choices: list[Values] = []
+    choices: list[JsonObject] = []
     for name, gauge in response.gauges.items():
         array = f"response.{name}"
         block.add(array, gauge.displacement.samples(count))
@@ -140,7 +142,7 @@ def _swing(scene: Scene, block: FloatBlock) -> list[str] | None:
     return list(scene.swing.captions)
 
 
-def _modes(scene: Scene, response: Response) -> Iterator[Values]:
+def _modes(scene: Scene, response: Response) -> Iterator[JsonObject]:
     """Modes of the support, as large as they are drawn.
 
     shape : real and imaginary parts of its displacements along x and y (m) and of its rotation.
@@ -166,7 +168,7 @@ class OutdatedError(Exception):
 
 def deferred_replies(
     computed: Computed, against: Computed | None, sweep: bool, outdated: Callable[[], bool]
-) -> Iterator[tuple[Values, bytes]]:
+) -> Iterator[tuple[JsonObject, bytes]]:
     """Planes from the side, strokes, gauges, planting figures, the response over speed; each as
     values and a block of floats.
 
@@ -221,7 +223,7 @@ _Figures = Mapping[str, FigureValue]
 
 def _compared_figures(
     kind: str, of: Callable[[Computed], _Figures], computed: Computed, against: Computed | None
-) -> Values:
+) -> JsonObject:
     """Figures of a design, each beside the same figure of the other design, if that has it."""
     try:
         figures = of(computed)
@@ -236,7 +238,7 @@ def _compared_figures(
     return {"type": kind, "figures": values, "compared": bool(others), "notes": notes}
 
 
-def _shown(name: str, figure: FigureValue, other: FigureValue | None) -> Values:
+def _shown(name: str, figure: FigureValue, other: FigureValue | None) -> JsonObject:
     """A figure in its display unit; None where it is not finite."""
     unit_display = display(figure.dimension, [figure.value], figure.unit)
 
@@ -286,7 +288,7 @@ def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, FigureValue]]:
     yield from _losses_of(analysis)
 
 
-def _along_links(analysis: Analysis, block: FloatBlock) -> Iterator[Values]:
+def _along_links(analysis: Analysis, block: FloatBlock) -> Iterator[JsonObject]:
     """Charts of loads and stress along links with a section, and of their cycles of stress; their
     arrays go to the block.
     """

@@ -20,21 +20,25 @@ from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.signals import Array
 from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.part_signs import dragged_circles
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import WIDE, GuideSign, Scene
-from equipoise.symbols.shapes import Array, Shape
+from equipoise.symbols.shapes import Shape
 from equipoise.symbols.slots import SLOTS
 from equipoise.web.edits import Computed
-from equipoise.web.replies import FloatBlock, Values
+from equipoise.web.messages import JsonObject
+from equipoise.web.replies import FloatBlock
 
 UNIT = 1.25
 """Pixels: size of a unit of signs on a page."""
 
 
-def stage_of(scene: Scene, handles: Sequence[str], circles: Sequence[Values] = ()) -> Values:
+def stage_of(
+    scene: Scene, handles: Sequence[str], circles: Sequence[JsonObject] = ()
+) -> JsonObject:
     """Names and the drawing of a scene.
 
     signs : from the back to the front, each with its ``layer``, the ``link`` that it is, the
@@ -67,7 +71,7 @@ def stage_of(scene: Scene, handles: Sequence[str], circles: Sequence[Values] = (
     }
 
 
-def _sign(scene: Scene, piece: Piece) -> Values:
+def _sign(scene: Scene, piece: Piece) -> JsonObject:
     hold = None if piece.hold is None else {k: v for k, v in vars(piece.hold).items() if v}
     if hold is not None and "to" in hold:
         hold["length"] = float(np.max(piece.shapes[0].places.real))
@@ -82,7 +86,7 @@ def _sign(scene: Scene, piece: Piece) -> Values:
     }
 
 
-def circles_of(machine: Machine, joints: Structure) -> list[Values]:
+def circles_of(machine: Machine, joints: Structure) -> list[JsonObject]:
     """What a page needs to change circles by hand: of each the list of its part, the path and the
     value of its radius, its centre, and the point across from which it is dragged.
     """
@@ -99,7 +103,7 @@ def circles_of(machine: Machine, joints: Structure) -> list[Values]:
     ]
 
 
-def _strut(scene: Scene, name: str) -> Values:
+def _strut(scene: Scene, name: str) -> JsonObject:
     """Place of a mount on the support at rest (m), and from there to its ground (pixels)."""
     assert scene.carrier is not None
     mount = scene.carrier.support.mounts[name]
@@ -144,7 +148,7 @@ def moves_of(scene: Scene, block: FloatBlock) -> None:
         block.add(f"guide.{guide.name}", guide.way)
 
 
-def ground_of(computed: Computed, block: FloatBlock) -> Values:
+def ground_of(computed: Computed, block: FloatBlock) -> JsonObject:
     """Paths of planting tips over ground, for the block, and the soil that they go into."""
     planting, speed = computed.analysis.machine.planting, computed.motion.speed
     if planting is None or speed == 0:
@@ -163,7 +167,7 @@ PLATES = ("edge", "body", "rod-edge", "rod")
 """Roles of shapes around all points of a link."""
 
 
-def ties_of(scene: Scene, motion: Motion) -> list[list[Values | None]]:
+def ties_of(scene: Scene, motion: Motion) -> list[list[JsonObject | None]]:
     """What each shape of each sign is tied to, in the order of `stage_of`; None of one that stays.
 
     corners : of each corner a point, ``@`` and a link for its centre of mass, a guide and the share
@@ -179,7 +183,7 @@ def ties_of(scene: Scene, motion: Motion) -> list[list[Values | None]]:
     ]
 
 
-def _tie(scene: Scene, motion: Motion, piece: Piece, shape: Shape) -> Values | None:
+def _tie(scene: Scene, motion: Motion, piece: Piece, shape: Shape) -> JsonObject | None:
     body = FRAME if piece.hold is None else piece.hold.link
     if not body:
         return None  # it moves with a guide, or is stretched between points
@@ -217,7 +221,7 @@ def _points_of(body: str) -> KeyPath:
     return KeyPath((FRAME, "points") if body == FRAME else ("links", body, "points"))
 
 
-def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> Values | None:
+def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> JsonObject | None:
     """What is drawn of couplings."""
     table, name = piece.part or ("", "")
     joints = motion.linkage.joints
@@ -238,7 +242,7 @@ def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> Values | None:
     return {"turned": {"about": about, "between": pins, "of": coupling.carrier}}
 
 
-def _of_points(scene: Scene, piece: Piece, shape: Shape, body: str) -> Values | None:
+def _of_points(scene: Scene, piece: Piece, shape: Shape, body: str) -> JsonObject | None:
     """Corners that are points, centres of mass, or on the path of a block."""
     own = {} if piece.layer == "guides" else dict(_places(scene, body))
     guides = [guide for guide in scene.guides if guide.on == body]
@@ -289,7 +293,7 @@ def _ends(scene: Scene, guide: GuideSign) -> tuple[complex, complex]:
     return scene.local(body, ends[0]), scene.local(body, ends[1])
 
 
-def _strand(motion: Motion, shape: Shape, belt: Any) -> Values | None:
+def _strand(motion: Motion, shape: Shape, belt: Any) -> JsonObject | None:
     pins = coupling_pins(motion.linkage.joints, belt)
     points = motion.machine.bodies[belt.carrier]
     start, end = (complex(*points[pin]) for pin in pins)
@@ -322,7 +326,7 @@ def _made_of(motion: Motion, table: str, name: str) -> Iterator[str]:
         yield from (f"{_points_of(body) / point}." for point in sorted(ends))
 
 
-def _of_arrow(scene: Scene, link: str) -> Values | None:
+def _of_arrow(scene: Scene, link: str) -> JsonObject | None:
     """The arrow of a crank's sense, which follows the crank's longest arm."""
     (drive,) = (drive for drive in scene.drives if drive.link == link)
     (body,) = (body for body in scene.bodies if body.name == link)

@@ -30,7 +30,7 @@ from equipoise.symbols.scene import Scene
 from equipoise.web.design import DRAGGED, Design
 from equipoise.web.fields import constrained_place, fields_of
 from equipoise.web.following import DragGoals, extent_of, following
-from equipoise.web.messages import Change, Drag, Setting
+from equipoise.web.messages import DraftEdit, Drag, Setting
 
 R = TypeVar("R")
 MOST_SAMPLES = 2880
@@ -123,7 +123,9 @@ def movable(machine: Machine) -> list[str]:
     return list(names)
 
 
-def edited(base: Computed, changes: Iterable[Change], previous: Computed | None = None) -> Computed:
+def edited(
+    base: Computed, changes: Iterable[DraftEdit], previous: Computed | None = None
+) -> Computed:
     """Change a design and compute it.
 
     previous : a design that differs by less than the base does, if one is known.

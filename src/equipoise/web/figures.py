@@ -22,10 +22,10 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Display, change, display, number, typeset
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis
-from equipoise.signals import Figures
+from equipoise.signals import Array, Figures
 from equipoise.web.edits import kept_with_first
 from equipoise.web.following import extent_of
-from equipoise.web.replies import Array, Values
+from equipoise.web.messages import JsonObject
 
 CHARTS = {
     "polar": to_say(
@@ -118,10 +118,10 @@ def explained() -> dict[str, str]:
     return {name: say(text) for name, text in CHARTS.items()}
 
 
-Signals = dict[str, Array]
+CrankSignals = dict[str, Array]
 
 
-def signals_of(analysis: Analysis) -> Signals:
+def signals_of(analysis: Analysis) -> CrankSignals:
     """Signals over the crank angle (N,), complex for vectors; none where masses are missing."""
     solved = analysis.solved
     if solved is None:
@@ -138,7 +138,7 @@ def signals_of(analysis: Analysis) -> Signals:
     return signals | _of_all_rows(analysis)
 
 
-def _of_all_rows(analysis: Analysis) -> Signals:
+def _of_all_rows(analysis: Analysis) -> CrankSignals:
     """Signals of all rows together, where there are several and they turn."""
     if analysis.motion.speed == 0:
         return {}
@@ -168,7 +168,7 @@ def _size_of(machine: Machine) -> float:
     return max(extent_of(machine), *rows, 0.0)
 
 
-def figures_of(analysis: Analysis, before: Analysis | None = None) -> list[Values]:
+def figures_of(analysis: Analysis, before: Analysis | None = None) -> list[JsonObject]:
     """RMS and peak of each signal, with what they were before; 0 where that is rounding.
 
     As analyses have them, of crank angles that resolve where forces jump.
@@ -181,7 +181,7 @@ class _Read:
     """Signals of a machine, components of vectors beside them, with figures of each."""
 
     motion: Motion
-    signals: Signals
+    signals: CrankSignals
 
     @classmethod
     def of(cls, analysis: Analysis) -> _Read:
@@ -211,7 +211,7 @@ def _before(analysis: Analysis) -> _Read:
     return _Read.of(analysis)
 
 
-def _figures(read: _Read, old: _Read | None) -> Iterator[Values]:
+def _figures(read: _Read, old: _Read | None) -> Iterator[JsonObject]:
     size, several = _size_of(read.motion.machine), "rows.shaking_force" in read.signals
     loudest = max(read.loudest, 0.0 if old is None else old.loudest)
     for name, declared in listed_signals().items():
@@ -266,7 +266,7 @@ def _is_force(name: str) -> bool:
     return name.startswith(("shaking_force", "rows.shaking_force", "joint."))
 
 
-def _with_parts(signals: Signals) -> Signals:
+def _with_parts(signals: CrankSignals) -> CrankSignals:
     """Signals with the components of vectors beside them."""
     vectors = {name: signal for name, signal in signals.items() if np.iscomplexobj(signal)}
     parts = {
@@ -287,7 +287,7 @@ def text_of(value: float | None) -> str:
     return NONE if value is None or not isfinite(value) else typeset(number(value))
 
 
-def compared(before: float, after: float) -> Values:
+def compared(before: float, after: float) -> JsonObject:
     """Texts of a figure before and after and of its change, and whether that is for the better."""
     if abs(after - before) <= SAME * abs(before):
         way = "same"
@@ -322,7 +322,7 @@ LEAST = 1e-6
 """Of the largest force or moment, below which curves are drawn as none."""
 
 
-def charts_of(analysis: Analysis, signals: Signals) -> list[Values]:
+def charts_of(analysis: Analysis, signals: CrankSignals) -> list[JsonObject]:
     """Charts of what shakes the frame and drives the machine, by crank angle and by order."""
     if not signals:
         return []
@@ -342,8 +342,8 @@ def charts_of(analysis: Analysis, signals: Signals) -> list[Values]:
 
 
 def chart(
-    name: str, choices: Sequence[Values | None], x: Any = "angle", chooser: str | None = None
-) -> Values:
+    name: str, choices: Sequence[JsonObject | None], x: Any = "angle", chooser: str | None = None
+) -> JsonObject:
     """A chart, with those choices that there are.
 
     x : ``angle``, ``order``, or the array that it runs over, with its unit and the machine's place.
@@ -357,7 +357,7 @@ def chart(
     }
 
 
-def _choice(analysis: Analysis, signals: Signals, name: str) -> Values | None:
+def _choice(analysis: Analysis, signals: CrankSignals, name: str) -> JsonObject | None:
     """An output as one that can be chosen; None where there is none.
 
     of : whose forces have to be shown for it, those of all rows or of one; None for any.
@@ -384,13 +384,13 @@ def _choice(analysis: Analysis, signals: Signals, name: str) -> Values | None:
     }
 
 
-def _listed_names(signals: Signals) -> list[str]:
+def _listed_names(signals: CrankSignals) -> list[str]:
     """Names of signals of frame and drive, those of all rows first, without parts of vectors."""
     whole = [name for name, declared in listed_signals().items() if declared.part not in ("x", "y")]
     return sorted((n for n in whole if n in signals), key=lambda n: not n.startswith(ROWS))
 
 
-def _by_order(analysis: Analysis, signals: Signals) -> Iterator[Values]:
+def _by_order(analysis: Analysis, signals: CrankSignals) -> Iterator[JsonObject]:
     """Choices of spectra: those of all rows where these are listed, and of one row."""
     for name in _listed_names(signals):
         whole = _choice(analysis, signals, name)
@@ -412,7 +412,9 @@ def _by_order(analysis: Analysis, signals: Signals) -> Iterator[Values]:
         }
 
 
-def gauge_choice(name: str, label: str, rotation: bool, array: str, log: bool = False) -> Values:
+def gauge_choice(
+    name: str, label: str, rotation: bool, array: str, log: bool = False
+) -> JsonObject:
     """What a gauge reads as one that can be chosen, in the unit in which supports move.
 
     log : whether it is drawn over a logarithmic scale.

@@ -110,7 +110,7 @@ def _over_crank(computed: Computed, output: str) -> Chart:
     from equipoise.figures.chart_parts import ALL
     from equipoise.figures.forces import over_crank
     from equipoise.mechanism.parts.balance import ROWS
-    from equipoise.results.machine_blocks import TOTALS
+    from equipoise.results.outputs import TOTALS
 
     outputs = computed.analysis.outputs
     item = outputs[f"{ROWS}{output}" if f"{ROWS}{output}" in outputs else output]

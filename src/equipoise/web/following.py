@@ -18,10 +18,11 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.decompositions import lstsq
 from equipoise.i18n import Note, all_of
-from equipoise.mechanism.assembly.steps import Array, planar
+from equipoise.mechanism.assembly.steps import planar
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import clean_place
+from equipoise.signals import Array
 from equipoise.web.design import DRAGGED
 
 COINCIDENT = 1e-9

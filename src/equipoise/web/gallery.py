@@ -22,8 +22,8 @@ from equipoise.schema.open_files import content_of, examples, in_file, kind_of_t
 from equipoise.symbols.scene import Scene, clear_angle
 from equipoise.web.design import Design
 from equipoise.web.drawing import moves_of, stage_of
-from equipoise.web.messages import Message
-from equipoise.web.replies import FloatBlock, Values
+from equipoise.web.messages import JsonObject, Message
+from equipoise.web.replies import FloatBlock
 
 BARS = {
     4: to_say("four-bar linkage"),
@@ -160,7 +160,7 @@ END = re.compile(r"(?<=。)|(?<=[^A-Z]\.)\s+")
 """Where a sentence ends, but not after an initial."""
 
 
-def pictured() -> Iterator[tuple[Values, bytes]]:
+def pictured() -> Iterator[tuple[JsonObject, bytes]]:
     """Every machine, by kind: title, first sentence, kind and words to search in the reader's
     language, drawing and arrays.
     """
@@ -177,7 +177,7 @@ def pictured() -> Iterator[tuple[Values, bytes]]:
 
 
 @cache
-def _thumbnail(name: str) -> tuple[Values, bytes]:
+def _thumbnail(name: str) -> tuple[JsonObject, bytes]:
     """What does not depend on the language.
 
     at : sample at which nothing hides anything else, where a picture stands still.

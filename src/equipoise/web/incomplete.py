@@ -26,8 +26,8 @@ from equipoise.web.design import Design
 from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.edits import Computed, edited, settled, solved
 from equipoise.web.fields import Field, Measure, Scale, constrained_place, measures_of
-from equipoise.web.messages import Change, Entry, Setting
-from equipoise.web.replies import FloatBlock, Values
+from equipoise.web.messages import DraftEdit, Entry, JsonObject, Setting
+from equipoise.web.replies import FloatBlock
 from equipoise.web.sketch import Sketch, lacking
 from equipoise.web.state import turning
 from equipoise.web.structure_edits import moved, with_constraints_met
@@ -118,7 +118,7 @@ def finished(computed: Computed | Incomplete) -> Computed:
 
 def changed(
     base: Computed | Incomplete,
-    changes: list[Change],
+    changes: list[DraftEdit],
     commit: bool,
     previous: Computed | Incomplete | None = None,
 ) -> Computed | Incomplete:
@@ -189,7 +189,7 @@ def plain_of(computed: Computed | Incomplete) -> Machine:
     return replace(computed.design.machine(), position=None)
 
 
-def status_of_sketch(incomplete: Incomplete) -> Values:
+def status_of_sketch(incomplete: Incomplete) -> JsonObject:
     """Status of an incomplete machine, with the keys of `status_of`."""
     sketch = incomplete.design
     drive = sketch.drive.link if sketch.drive else None
@@ -204,7 +204,7 @@ def status_of_sketch(incomplete: Incomplete) -> Values:
 # -- changed by numbers and drags ------------------------------------------------------------------
 
 
-def redrawn(sketch: Sketch, changes: list[Change]) -> Sketch:
+def redrawn(sketch: Sketch, changes: list[DraftEdit]) -> Sketch:
     """A sketch with numbers set and points dragged.
 
     Raises
@@ -356,13 +356,13 @@ def _sense(sketch: Sketch) -> DriveSign:
     return DriveSign(drive.link, pivots[0], int(np.sign(drive.speed)))
 
 
-def state_of_sketch(incomplete: Incomplete, scale: Scale) -> tuple[Values, bytes]:
+def state_of_sketch(incomplete: Incomplete, scale: Scale) -> tuple[JsonObject, bytes]:
     """Everything that a page draws of an unfinished machine: its place, and no charts."""
     sketch, block = incomplete.design, FloatBlock()
     scene = scene_of(sketch)
     moves_of(scene, block)
     length = display("length", [sketch.size])
-    content: Values = {
+    content: JsonObject = {
         "name": sketch.name,
         "title": sketch.rest["title"],
         "description": sketch.rest.get("description", ""),

@@ -39,6 +39,7 @@ from equipoise.results.outputs import AnalysisOutput
 from equipoise.results.result import words_of
 from equipoise.schema.numbers import POLAR, FileNumber
 from equipoise.schema.template import Template
+from equipoise.signals import Array
 from equipoise.symbols.scene import Scene
 from equipoise.web.documents import ALONE, asset, data, document, script, style, wording_of
 from equipoise.web.drawing import stage_of, ties_of
@@ -46,7 +47,7 @@ from equipoise.web.edits import movable
 from equipoise.web.fields import CYCLE_SPEED, SECTIONS, measures_of
 from equipoise.web.figures import listed_signals
 from equipoise.web.following import extent_of
-from equipoise.web.replies import Array, Values
+from equipoise.web.messages import JsonObject
 
 PER_MINUTE = "1/min"
 """Unit of cycles a minute, where nothing turns that would have a speed in rpm."""
@@ -208,13 +209,13 @@ class Interactive:
     # -- what the page knows -----------------------------------------------------------------------
 
     @cached_property
-    def content(self) -> Values:
+    def content(self) -> JsonObject:
         """All that the page knows of the machine, as JSON has it; arrays are 64-bit floats."""
         motion, script, scene = self.motion, self.script, self.scene
         length = display("length", [extent_of(self.machine)])
         sampling = motion.sampling
         theta = motion.crank_angle
-        content: Values = {
+        content: JsonObject = {
             "title": localized(self.machine.title),
             "description": localized(self.machine.description),
             "rules": display_rules(),
@@ -269,7 +270,7 @@ class Interactive:
         numbers = [float(self._candidates[path].value) for path in script.paths]
         return [*numbers, surface_of(self.machine)] if SURFACE in script.cyclic else numbers
 
-    def _soil(self) -> Values | None:
+    def _soil(self) -> JsonObject | None:
         """Tips and depth by which the page finds the height of the soil's surface; None where there
         is no soil, or the file gives that height.
         """
@@ -283,13 +284,13 @@ class Interactive:
     def scene(self) -> Scene:
         return Scene.of(self.analysis.motion)
 
-    def _rows(self) -> Iterator[Values]:
+    def _rows(self) -> Iterator[JsonObject]:
         """Rows on one shaft: where each is, and its crank angles; none where there is one."""
         for row in self.machine.rows if len(self.machine.rows) > 1 else ():
             grid = self.script.grid(self.motion.crank_angle + row.phase)
             yield {"grid": _floats(grid), "offset": row.offset, "lateral": row.lateral}
 
-    def _outputs(self) -> Iterator[Values]:
+    def _outputs(self) -> Iterator[JsonObject]:
         """What can be drawn over the crank angle, and of what figures are reported."""
         groups = {group: say(title) for group, title in GROUPS.items()}
         first = listed_signals()
@@ -304,7 +305,7 @@ class Interactive:
                 "first": output.name in first,
             }
 
-    def _fields(self) -> Iterator[Values]:
+    def _fields(self) -> Iterator[JsonObject]:
         """Every number of the script, in its order."""
         template = self.template
         numbers = self._candidates
@@ -329,7 +330,7 @@ class Interactive:
                 "below": key and key.below,
             }
 
-    def _measures(self) -> Iterator[Values]:
+    def _measures(self) -> Iterator[JsonObject]:
         """Lengths between points of bodies whose places are numbers of the script."""
         paths = {*self.script.paths}
         bodies = {FRAME: self.machine.frame}
@@ -390,7 +391,7 @@ def _factors(number: FileNumber) -> dict[str, float]:
     return {unit: float(FACTORS[unit]) for unit in KINDS[number.dimension].units}
 
 
-def _unit_content(unit: Display) -> Values:
+def _unit_content(unit: Display) -> JsonObject:
     return {"unit": unit.name, "factor": unit.factor}
 
 

@@ -26,7 +26,7 @@ from equipoise.quantities.units import OF_UNIT
 from equipoise.results.analysis import Analysis
 from equipoise.schema.files import printable
 from equipoise.schema.tables import TIMES, check_width, rows_of, shortened, wrong
-from equipoise.web.replies import Array
+from equipoise.signals import Array
 
 HEAD = re.compile(r"(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]")
 FIRST: dict[str, Dimension] = {"crank_angle": "angle", **dict.fromkeys(TIMES, "time")}

@@ -19,6 +19,8 @@ from equipoise.quantities.reading import described
 from equipoise.quantities.units import HUGE
 from equipoise.schema.files import LARGEST
 
+JsonObject = dict[str, Any]
+"""What a page is sent or sends: a JSON object."""
 KINDS = (
     "ready",
     "speak",
@@ -95,7 +97,7 @@ class Drag:
     keep: tuple[str, ...] = ()
 
 
-Change = Setting | Drag
+DraftEdit = Setting | Drag
 
 
 @dataclass(frozen=True)
@@ -178,7 +180,7 @@ class Message:
         text = "".join(sign for sign in self.text("label", "edit") if sign.isprintable())
         return text[:LONGEST_LABEL] or "edit"
 
-    def changes(self) -> list[Change]:
+    def changes(self) -> list[DraftEdit]:
         """The edits of a message of the kind `edit`.
 
         Raises
@@ -282,7 +284,7 @@ def makes_way(older: Message | UsageError, newer: Message | UsageError) -> bool:
     return older.preview and newer.kind == "edit"
 
 
-def _change(edit: object) -> Change:
+def _change(edit: object) -> DraftEdit:
     if not isinstance(edit, dict):
         _wrong(
             "an edit",
@@ -372,7 +374,7 @@ class MassDragEdit(TypedDict):
 
 
 Edit = TypedEdit | NumberEdit | DragEdit | MassDragEdit
-FileKind = Literal["model", "csv", "report", "drawing", "film", "played", "interactive"]
+DownloadKind = Literal["model", "csv", "report", "drawing", "film", "played", "interactive"]
 
 
 class ReadyRequest(TypedDict):
@@ -484,7 +486,7 @@ class DownloadRequest(TypedDict):
     """A file of the machine."""
 
     type: Literal["download"]
-    kind: FileKind
+    kind: DownloadKind
     language: NotRequired[str]
     at: NotRequired[int]
     format: NotRequired[Literal["svg", "png"]]
@@ -568,7 +570,7 @@ class CancelRequest(TypedDict):
     type: Literal["cancel"]
 
 
-Asked = (
+PageRequest = (
     ReadyRequest | LanguageRequest | ExampleRequest | NewRequest | FileRequest | EditRequest
     | MakeRequest | PlainRequest | BalanceRequest | RunRequest | CompareRequest | EntryRequest
     | OutputsRequest | DownloadRequest | ChartRequest | ArrowsRequest | PinRequest | RenameRequest

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, NotRequired, TypedDict
 
-from equipoise.web.messages import Asked, Edit, FileKind, MadeValues, MakeRequest, Pair
+from equipoise.web.messages import DownloadKind, Edit, MadeValues, MakeRequest, PageRequest, Pair
 from equipoise.web.tables import TablesValues
 
 Arrays = dict[str, tuple[int, int]]
 """Name of an array -> its offset and length in the block of floats."""
-Shape = Annotated[
+DrawnShape = Annotated[
     tuple[str, bool, float, float, list[float]],
     "Role, whether it is closed, radius of a circle (m, and pixels; one of them is not 0), and x, y"
     " (m) and offsets from there (pixels) of each corner; y upward.",
@@ -97,7 +97,7 @@ class SignValues(TypedDict):
         "The slider or coupling that it draws, if any: `slider`, or its list, and its name.",
     ]
     still: Annotated[bool, "Whether it is fixed to the ground, and not to the support."]
-    shapes: list[Shape]
+    shapes: list[DrawnShape]
 
 
 class CircleValues(TypedDict):
@@ -274,10 +274,12 @@ class StateMessage(TypedDict):
 
 # -- what else a page is sent ----------------------------------------------------------------------
 
-Shapes = Annotated[
+DrawnDisplacements = Annotated[
     list[float], "Real and imaginary parts along the shaft or support, as large as they are drawn."
 ]
-Answer = Annotated[int | None, "Number of the question that it answers; null for what comes later."]
+AnsweredNumber = Annotated[
+    int | None, "Number of the question that it answers; null for what comes later."
+]
 
 
 class ExampleValues(TypedDict):
@@ -327,7 +329,7 @@ class ParticlesValues(TypedDict):
     reach: Annotated[int, "How many signs before a particle are looked at."]
 
 
-Forms = dict[str, str]
+PluralForms = dict[str, str]
 """Category of a count, such as ``one`` -> the text; ``by`` is the placeholder of the count."""
 
 
@@ -365,7 +367,7 @@ class SpokenValues(TypedDict):
     part_tools: Annotated[list[PartToolValues], "As kinds of parts declare them."]
     particles: ParticlesValues | None
     decimal: Annotated[str, "The sign before the decimals of a number that is shown."]
-    forms: Annotated[dict[str, Forms], "English text of the page -> its forms by a count."]
+    forms: Annotated[dict[str, PluralForms], "English text of the page -> its forms by a count."]
 
 
 class PicturedValues(TypedDict):
@@ -405,7 +407,7 @@ class ResponseMessage(TypedDict):
     """The response of the support over speed."""
 
     type: Literal["response"]
-    seq: Answer
+    seq: AnsweredNumber
     charts: list[ChartDataValues]
     arrays: Arrays
     notes: list[str]
@@ -430,7 +432,7 @@ class ShaftPieceValues(TypedDict):
     layer: Literal["below", "above"]
     place: float
     turns: Annotated[bool, "Whether they turn with the shaft."]
-    shapes: list[Shape]
+    shapes: list[DrawnShape]
 
 
 class ToolSceneValues(TypedDict):
@@ -448,7 +450,7 @@ class ShaftViewValues(TypedDict):
 
     name: str
     told: list[str]
-    shape: Shapes
+    shape: DrawnDisplacements
 
 
 class ChangeValues(TypedDict):
@@ -543,7 +545,7 @@ class GhostMessage(TypedDict):
     """A design that is drawn pale, or none."""
 
     type: Literal["ghost"]
-    seq: Answer
+    seq: AnsweredNumber
     scene: SceneValues | None
     arrays: Arrays
 
@@ -561,7 +563,7 @@ class VariantsMessage(TypedDict):
     """Figures of designs that are kept, by column, and of the one that is."""
 
     type: Literal["variants"]
-    seq: Answer
+    seq: AnsweredNumber
     kept: list[str]
     against: Annotated[str, "With what figures are compared: a word, or a variant."]
     rows: list[VariantRowValues]
@@ -571,7 +573,7 @@ class SideValues(TypedDict):
     """Links in different planes, drawn from the side."""
 
     type: Literal["side"]
-    seq: Answer
+    seq: AnsweredNumber
     svg: str
 
 
@@ -590,7 +592,7 @@ class StrokesValues(TypedDict):
     """Figures of sliders, rockers and parts, and charts of loads along links with a section."""
 
     type: Literal["strokes"]
-    seq: Answer
+    seq: AnsweredNumber
     figures: list[ReadingValues]
     compared: Annotated[bool, "Whether figures of another design are shown beside them."]
     notes: list[str]
@@ -602,7 +604,7 @@ class PlantedValues(TypedDict):
     """Figures of a planting finger or of gauges."""
 
     type: Literal["planting", "gauges"]
-    seq: Answer
+    seq: AnsweredNumber
     figures: list[ReadingValues]
     compared: Annotated[bool, "Whether figures of another design are shown beside them."]
     notes: list[str]
@@ -671,7 +673,7 @@ class RefusedValues(TypedDict):
     """Why something cannot be done."""
 
     type: Literal["refused"]
-    seq: Answer
+    seq: AnsweredNumber
     message: str
     path: NotRequired[Annotated[str, "Key of the model file that is wrong."]]
     what: Annotated[str, "What is wrong, without its place, and keys by the words of forms."]
@@ -725,15 +727,15 @@ Sent = (
 ALIASES = {
     "Pair": Pair,
     "Arrays": Arrays,
-    "Shape": Shape,
-    "Forms": Forms,
+    "DrawnShape": DrawnShape,
+    "PluralForms": PluralForms,
     "Edit": Edit,
-    "FileKind": FileKind,
+    "DownloadKind": DownloadKind,
     "Sent": Sent,
-    "Asked": Asked,
+    "PageRequest": PageRequest,
 }
 """Names of types in TypeScript that are no interfaces."""
 OPEN = (MadeValues, MakeRequest)
 """Classes whose objects have other keys too: those that an operation needs."""
-MESSAGES = (Sent, Asked, MadeValues)
+MESSAGES = (Sent, PageRequest, MadeValues)
 """What is written to TypeScript, with all that it refers to."""

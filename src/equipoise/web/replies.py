@@ -20,7 +20,8 @@ from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.i18n import Note, key_words, say, speaking, to_say
 from equipoise.limits import out_of_memory
 from equipoise.schema.topics import errors, known_topic, plain_page
-from equipoise.web.messages import Message, message_of
+from equipoise.signals import Array
+from equipoise.web.messages import JsonObject, Message, message_of
 from equipoise.web.tables import word_in_forms
 
 LONGEST = 800
@@ -43,12 +44,6 @@ BUSY = {
 
 LONG_FILES = ("report", "drawing", "chart", "film", "played")
 """Kinds of files that take longer than a moment."""
-
-
-Array = np.ndarray[Any, Any]
-
-
-Values = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -213,7 +208,7 @@ class StateChanges:
     """Leaves out of each state what the page has from the one before."""
 
     def __init__(self) -> None:
-        self._last: Values = {}
+        self._last: JsonObject = {}
 
     def of(self, reply: Reply) -> Reply:
         """A reply as it is sent: of a state the changes, of all else the whole."""
@@ -224,15 +219,15 @@ class StateChanges:
         return Reply(always | changes(last, reply.content), reply.buffer)
 
 
-def changes(before: Values, now: Values) -> Values:
+def changes(before: JsonObject, now: JsonObject) -> JsonObject:
     """The keys of `now` that differ, and what of the others there is to do.
 
     same : keys whose values are those of before.
     items : by the key of a list, the numbers of items that differ, each with the new one.
     inside : by the key of an object, its changes.
     """
-    result: Values = {}
-    same, items, inside = list[str](), Values(), Values()
+    result: JsonObject = {}
+    same, items, inside = list[str](), JsonObject(), JsonObject()
     for key, value in now.items():
         old = before.get(key)
         if key in before and (old is value or old == value):

@@ -14,14 +14,16 @@ from equipoise.i18n import capital
 from equipoise.present.cells import noted, printed, printed_grid, with_omitted
 from equipoise.results.blocks import Block, Facts, Notes, ReportSection, Table, Text
 from equipoise.results.charts import Axis, Chart, Curve, Mark, Panel
+from equipoise.signals import Array
 from equipoise.web.figures import chart
-from equipoise.web.replies import Array, FloatBlock, Values
+from equipoise.web.messages import JsonObject
+from equipoise.web.replies import FloatBlock
 
 MOST_POINTS = 20_000
 """Values of a curve that are sent; no screen has more columns of pixels."""
 
 
-def block_messages(blocks: Iterable[Block | ReportSection]) -> Iterator[Values]:
+def block_messages(blocks: Iterable[Block | ReportSection]) -> Iterator[JsonObject]:
     """Texts, lists of sentences and tables.
 
     Raises
@@ -44,11 +46,11 @@ def block_messages(blocks: Iterable[Block | ReportSection]) -> Iterator[Values]:
             raise TypeError(block.kind)
 
 
-def _text(text: str, emphasized: bool) -> Values:
+def _text(text: str, emphasized: bool) -> JsonObject:
     return {"kind": "text", "text": printed(text), "emphasized": emphasized}
 
 
-def _table(table: Table) -> Values:
+def _table(table: Table) -> JsonObject:
     """A table; `numbers` says of each column whether it is set to the right."""
     cells = printed_grid(table)
     return {
@@ -74,7 +76,7 @@ def panel_name(result: str, chart: Chart, number: int) -> str:
     return f"{result}.{chart.name}.{number}"
 
 
-def panel_charts(result: str, charts: Iterable[Chart], block: FloatBlock) -> Iterator[Values]:
+def panel_charts(result: str, charts: Iterable[Chart], block: FloatBlock) -> Iterator[JsonObject]:
     """A chart for each panel with curves, which share the values of their x axis.
 
     The place on the x axis is that of what is played.  Of long curves not all values are sent.
@@ -100,7 +102,9 @@ def panel_charts(result: str, charts: Iterable[Chart], block: FloatBlock) -> Ite
         yield _panel_chart(name, panel, shared[id(x)], block)
 
 
-def stacked_chart(item: Chart, labels: Iterable[str], chooser: str, block: FloatBlock) -> Values:
+def stacked_chart(
+    item: Chart, labels: Iterable[str], chooser: str, block: FloatBlock
+) -> JsonObject:
     """One chart of all panels of a picture, which stand on one x axis, each a choice of its own.
 
     Its marker stands where the first line of the panels does.  labels : of the choices.
@@ -116,7 +120,7 @@ def stacked_chart(item: Chart, labels: Iterable[str], chooser: str, block: Float
     return chart(item.name, choices, x=over, chooser=chooser)
 
 
-def marked_chart(item: Chart, label: str, block: FloatBlock) -> Values:
+def marked_chart(item: Chart, label: str, block: FloatBlock) -> JsonObject:
     """One chart of a picture of one panel: curves over values of their own, and marks as points, of
     which those of a label are a curve.
 
@@ -165,7 +169,7 @@ def drawn_places(x: Array, curves: Sequence[Array]) -> Array:
 
 def _panel_chart(
     name: str, panel: Panel, shared: tuple[Array, Array | slice], block: FloatBlock
-) -> Values:
+) -> JsonObject:
     """A chart; `shared` are the values of its x axis that are sent, and their places."""
     x, chosen = shared
     block.add(f"{name}.x", x)
@@ -176,7 +180,7 @@ def _panel_chart(
 
 def _panel_choice(
     name: str, panel: Panel, label: str, block: FloatBlock, chosen: Array | slice = slice(None)
-) -> Values:
+) -> JsonObject:
     """Curves of a panel, of which the values at the places `kept` go to the block."""
     curves = panel.curves
     arrays = [f"{name}.{number}" for number in range(len(curves))]

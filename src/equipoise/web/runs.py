@@ -14,7 +14,8 @@ from equipoise.signals import Array
 from equipoise.symbols.scene import Scene
 from equipoise.web.drawing import moves_of
 from equipoise.web.edits import Computed, kept_with_first
-from equipoise.web.replies import FloatBlock, Values
+from equipoise.web.messages import JsonObject
+from equipoise.web.replies import FloatBlock
 from equipoise.web.result_blocks import block_messages, panel_charts
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def run_of(base: Computed, progress: Callable[[int, int], None] | None = None) -
     return run(base.analysis.machine, progress=progress)
 
 
-def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:
+def run_message(run: Run | DrivesRun, base: Computed) -> tuple[JsonObject, bytes]:
     """What a page shows of a run: blocks, charts, and the pose at each instant.
 
     Arrays: ``run.time`` (M,), s, and ``run.cycles`` (M,), the crank angle in cycles, which goes on
@@ -69,7 +70,7 @@ def run_message(run: Run | DrivesRun, base: Computed) -> tuple[Values, bytes]:
         cycles = np.arange(frames) / frames
     block.add("run.time", time)
     block.add("run.cycles", cycles)
-    content: Values = {
+    content: JsonObject = {
         "blocks": [*block_messages((*run.headline(), *captions, *run.blocks()))],
         "charts": [*panel_charts("run", run.charts().values(), block)],
         "frames": frames,

@@ -24,6 +24,7 @@ from equipoise.results.result import words_of
 from equipoise.schema.documents import dumps
 from equipoise.schema.files import LARGEST
 from equipoise.schema.template import named_parts
+from equipoise.signals import Array
 from equipoise.web.deferred import deferred_replies, response_of
 from equipoise.web.design import Design, History, HistoryStep
 from equipoise.web.documents import language_of, spoken_in, wording_of
@@ -44,8 +45,8 @@ from equipoise.web.incomplete import (
     with_entry,
 )
 from equipoise.web.measured_records import MeasuredSignals, record_of_text
-from equipoise.web.messages import MOST_LANGUAGES, MOST_OUTPUTS, SLOW, Message
-from equipoise.web.replies import Array, Reply, Values, refused
+from equipoise.web.messages import MOST_LANGUAGES, MOST_OUTPUTS, SLOW, JsonObject, Message
+from equipoise.web.replies import Reply, refused
 from equipoise.web.sketch import Sketch
 from equipoise.web.state import first_of, spectra_of, state_of
 from equipoise.web.structure_edits import lost, sketch_after
@@ -96,7 +97,7 @@ class Session:
     disk: Disk | None = None
     view_state: ViewState = field(default_factory=ViewState)
     brief: bool = False
-    written: Values | None = None
+    written: JsonObject | None = None
     spectra: Mapping[str, Array] = field(default_factory=dict)
     numbered: tuple[Computed | Incomplete | None, int] = (None, 0)
     before_change: Callable[[], None] = field(default=lambda: None)
@@ -373,7 +374,7 @@ class Session:
             }
         )
 
-    def _titled(self, titles: dict[str, str]) -> list[Values]:
+    def _titled(self, titles: dict[str, str]) -> list[JsonObject]:
         with speaking(self.language):
             return [{"name": name, "title": localized(title)} for name, title in titles.items()]
 
@@ -553,7 +554,7 @@ class Session:
         newest, number = self.numbered
         return number if newest is result else 0
 
-    def _numbers_of(self, computed: Computed) -> Values:
+    def _numbers_of(self, computed: Computed) -> JsonObject:
         """The part of a state that a page writes: figures, and the numbers of the machine."""
         assert self.scale is not None
         against = self._against or self.view_state.pale or self.before
@@ -564,7 +565,7 @@ class Session:
         }
         return self.written
 
-    def _state_of(self, computed: Computed) -> tuple[Values, bytes]:
+    def _state_of(self, computed: Computed) -> tuple[JsonObject, bytes]:
         view = self.view_state
         return state_of(
             computed,

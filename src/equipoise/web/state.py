@@ -15,13 +15,14 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Dimension, Display, display
 from equipoise.results.analysis import Analysis
 from equipoise.results.machine_blocks import driven
-from equipoise.signals import Periodic
+from equipoise.signals import Array, Periodic
 from equipoise.web.drawing import circles_of, ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed, kept_with_first, movable
 from equipoise.web.figures import charts_of, least_of, signals_of
 from equipoise.web.following import extent_of
 from equipoise.web.measured_records import MeasuredSignals
-from equipoise.web.replies import Array, FloatBlock, Values
+from equipoise.web.messages import JsonObject
+from equipoise.web.replies import FloatBlock
 from equipoise.web.sketch import forces_lack
 from equipoise.web.view_state import arrows_of, points_of, record_values
 
@@ -37,7 +38,7 @@ def state_of(
     against: Computed | None = None,
     arrows_at: str | None = None,
     record: MeasuredSignals | None = None,
-) -> tuple[Values, bytes]:
+) -> tuple[JsonObject, bytes]:
     """Everything that a page draws of a machine, without its figures and numbers.
 
     spectra : its amplitudes by order, see `spectra_of`.
@@ -62,7 +63,7 @@ def state_of(
     against = against or before
     length = display("length", [extent_of(machine)])
     lacking = forces_lack(machine)
-    content: Values = {
+    content: JsonObject = {
         "name": computed.design.name,
         "title": localized(machine.title),
         "description": localized(machine.description),
@@ -99,7 +100,7 @@ def state_of(
     return content, block.data
 
 
-def outputs_of(analysis: Analysis) -> list[Values]:
+def outputs_of(analysis: Analysis) -> list[JsonObject]:
     """What can be drawn over the crank angle."""
     units = tuple((dimension, display(dimension)) for dimension in analysis.outputs.dimensions)
     groups = tuple(say(title) for title in GROUPS.values())
@@ -114,7 +115,7 @@ def _output_values(
     units: tuple[tuple[Dimension | None, Display], ...],
     groups: tuple[str, ...],
     language: str,
-) -> list[Values]:
+) -> list[JsonObject]:
     """Labels, units and groups of outputs, which stay from one move of a drag to the next."""
     by_dimension, headings = dict(units), dict(zip(GROUPS, groups, strict=True))
     with speaking(language):
@@ -133,7 +134,7 @@ def _output_values(
         ]
 
 
-def status_of(computed: Computed) -> Values:
+def status_of(computed: Computed) -> JsonObject:
     """Status of a machine: its mobility, and a sentence on it.
 
     mobility : number of free motions.  text : a sentence: what moves, or what is missing.

@@ -19,12 +19,14 @@ from equipoise.handheld.model import Tool
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.study_units import machine_of, owner_of, units_in
+from equipoise.signals import Array
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import feasible
 from equipoise.studies.selection import best
 from equipoise.studies.store import ABOUT, MARK, UNKNOWN, Store, open_store
 from equipoise.studies.study import random_numbers
-from equipoise.web.replies import Array, FloatBlock, Reply, Values
+from equipoise.web.messages import JsonObject
+from equipoise.web.replies import FloatBlock, Reply
 
 MOST, BEST = 5_000, 50
 """Designs that a page is sent; of the best, those that are marked."""
@@ -149,7 +151,7 @@ class StoreDesk:
             for code, words in WHY.items()
             if counts[code]
         ]
-        content: Values = {
+        content: JsonObject = {
             "type": "study",
             "seq": seq,
             "name": self.name,
@@ -179,7 +181,7 @@ class StoreDesk:
         except UsageError:
             return []
 
-    def _columns(self) -> Iterator[Values]:
+    def _columns(self) -> Iterator[JsonObject]:
         """What varies, then what came of it: what it is called, its unit, its limits."""
         units = units_in(self.store)
         for name in self.store.numbers:
@@ -189,7 +191,7 @@ class StoreDesk:
             limits: dict[str, Any] = {"limits": [*ends], "make": wish.make}
             yield self._column(wish.name, units[wish.name], "output") | limits
 
-    def _column(self, name: str, unit: Any, kind: str) -> Values:
+    def _column(self, name: str, unit: Any, kind: str) -> JsonObject:
         return {
             "name": name,
             "label": unit.called or name,

@@ -504,7 +504,7 @@ def _tables_renamed(sketch: Sketch, what: What, old: str, new: str) -> Sketch:
     return replace(sketch, rest=rest, **values)
 
 
-Operation = Callable[[Sketch, Message], Sketch]
+SketchEdit = Callable[[Sketch, Message], Sketch]
 
 
 def _point(sketch: Sketch, message: Message) -> Sketch:
@@ -559,7 +559,7 @@ def _rename(sketch: Sketch, message: Message) -> Sketch:
     return renamed(sketch, what, message.text("name"), message.text("to"))
 
 
-OPERATIONS: Mapping[str, tuple[str, Operation]] = {
+OPERATIONS: Mapping[str, tuple[str, SketchEdit]] = {
     "point": (to_say("add a point"), _point),
     "link": (to_say("add a link"), _link),
     "slider": (to_say("add a slider"), _slider),

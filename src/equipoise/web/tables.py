@@ -34,15 +34,14 @@ from equipoise.quantities import (
     parse_expression,
     pattern,
 )
-from equipoise.quantities.expressions import Names, names_in
+from equipoise.quantities.expressions import NamedAmounts, names_in
 from equipoise.schema.entries import Document, entry_of, kind_at, own_keys, tables_below
 from equipoise.schema.file_numbers import plain_word
 from equipoise.schema.open_files import document_of
 from equipoise.schema.writing import plain_default, value_text
 from equipoise.web.design import Design, pin_of
-from equipoise.web.messages import Entry, Pair
+from equipoise.web.messages import Entry, JsonObject, Pair
 
-Values = dict[str, Any]
 MOST_WORDS = 4
 """Keys of an entry, at most, that are shown where it is listed."""
 
@@ -80,7 +79,7 @@ def entered(design: Design, entry: Entry) -> Design:
     return replace(design, own=own, counterweights=_that_fit(design, own))
 
 
-def _worked_out(of: type[Frozen], name: str, value: Any, names: Names) -> Any:
+def _worked_out(of: type[Frozen], name: str, value: Any, names: NamedAmounts) -> Any:
     """A value of a form, where it is a sum or product of quantities as the quantity that it is.
 
     names : parameters.  An expression that has them, or the sign of expressions, stays as it is.
@@ -110,7 +109,7 @@ def _that_fit(design: Design, own: Machine) -> Mapping[str, Any]:
     })  # fmt: skip
 
 
-def tables_of(machine: Machine) -> Values:
+def tables_of(machine: Machine) -> JsonObject:
     """What a page needs to show and change every table of a machine's file.
 
     groups : a key below which there are tables, or can be, in the order of the file.
@@ -132,7 +131,7 @@ def tables_of(machine: Machine) -> Values:
 
 def _groups(
     machine: Machine, of: type[Frozen], entry: Mapping[str, Any] | None, place: KeyPath, name: str
-) -> Iterator[Values]:
+) -> Iterator[JsonObject]:
     """The groups below an entry; below one that is not there they name what has to be added first.
 
     name : what the entry is called.
@@ -160,7 +159,7 @@ def _groups(
             yield from _groups(machine, inner.type, None, at, word_of(item))
 
 
-def _group(place: KeyPath, of: type[Frozen], many: str, words: Values) -> Values:
+def _group(place: KeyPath, of: type[Frozen], many: str, words: JsonObject) -> JsonObject:
     text = {"place": str(place), "where": place.abbreviated, "form": of.__name__}
     return {**text, "many": many, "needs": "", **words}
 
@@ -180,7 +179,7 @@ def _called(item: Any, place: KeyPath) -> str:
     return f"{word_of(item)} {last + 1}" if isinstance(last, int) else word_of(item)
 
 
-def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> Values:
+def _entry(of: type[Frozen], entry: Mapping[str, Any], place: KeyPath) -> JsonObject:
     own = own_keys(of)
     values = {name: value for name, value in entry.items() if name in own}
     given_values = ((item, values[name]) for name, item in own.items() if name in values)
@@ -352,13 +351,13 @@ def _none_of(text: str) -> str:
 # -- forms -----------------------------------------------------------------------------------------
 
 
-def forms_of(of: type[keys.Frozen]) -> dict[str, Values]:
+def forms_of(of: type[keys.Frozen]) -> dict[str, JsonObject]:
     """The form of a table and of all below it, by the name of its class.
 
     Each has its controls, those of required keys first, and what the JSON Schema says of keys that
     go together.
     """
-    by_name: dict[str, Values] = {}
+    by_name: dict[str, JsonObject] = {}
     for table in _tables_of(of):
         own = own_keys(table)
         controls = [control_of(key, own) for key in own.values()]
@@ -397,7 +396,7 @@ def _keys_of_linkages() -> Mapping[str, tuple[keys.Key, ...]]:
     return MappingProxyType(by_name)
 
 
-def control_of(key: keys.Key, siblings: Mapping[str, keys.Key]) -> Values:
+def control_of(key: keys.Key, siblings: Mapping[str, keys.Key]) -> JsonObject:
     """What a page needs to ask for the value of a key; beside : keys of the same table."""
     default = plain_default(key)
     return {
@@ -428,11 +427,11 @@ def text_of(key: keys.Key, siblings: Mapping[str, keys.Key] = MappingProxyType({
     return re.sub("`([^`]*)`", key_word, say(key.text))
 
 
-def _control(kind: keys.Kind) -> Values:
+def _control(kind: keys.Kind) -> JsonObject:
     return CONTROLS[type(kind)](kind)
 
 
-def _text(kind: keys.TextKind) -> Values:
+def _text(kind: keys.TextKind) -> JsonObject:
     if kind.names:
         return {"kind": "choice", "options": [*kind.names]}
     if kind.of == "output":  # of which a file may have others, such as those of rows
@@ -442,7 +441,7 @@ def _text(kind: keys.TextKind) -> Values:
     return {"kind": "text", "options": [*kind.suggested]}
 
 
-def _whole(kind: keys.Whole) -> Values:
+def _whole(kind: keys.Whole) -> JsonObject:
     return {"kind": "choice", "options": [*kind.names]} if kind.names else {"kind": "number"}
 
 
@@ -450,23 +449,23 @@ def _unit(dimension: Any) -> str:
     return display(dimension).unit
 
 
-def _listing(kind: keys.Listing) -> Values:
+def _listing(kind: keys.Listing) -> JsonObject:
     """Some in a row; how many there can be is none for one and more."""
     return {"kind": "list", "item": _control(kind.item), "sizes": [*kind.sizes], "bare": False}
 
 
-def _one_or(kind: keys.OneOr) -> Values:
+def _one_or(kind: keys.OneOr) -> JsonObject:
     return {"kind": "list", "item": _control(kind.item), "sizes": [1, kind.size], "bare": True}
 
 
-def _place(kind: keys.Point) -> Values:
+def _place(kind: keys.Point) -> JsonObject:
     text = {"named": kind.named, "space": kind.space, "axes": kind.axes}
     return {"kind": "place", "unit": _unit("length"), **text}
 
 
-CONTROLS: Mapping[type[keys.Kind], Callable[[Any], Values]] = {
+CONTROLS: Mapping[type[keys.Kind], Callable[[Any], JsonObject]] = {
     keys.ParameterValue: lambda kind: {"kind": "text", "options": []},
-    keys.Direction: lambda kind: {"kind": "direction", "unit": _unit("angle")},
+    keys.DirectionKind: lambda kind: {"kind": "direction", "unit": _unit("angle")},
     keys.File: lambda kind: {"kind": "file"},
     keys.Flag: lambda kind: {"kind": "flag"},
     keys.Listing: _listing,

@@ -20,11 +20,13 @@ from equipoise.handheld.side import side_of
 from equipoise.handheld.sweep import default_answers, default_speeds, speeds_between
 from equipoise.i18n import localized, say
 from equipoise.quantities import Dimension, display, format_quantity
+from equipoise.signals import Array
 from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.tool import ToolScene
 from equipoise.web.drawing import UNIT, shapes_of
 from equipoise.web.figures import chart, compared
-from equipoise.web.replies import Array, FloatBlock, Values
+from equipoise.web.messages import JsonObject
+from equipoise.web.replies import FloatBlock
 
 MODES, SPEEDS, POINTS = 6, 81, 61
 """Natural frequencies in a plane, speeds of curves, places along the shaft."""
@@ -77,7 +79,7 @@ class ToolFigures:
             yield f"day.{name}", text, float(day.a8), "acceleration", "m/s^2"
 
 
-def tool_state(now: ToolFigures, first: ToolFigures) -> tuple[Values, bytes]:
+def tool_state(now: ToolFigures, first: ToolFigures) -> tuple[JsonObject, bytes]:
     """Everything that a page draws of a tool.
 
     first : as it was opened, with which it is compared.
@@ -85,7 +87,7 @@ def tool_state(now: ToolFigures, first: ToolFigures) -> tuple[Values, bytes]:
     tool, block = now.tool, FloatBlock()
     scene = side_of(tool)
     changed, length = now is not first, display("length", [tool.shaft.length])
-    content: Values = {
+    content: JsonObject = {
         "title": localized(tool.title),
         "description": localized(tool.description),
         "length": {"unit": length.name, "factor": length.factor},
@@ -104,7 +106,7 @@ def tool_state(now: ToolFigures, first: ToolFigures) -> tuple[Values, bytes]:
 # -- the side view ---------------------------------------------------------------------------------
 
 
-def _scene(scene: ToolScene) -> Values:
+def _scene(scene: ToolScene) -> JsonObject:
     """A tool at rest: tubes, and the signs of every station about its place on the shaft.
 
     Shapes are as in `drawing.stage_of`.
@@ -138,7 +140,7 @@ def _scene(scene: ToolScene) -> Values:
     }
 
 
-def _views(now: ToolFigures) -> Iterator[Values]:
+def _views(now: ToolFigures) -> Iterator[JsonObject]:
     """How the shaft may be seen to move: at work, and in its lowest modes of the vertical plane.
 
     shape : real and imaginary parts of its deflection at the places, m, as large as it is drawn.
@@ -155,7 +157,7 @@ def _views(now: ToolFigures) -> Iterator[Values]:
         yield {"name": name, "told": [], "shape": _parts(shape * swing / np.max(np.abs(shape)))}
 
 
-def _at_work(tool: Tool, along: Array, swing: float) -> Iterator[Values]:
+def _at_work(tool: Tool, along: Array, swing: float) -> Iterator[JsonObject]:
     if tool.operation is None or not tool.excitations:
         return
     try:
@@ -186,7 +188,7 @@ def _parts(shape: Array) -> list[float]:
 # -- figures and curves ----------------------------------------------------------------------------
 
 
-def _compared(now: ToolFigures, first: ToolFigures) -> Iterator[Values]:
+def _compared(now: ToolFigures, first: ToolFigures) -> Iterator[JsonObject]:
     """Each figure as it was opened and as it is."""
     for name, (label, value, dimension, wanted) in now.whole.items():
         before = first.whole.get(name, (label, value, dimension, wanted))[1]
@@ -197,7 +199,7 @@ def _compared(now: ToolFigures, first: ToolFigures) -> Iterator[Values]:
         yield {"name": name, "label": label, "unit": unit.name, **changed}
 
 
-def _charts(now: ToolFigures, first: ToolFigures | None, block: FloatBlock) -> Iterator[Values]:
+def _charts(now: ToolFigures, first: ToolFigures | None, block: FloatBlock) -> Iterator[JsonObject]:
     """Weighted acceleration of each hand against the speed of the engine."""
     if now.exposure is None or now.tool.operation is None:
         return

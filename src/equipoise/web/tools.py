@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Any
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
@@ -21,11 +20,10 @@ from equipoise.schema.open_files import opened
 from equipoise.schema.template import Template, named_parts
 from equipoise.web.design import History, HistoryStep
 from equipoise.web.files import NOT_OF_FILE, Disk
-from equipoise.web.messages import Message, Setting
+from equipoise.web.messages import JsonObject, Message, Setting
 from equipoise.web.replies import Reply
 from equipoise.web.tool_state import ToolFigures, tool_state
 
-Values = dict[str, Any]
 NOT_SHOWN = ("design.", "title", "description")
 """Begin paths of what only says what a design may change."""
 SHOWN = 5
@@ -181,7 +179,7 @@ class ToolDesk:
             raise UsageError(
                 Note("{kind}: that is there for linkages; of a tool, model or report", kind=kind)
             )
-        statement: Values = {"type": "file", "seq": message.seq, "name": name, "mime": mime}
+        statement: JsonObject = {"type": "file", "seq": message.seq, "name": name, "mime": mime}
         if kind == "model":
             statement["files"] = files
         return Reply(statement, text.encode())
@@ -204,7 +202,7 @@ class ToolDesk:
         numbers = self.template.numbers()
         return {path: item for path, item in numbers.items() if not path.startswith(NOT_SHOWN)}
 
-    def _fields(self) -> Iterator[Values]:
+    def _fields(self) -> Iterator[JsonObject]:
         """Fields of the tool's numbers, with the keys of `fields` of a linkage."""
         values, length = self.shown.values, self.first.tool.shaft.length
         for path, number in self._numbers().items():
@@ -241,7 +239,7 @@ def _group(tool: Tool, path: str) -> tuple[str, int]:
     return (say("shaft"), 1) if parts[0] == "shaft" else (parts[0], 0)
 
 
-def _written(number: FileNumber, value: float, unit: str) -> Values:
+def _written(number: FileNumber, value: float, unit: str) -> JsonObject:
     """A number in the unit of its file: as it is typed, and as it is read."""
     if number.share:
         text = format_share(value)

@@ -18,12 +18,14 @@ from equipoise.mechanism.outputs.declared import DECLARED, body_named
 from equipoise.quantities import Dimension, display
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis
+from equipoise.signals import Array
 from equipoise.web.deferred import SAMPLES, can_be_shaken, responded
 from equipoise.web.drawing import ground_of, moves_of, stage_of
 from equipoise.web.edits import Computed
 from equipoise.web.figures import figures_of, listed_signals, text_of
 from equipoise.web.measured_records import MeasuredSignals, compared_with
-from equipoise.web.replies import Array, FloatBlock, Reply, Values
+from equipoise.web.messages import JsonObject
+from equipoise.web.replies import FloatBlock, Reply
 
 MOST, LONGEST = 12, 40
 """Variants; signs of the name of one."""
@@ -104,7 +106,7 @@ class Variants:
             return say("as it was opened")
         return self.against.removeprefix(VARIANT)
 
-    def table(self, now: Computed) -> Values:
+    def table(self, now: Computed) -> JsonObject:
         """Figures of every variant and of the design that is, and which is best of each.
 
         Of every figure the smallest is best; none is where all are the same.
@@ -125,11 +127,11 @@ class Variants:
         return {"kept": [*self.pinned_designs], "against": self.against, "rows": rows}
 
 
-def _named(figures: list[Values]) -> dict[str, Values]:
+def _named(figures: list[JsonObject]) -> dict[str, JsonObject]:
     return {figure["name"]: figure for figure in figures}
 
 
-def _gauges(every: Sequence[Computed]) -> Iterator[Values]:
+def _gauges(every: Sequence[Computed]) -> Iterator[JsonObject]:
     """What gauges read peak to peak, where every design has the same and a steady state."""
     try:
         items = [responded(item).gauges for item in every if can_be_shaken(item.design.machine)]
@@ -147,7 +149,7 @@ def _gauges(every: Sequence[Computed]) -> Iterator[Values]:
         yield _row([{**words, "value": value, "text": text_of(value)} for value in values])
 
 
-def _row(cells: list[Values]) -> Values:
+def _row(cells: list[JsonObject]) -> JsonObject:
     values = [cell["value"] for cell in cells]
     known = [abs(value) for value in values if value is not None]
     least, most = min(known, default=0.0), max(known, default=0.0)
@@ -166,7 +168,7 @@ def points_of(analysis: Analysis) -> list[str]:
     return sorted(analysis.motion.points, key=lambda name: name in frame)
 
 
-def arrows_of(analysis: Analysis, point: str, block: FloatBlock) -> list[Values]:
+def arrows_of(analysis: Analysis, point: str, block: FloatBlock) -> list[JsonObject]:
     """What there is to show at a point; vectors over the crank angle go to the block.
 
     kind : ``velocity``, ``acceleration`` or ``force``.  array : its name in the block, (2 N,).
@@ -177,7 +179,7 @@ def arrows_of(analysis: Analysis, point: str, block: FloatBlock) -> list[Values]
     return [item for item, _ in items]
 
 
-def _arrows_at(analysis: Analysis, point: str) -> Iterator[tuple[Values, Array]]:
+def _arrows_at(analysis: Analysis, point: str) -> Iterator[tuple[JsonObject, Array]]:
     motion = analysis.motion.points.get(point)
     if motion is None:
         return
@@ -197,7 +199,7 @@ def _arrows_at(analysis: Analysis, point: str) -> Iterator[tuple[Values, Array]]
         yield _quantity("force", f"arrow.force.{name}", label, "force"), joint.value
 
 
-def _quantity(kind: str, array: str, label: str, dimension: Dimension) -> Values:
+def _quantity(kind: str, array: str, label: str, dimension: Dimension) -> JsonObject:
     unit = display(dimension)
     return {"kind": kind, "array": array, "label": label, "unit": unit.name, "factor": unit.factor}
 
@@ -238,7 +240,7 @@ def signals_without_chart(record: MeasuredSignals, computed: Computed) -> list[s
 
 def record_values(
     record: MeasuredSignals | None, computed: Computed, block: FloatBlock
-) -> Values | None:
+) -> JsonObject | None:
     """Values of a record compared with a design: its name and notes; signals go to the block.
 
     ``measured.`` and the name of an output : (N,) SI units, NaN in gaps; what gauges read has as

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.design_variables import AddedWeight
-from equipoise.mechanism.parts.balance import Shape, Weight
+from equipoise.mechanism.parts.balance import Weight, WeightShape
 from equipoise.mechanism.parts.machine import Machine
 from unit.mechanism.build import crank_rocker
 
 Array = np.ndarray[Any, Any]
 
 PLATE = {"thickness": 0.008, "density": 7850.0}
-ROOMS: dict[Shape, Weight] = {
+ROOMS: dict[WeightShape, Weight] = {
     "any": Weight("any", 0.06, at_most=0.7),
     "point": Weight("point", 0.06, at_most=0.7),
     "disc": Weight("disc", 0.06, **PLATE),

@@ -33,9 +33,9 @@ from equipoise.mechanism.parts.balance import (
     Balance,
     BalanceShafts,
     CenterMove,
-    Measure,
     Objective,
     SpringChoice,
+    Statistic,
     Weight,
 )
 from equipoise.vibration.linear import Linear
@@ -395,7 +395,7 @@ def random_signal(seed: int, is_vector: bool, count: int = 3, turns: int = 1) ->
     return Signal(both[0], both[1:], turns)
 
 
-def solved(signal: Signal, measure: Measure) -> tuple[float, np.ndarray]:
+def solved(signal: Signal, measure: Statistic) -> tuple[float, np.ndarray]:
     """The least measure by the program, and the numbers."""
     program = Program()
     numbers, term = program.numbers(len(signal.columns)), program.numbers(1)
@@ -413,7 +413,7 @@ KINDS = [
 
 @SEEDS
 @pytest.mark.parametrize(("measure", "is_vector"), KINDS)
-def test_a_bound_is_the_measure(seed: int, measure: Measure, is_vector: bool) -> None:
+def test_a_bound_is_the_measure(seed: int, measure: Statistic, is_vector: bool) -> None:
     """And random steps from the solution make it larger."""
     signal = random_signal(seed, is_vector)
     value, numbers = solved(signal, measure)
@@ -424,7 +424,7 @@ def test_a_bound_is_the_measure(seed: int, measure: Measure, is_vector: bool) ->
 
 
 @pytest.mark.parametrize(("measure", "is_vector"), KINDS)
-def test_a_limit_is_kept_and_has_its_price(measure: Measure, is_vector: bool) -> None:
+def test_a_limit_is_kept_and_has_its_price(measure: Statistic, is_vector: bool) -> None:
     """The first number as large as it can be: its price is a difference of two programs."""
     signal = random_signal(5, is_vector)
     least, _ = solved(signal, measure)
@@ -447,7 +447,7 @@ def test_a_limit_is_kept_and_has_its_price(measure: Measure, is_vector: bool) ->
 
 @pytest.mark.parametrize("is_vector", [False, True])
 @pytest.mark.parametrize("measure", ["rms", "ripple"])
-def test_few_rows_hold_the_mean_square(measure: Measure, is_vector: bool) -> None:
+def test_few_rows_hold_the_mean_square(measure: Statistic, is_vector: bool) -> None:
     signal = random_signal(3, is_vector)
     matrix, vector = mean_square_rows(signal, measure)
     assert matrix.shape == (4, 3)
@@ -519,5 +519,5 @@ def test_division_and_values() -> None:
         ("gauges.gauge", "ripple", "m"),
     ],
 )
-def test_units(output: str, measure: Measure, unit: str) -> None:
+def test_units(output: str, measure: Statistic, unit: str) -> None:
     assert unit_of(Objective(output, measure), eq.load("yamashita-rig")) == unit

@@ -28,7 +28,7 @@ from equipoise.balancing.phase_polish import most_steps
 from equipoise.balancing.phase_search import MOST_KINKED, PhaseSearch, choose_phases
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.mechanism.dynamics.forces import forces
-from equipoise.mechanism.parts.balance import Measure, Objective, Phases
+from equipoise.mechanism.parts.balance import Objective, Phases, Statistic
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic, present
@@ -320,7 +320,7 @@ def parts_told(objective: Objective) -> list[list[tuple[int, int]]]:
 
 @pytest.mark.exhaustive(but=["rms"])
 @pytest.mark.parametrize("measure", ["rms", "peak"])
-def test_progress_is_told(measure: Measure) -> None:
+def test_progress_is_told(measure: Statistic) -> None:
     """Of the grid, of the refining and of the proof; each goes on and never back."""
     grid, refining, proof = parts_told(replace(FORCE, measure=measure))
     for part in (grid, refining, proof):

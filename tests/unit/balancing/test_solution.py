@@ -25,9 +25,9 @@ from equipoise.mechanism.parts.balance import (
     Balance,
     CenterMove,
     Limit,
-    Measure,
     Objective,
     SpringChoice,
+    Statistic,
     Weight,
 )
 from support.chosen import few
@@ -325,7 +325,7 @@ def test_there_is_none_with(why: str) -> None:
 BOUNDED_CRANK = AddedMass("crank", "A", Weight("point", 0.05, at_most=0.9))
 
 
-def limit(output: str, measure: Measure, **much: float) -> Limit:
+def limit(output: str, measure: Statistic, **much: float) -> Limit:
     return Limit(Objective(output, measure), **much)
 
 

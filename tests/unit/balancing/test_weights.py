@@ -15,7 +15,7 @@ import pytest
 from equipoise.balancing.design_variables import AddedWeight, MovedCenter
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.balancing.workshop import pieces_of
-from equipoise.mechanism.parts.balance import SHAPES, CenterMove, Shape, Weight, largest_mass
+from equipoise.mechanism.parts.balance import SHAPES, CenterMove, Weight, WeightShape, largest_mass
 from unit.balancing.bodies import (
     PLATE,
     ROOMS,
@@ -56,7 +56,7 @@ def least(part: AddedWeight, cost: dict[str, float]) -> Array:
 
 @SHAPED
 @SEEDS
-def test_effect_is_that_of_a_real_body(shape: Shape, seed: int) -> None:
+def test_effect_is_that_of_a_real_body(shape: WeightShape, seed: int) -> None:
     part = part_of(ROOMS[shape])
     numbers, wanted = random_numbers(part, np.random.default_rng(seed))
     scale = np.array([1, part.reach, part.reach, part.reach**2]) * wanted[0]
@@ -65,14 +65,14 @@ def test_effect_is_that_of_a_real_body(shape: Shape, seed: int) -> None:
 
 @SHAPED
 @SEEDS
-def test_every_real_body_is_allowed(shape: Shape, seed: int) -> None:
+def test_every_real_body_is_allowed(shape: WeightShape, seed: int) -> None:
     part = part_of(ROOMS[shape])
     numbers, _ = random_numbers(part, np.random.default_rng(seed))
     assert holds(part, numbers, 1e-9)
 
 
 @pytest.mark.parametrize("shape", ["any", "point", "disc", "sector"])
-def test_no_body_reaches_beyond_its_room(shape: Shape) -> None:
+def test_no_body_reaches_beyond_its_room(shape: WeightShape) -> None:
     """The largest first moment of a given mass, by the bodies' own formulas."""
     weight = replace(ROOMS[shape], at_most=None, mass=0.3)
     part = part_of(weight)
@@ -126,7 +126,7 @@ def test_the_best_disc() -> None:
 
 
 @SHAPED
-def test_without_a_moment_there_is_no_mass(shape: Shape) -> None:
+def test_without_a_moment_there_is_no_mass(shape: WeightShape) -> None:
     """A disc about its point stayed as heavy as it was: 0.8 kg without any use."""
     part = part_of(ROOMS[shape])
     numbers = np.zeros(part.count)
@@ -135,14 +135,14 @@ def test_without_a_moment_there_is_no_mass(shape: Shape) -> None:
 
 
 @pytest.mark.parametrize("shape", ["disc", "ring", "sector"])
-def test_no_more_mass_than_fits(shape: Shape) -> None:
+def test_no_more_mass_than_fits(shape: WeightShape) -> None:
     part = part_of(ROOMS[shape])
     found = least(part, {"m": -1.0})
     assert found[0] * part.mass_unit == pytest.approx(largest_mass(part.weight), rel=1e-6)
 
 
 @SHAPED
-def test_price_of_the_most_mass(shape: Shape) -> None:
+def test_price_of_the_most_mass(shape: WeightShape) -> None:
     """Named after its link, for each kg."""
     part = part_of(replace(ROOMS[shape], at_most=0.1))
     program, places = program_of(part)
@@ -174,7 +174,7 @@ def test_a_given_mass_is_kept() -> None:
 
 
 @pytest.mark.parametrize("shape", ["point", "disc", "ring"])
-def test_squares_lie_on_or_above_their_parabolas(shape: Shape) -> None:
+def test_squares_lie_on_or_above_their_parabolas(shape: WeightShape) -> None:
     part = part_of(ROOMS[shape])
     program, places = program_of(part)
     squares = part.constrain(Program(part.count), places)
@@ -206,7 +206,7 @@ def test_a_trace_of_mass_is_none() -> None:
 
 
 @SHAPED
-def test_change_as_the_workshop_reads_it(shape: Shape) -> None:
+def test_change_as_the_workshop_reads_it(shape: WeightShape) -> None:
     part = part_of(ROOMS[shape])
     numbers, (mass, x, y, _) = random_numbers(part, np.random.default_rng(8))
     (change,) = part.changes(numbers)
@@ -283,7 +283,7 @@ def check(part: AddedWeight, numbers: Array, within: float) -> list[dict[str, ob
 
 @pytest.mark.parametrize("shape", SHAPES)
 @SEEDS
-def test_pieces_add_up_and_stay_in_the_room(shape: Shape, seed: int) -> None:
+def test_pieces_add_up_and_stay_in_the_room(shape: WeightShape, seed: int) -> None:
     part = part_of(ROOMS[shape])
     numbers, _ = random_numbers(part, np.random.default_rng(100 + seed))
     pieces = check(part, numbers, 1e-7)

@@ -25,8 +25,8 @@ from equipoise.figures.style import look_of
 from equipoise.figures.view import AxisScale, ends_of, ticks_of
 from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.record import simulate_decay
-from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Panel, four_digits
-from equipoise.signals import Figures, figures
+from equipoise.results.charts import RPM, Axis, Chart, Curve, Panel, four_digits
+from equipoise.signals import Array, Figures, figures
 from support.refusals import refused
 from unit.figures.checks import check
 from unit.figures.samples import words

@@ -22,7 +22,7 @@ from equipoise.schema.studies import load_study
 from equipoise.schema.study_units import units_of
 from equipoise.schema.template import Template
 from equipoise.studies.objective_map import Landscape, landscape
-from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.outcomes import DesignBlock, Outcome
 from equipoise.studies.searching import Searched, search
 from equipoise.studies.selection import MOST, SOME, Best
 from equipoise.studies.tolerances import Tolerances, tolerance
@@ -75,7 +75,7 @@ def of_three() -> dict[str, Chart]:
     return studies.best_charts(best, "A store", units_of(found.study), store)  # type: ignore[arg-type]
 
 
-def given(size: int) -> tuple[studies.CloudDesigns, Block]:
+def given(size: int) -> tuple[studies.CloudDesigns, DesignBlock]:
     """Designs of which some break a limit and some fail, the first three of them chosen."""
     random = np.random.default_rng(5)
     study = load_study("study-of-balance")
@@ -85,7 +85,7 @@ def given(size: int) -> tuple[studies.CloudDesigns, Block]:
     figures[:, 1] = 10 ** figures[:, 1]
     reason = np.where(values[:, 0] > 0.8, 2, 0).astype(np.uint8)
     figures[reason > 0] = np.nan
-    block = Block(values, Outcome(figures, reason))
+    block = DesignBlock(values, Outcome(figures, reason))
     there = np.flatnonzero(reason == 0)[:3]
     table = np.hstack([values, figures])[there]
     by = {"forward": "smallest", "upward": "smallest"}

@@ -15,7 +15,7 @@ import pytest
 import equipoise
 from equipoise.i18n import LANGUAGES, Note, catalogue, say, speaking
 from equipoise.keys import (
-    Direction,
+    DirectionKind,
     Frozen,
     Key,
     KeyTable,
@@ -77,7 +77,9 @@ def words_of_keys() -> set[str]:
                 look(one.kind, one)
         elif isinstance(kind, Tables | Named | Listing | OneOr | Planes):
             look(kind.item, key)
-        elif isinstance(kind, Quantity | Number | Whole | Point | Direction) and key is not None:
+        elif (
+            isinstance(kind, Quantity | Number | Whole | Point | DirectionKind) and key is not None
+        ):
             found.update([] if key.word else [plain_word(key)])
 
     for document in ("linkage", "tool"):

@@ -23,7 +23,6 @@ from equipoise.i18n import Note
 from equipoise.keys import Listing, Quantity, declared, key
 from equipoise.mechanism import Gear, Machine
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.formulas import kernels
@@ -34,6 +33,7 @@ from equipoise.mechanism.parts.couplings import LineOfAction, Pushed, Relation, 
 from equipoise.results.machine_blocks import model_blocks
 from equipoise.results.yardsticks import assess
 from equipoise.schema.writing import key_table
+from equipoise.signals import Array
 from equipoise.symbols.pieces import pieces
 from equipoise.web.additions import PartTool, part_tools
 from equipoise.web.gallery import sections

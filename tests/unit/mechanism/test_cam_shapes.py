@@ -7,15 +7,10 @@ from math import pi
 import numpy as np
 import pytest
 
-from equipoise.mechanism.assembly.cam_shapes import (
-    Array,
-    CamShape,
-    Sliding,
-    SwingingFollower,
-    lowest,
-)
+from equipoise.mechanism.assembly.cam_shapes import CamShape, Sliding, SwingingFollower, lowest
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import NORMAL, joined, sine
+from equipoise.signals import Array
 
 TURN = np.linspace(0, 2 * pi, 97)
 RADIUS, ECCENTRIC, ROLLER = 0.03, 0.008, 0.006

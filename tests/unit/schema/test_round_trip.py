@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from equipoise.errors import ModelError
 from equipoise.i18n import LANGUAGES
 from equipoise.keys import (
-    Direction,
+    DirectionKind,
     Flag,
     Frozen,
     Key,
@@ -75,7 +75,7 @@ def value_of(kind: Kind, one: Key) -> st.SearchStrategy[Any] | None:
         length = quantity(Quantity(dimension="length"), one)
         polar = {"distance": length, "direction": quantity(Quantity(dimension="angle"), one)}
         return st.tuples(length, length).map(list) | st.fixed_dictionaries(polar)
-    if isinstance(kind, Direction):
+    if isinstance(kind, DirectionKind):
         return quantity(Quantity(dimension="angle"), one) | st.lists(
             st.integers(-3, 3), min_size=3, max_size=3
         )

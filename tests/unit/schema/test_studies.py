@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 import equipoise as eq
-from equipoise.design.variables import Choices, Normal, Range, Spread, Uniform, Variable
+from equipoise.design.variables import Choices, Normal, NumberSpread, Range, Uniform, Variable
 from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import parse
 from equipoise.schema.files import printable
@@ -387,7 +387,7 @@ def varied(grid: bool) -> st.SearchStrategy[tuple[Variable, ...]]:
     """Some numbers, each with a spread; those of tolerances have no place on a grid."""
     steps = st.integers(2, 9) if grid else st.none()
     ordered = st.lists(SIZES, min_size=2, max_size=2, unique=True).map(sorted)
-    spreads: st.SearchStrategy[Spread] = st.builds(
+    spreads: st.SearchStrategy[NumberSpread] = st.builds(
         lambda limits, count: Range(*limits, count), ordered, steps
     ) | st.lists(SIZES, min_size=1, max_size=4, unique=True).map(lambda v: Choices(tuple(v)))
     if not grid:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
-from equipoise.design.variables import Normal, Range, Spread, Uniform, Variable
+from equipoise.design.variables import Normal, NumberSpread, Range, Uniform, Variable
 from equipoise.schema.template import Template
 from equipoise.studies.study import Correlation, Output, Sampling, Study
 
@@ -20,7 +20,9 @@ def template(name: str = "yamashita-1") -> Template:
     return Template.load(name)
 
 
-def study(*spreads: Spread, method: str = "sobol", designs: int | None = 64, **given: Any) -> Study:
+def study(
+    *spreads: NumberSpread, method: str = "sobol", designs: int | None = 64, **given: Any
+) -> Study:
     """A study of yamashita-1 in which the first of `PATHS` vary."""
     vary = tuple(Variable(path, spread) for path, spread in zip(PATHS, spreads, strict=False))
     usual: dict[str, Any] = {

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.outcomes import DesignBlock, Outcome
 from equipoise.studies.selection import BINS, MOST, SOME, Cloud, cloud_of
 from equipoise.studies.store import UNKNOWN
 from equipoise.studies.study import Output
@@ -20,7 +20,7 @@ PAIRS = [("length", "force"), ("force", "torque")]
 Array = np.ndarray[Any, Any]
 
 
-def designs(size: int) -> Block:
+def designs(size: int) -> DesignBlock:
     """Force from 1 to 1000, torque from 0 to 1; some fail, and some are not computed yet."""
     random = np.random.default_rng(size)
     values = random.uniform([0.1, 2.0], [0.3, 5.0], (size, 2))
@@ -29,15 +29,15 @@ def designs(size: int) -> Block:
     reason[-size // 10 :] = UNKNOWN
     figures[reason != 0] = np.nan
     values[reason == UNKNOWN] = np.nan
-    return Block(values, Outcome(figures, reason))
+    return DesignBlock(values, Outcome(figures, reason))
 
 
-def cloud(block: Block, chunk: int) -> Cloud:
-    def blocks() -> Iterator[tuple[int, Block]]:
+def cloud(block: DesignBlock, chunk: int) -> Cloud:
+    def blocks() -> Iterator[tuple[int, DesignBlock]]:
         for start in range(0, len(block.values), chunk):
             part = slice(start, start + chunk)
             outcome = Outcome(block.outcome.figures[part], block.outcome.reason[part])
-            yield start, Block(block.values[part], outcome)
+            yield start, DesignBlock(block.values[part], outcome)
 
     return cloud_of(blocks, NUMBERS, OUTPUTS, PAIRS, len(block.values))
 
@@ -87,7 +87,7 @@ def test_millions_take_no_more_memory_than_a_block() -> None:
     block = designs(10_000)
     times = 150
 
-    def blocks() -> Iterator[tuple[int, Block]]:
+    def blocks() -> Iterator[tuple[int, DesignBlock]]:
         yield from ((k * 10_000, block) for k in range(times))
 
     tracemalloc.start()

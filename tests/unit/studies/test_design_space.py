@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from equipoise.design.variables import SPREADS, Choices, Normal, Range, Spread, Uniform
+from equipoise.design.variables import SPREADS, Choices, Normal, NumberSpread, Range, Uniform
 from equipoise.errors import UsageError
 from support.refusals import refused
 
@@ -25,7 +25,7 @@ DISTRIBUTIONS = {
 
 
 @pytest.mark.parametrize(("spread", "cdf"), DISTRIBUTIONS.values(), ids=DISTRIBUTIONS)
-def test_distributions(spread: Spread, cdf: object) -> None:
+def test_distributions(spread: NumberSpread, cdf: object) -> None:
     """Against the distribution functions of SciPy."""
     assert stats.kstest(spread.at(EVEN), cdf).statistic < 1 / 20_000
 

@@ -25,7 +25,7 @@ from equipoise.studies.commands import COMMANDS, dimension_of, find_outputs, rea
 from equipoise.studies.evaluate import OneByOne
 from equipoise.studies.outcomes import Outcome
 from equipoise.studies.study import COMMANDS as NAMES
-from equipoise.studies.study import Command, Output, Sampling, Study
+from equipoise.studies.study import Output, Sampling, StudiedCommand, Study
 from support.chosen import EXHAUSTIVE, few
 from support.refusals import refused
 from surface.running import equipoise, example_text, succeeded
@@ -141,7 +141,7 @@ def study(model: Template | str, vary: str, *outputs: Output | str, **given: Any
     )
 
 
-def asked(of: Command, *paths: str) -> list[Output]:
+def asked(of: StudiedCommand, *paths: str) -> list[Output]:
     return [Output(path, of) for path in paths]
 
 
@@ -208,7 +208,7 @@ def printed(values: Any, path: str) -> float:
     ],
 )  # fmt: skip
 def test_figures_are_those_that_the_command_prints(
-    model: str, vary: str, of: Command, paths: list[str]
+    model: str, vary: str, of: StudiedCommand, paths: list[str]
 ) -> None:
     given = study(model, vary, *asked(of, *paths), angles=360 if of == "analyze" else None)
     found = computed(given)

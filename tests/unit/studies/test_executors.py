@@ -29,7 +29,7 @@ from equipoise.schema.template import Template
 from equipoise.studies import clusters
 from equipoise.studies.clusters import Cluster
 from equipoise.studies.objective_map import landscape
-from equipoise.studies.outcomes import Block
+from equipoise.studies.outcomes import DesignBlock
 from equipoise.studies.searching import search
 from equipoise.studies.study import Output, Sampling, samples
 from support import studies
@@ -42,7 +42,7 @@ CHUNKS = [range(start, start + 20) for start in range(0, 200, 20)]
 TESTS = Path(studies.__file__).parents[1]
 
 
-def check(found: list[tuple[range, Block]]) -> None:
+def check(found: list[tuple[range, DesignBlock]]) -> None:
     """Every chunk once, and as it has to be."""
     assert sorted(designs.start for designs, _ in found) == [chunk.start for chunk in CHUNKS]
     for designs, block in found:

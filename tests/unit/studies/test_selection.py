@@ -13,7 +13,7 @@ from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
 from equipoise.design.variables import Range
 from equipoise.errors import UsageError
 from equipoise.keys.requirement_kinds import Make
-from equipoise.studies.outcomes import Block, Outcome, far_apart, non_dominated
+from equipoise.studies.outcomes import DesignBlock, Outcome, far_apart, non_dominated
 from equipoise.studies.run import create_store
 from equipoise.studies.selection import best
 from equipoise.studies.store import Store
@@ -29,18 +29,18 @@ OUTPUTS = (
 )
 
 
-def random_designs(count: int, seed: int = 1) -> Block:
+def random_designs(count: int, seed: int = 1) -> DesignBlock:
     """Figures from 0 to 1, on few steps, so that many are equal; one in five fails."""
     generator = np.random.default_rng(seed)
     figures = np.round(generator.random((count, len(OUTPUTS))), 2)
     reason = np.where(generator.random(count) < 0.2, NO_FULL_TURN, 0).astype(np.uint8)
     figures[reason != 0] = np.nan
-    return Block(generator.random((count, 2)), Outcome(figures, reason))
+    return DesignBlock(generator.random((count, 2)), Outcome(figures, reason))
 
 
 def stored(
     folder: Path,
-    block: Block,
+    block: DesignBlock,
     outputs: tuple[Output, ...] = OUTPUTS,
     chunk: int = 16,
     upto: int = -1,
@@ -53,11 +53,11 @@ def stored(
         part = store.designs(number)
         some = slice(part.start, part.stop)
         outcome = Outcome(block.outcome.figures[some], block.outcome.reason[some])
-        store.write(part, Block(block.values[some], outcome))
+        store.write(part, DesignBlock(block.values[some], outcome))
     return store
 
 
-def good_ones(block: Block, force: float = 0.8, lift: float = 0.2) -> Array:
+def good_ones(block: DesignBlock, force: float = 0.8, lift: float = 0.2) -> Array:
     """Numbers of the designs that keep the limits."""
     figures = block.outcome.figures
     good = (figures[:, 0] <= force) & (figures[:, 1] >= lift) & (block.outcome.reason == 0)
@@ -118,7 +118,7 @@ def test_some_of_a_large_front_lie_far_apart(tmp_path: Path) -> None:
     block = random_designs(400)
     angle = np.linspace(0, np.pi / 2, 400)
     figures = np.stack([1 - np.cos(angle), np.ones(400), 1 - np.sin(angle)], axis=1)
-    block = Block(block.values, Outcome(figures, np.zeros(400, np.uint8)))
+    block = DesignBlock(block.values, Outcome(figures, np.zeros(400, np.uint8)))
     outputs = (OUTPUTS[0], OUTPUTS[1], Output("torque", value="a.d", make="smallest"))
     found = best(stored(tmp_path, block, outputs), 5)
     kept = good_ones(block)
@@ -178,7 +178,7 @@ def test_no_design_keeps_the_limits(tmp_path: Path) -> None:
 
 def test_every_design_failed(tmp_path: Path) -> None:
     reason = np.array([NO_FULL_TURN, NO_ASSEMBLY, NO_FULL_TURN], np.uint8)
-    block = Block(np.ones((3, 2)), Outcome(np.full((3, 3), np.nan), reason))
+    block = DesignBlock(np.ones((3, 2)), Outcome(np.full((3, 3), np.nan), reason))
     store = stored(tmp_path, block)
     failed = "does not assemble: 1, does not turn fully: 2"
     with refused(UsageError, place=str(store.path), names=failed):

@@ -21,7 +21,7 @@ from equipoise.vibration.coupled import StallError
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, respond, sweep_speed
 from equipoise.vibration.linear import around
-from equipoise.vibration.response import MODELS, Model
+from equipoise.vibration.response import MODELS, ExcitationModel
 from equipoise.vibration.simplified import linear_of
 from support.chosen import few
 from support.refusals import has_value, refused
@@ -41,7 +41,7 @@ SPACE = (
 )
 
 
-def swing(machine: eq.Machine, model: Model | None) -> float:
+def swing(machine: eq.Machine, model: ExcitationModel | None) -> float:
     """What the only gauge reads from peak to peak."""
     (gauge,) = respond(machine, model=model).gauges.values()
     return float(gauge.displacement.peak_to_peak)
@@ -131,7 +131,7 @@ def test_refusals(
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_a_crank_that_stands_still(model: Model) -> None:
+def test_a_crank_that_stands_still(model: ExcitationModel) -> None:
     with refused(UsageError, by="steady_speed"):
         respond(rig(), 0.0, model)
     with refused(ModelError, "drive.speed"):
@@ -193,7 +193,7 @@ def test_a_motor_that_is_too_weak_says_so() -> None:
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_every_model_answers_for_a_support_without_linkage(model: Model) -> None:
+def test_every_model_answers_for_a_support_without_linkage(model: ExcitationModel) -> None:
     """Links that weigh nothing shake nothing."""
     feet = {
         name: Mount((x, 0.0, 0.0), stiffness=5e3, damping=9.0) for name, x in (("a", -1), ("b", 1))
@@ -292,7 +292,7 @@ def amplified(machine: eq.Machine, speed: float) -> float:
 
 
 @pytest.mark.parametrize("model", few(MODELS, ("linear", "exact")))
-def test_what_the_frame_bears_itself_shakes_no_mount(model: Model) -> None:
+def test_what_the_frame_bears_itself_shakes_no_mount(model: ExcitationModel) -> None:
     """Nor do rocking moments where the support moves in the plane alone."""
     machine = eq.load("yamashita-rig")
     load = eq.Load(

@@ -19,7 +19,7 @@ from equipoise.signals import Periodic
 from equipoise.vibration.excitation import SupportExcitation
 from equipoise.vibration.forced import respond, sweep_speed
 from equipoise.vibration.linear import AMPLIFIED, Linear, Resonance, find_modes, resonances
-from equipoise.vibration.response import Mode, Model
+from equipoise.vibration.response import ExcitationModel, Mode
 from equipoise.vibration.simplified import linear_of
 from support.machines_planes import set_apart
 from support.printing import printed
@@ -386,7 +386,7 @@ def test_share_is_that_of_the_peaks() -> None:
 
 @pytest.mark.exhaustive(but=["coupled", "linear"])
 @pytest.mark.parametrize("model", ["linear", "moment", "coupled", "exact"])
-def test_a_sweep_is_one_response_after_another(model: Model) -> None:
+def test_a_sweep_is_one_response_after_another(model: ExcitationModel) -> None:
     machine = springs().with_rows([Row(), Row(phase=2.0)])
     done: list[tuple[int, int]] = []
     sweep = sweep_speed(machine, 17.5, 18.0, model, speeds=2, progress=lambda *x: done.append(x))
@@ -481,7 +481,7 @@ def planted_rig() -> eq.Machine:
 
 @pytest.mark.parametrize("model", ["moment", "torque", "linear"])
 def test_orders_of_a_machine_in_soil_solve_joint_forces_a_few_times(
-    model: Model, monkeypatch: pytest.MonkeyPatch
+    model: ExcitationModel, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At each of some hundred resonances they took a page a minute: a machine of many turns."""
     excitation = linear_of(planted_rig(), model).excitation

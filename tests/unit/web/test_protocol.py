@@ -8,7 +8,7 @@ from typing import Any, get_args
 import pytest
 
 from equipoise.web.messages import KINDS
-from equipoise.web.protocol import Asked, StateMessage
+from equipoise.web.protocol import PageRequest, StateMessage
 from equipoise.web.session import Session
 from unit.web.pages import ask, opened, state
 from unit.web.typed import declared_keys, misfits, misfits_of_reply, sent, writer
@@ -79,7 +79,9 @@ def test_a_type_that_json_lacks_is_refused() -> None:
 
 
 def test_a_page_can_ask_all_that_a_server_knows_and_nothing_else() -> None:
-    kinds = {kind for item in get_args(Asked) for kind in get_args(declared_keys(item)["type"][0])}
+    kinds = {
+        kind for item in get_args(PageRequest) for kind in get_args(declared_keys(item)["type"][0])
+    }
     assert kinds == set(KINDS)
 
 
@@ -112,7 +114,9 @@ def test_questions_and_answers_hold_to_their_types(
 ) -> None:
     """`ask` looks at every answer; here the question is one that the page may send too."""
     question = {"type": asked, **values}
-    of = [item for item in get_args(Asked) if asked in get_args(declared_keys(item)["type"][0])]
+    of = [
+        item for item in get_args(PageRequest) if asked in get_args(declared_keys(item)["type"][0])
+    ]
     assert any([*misfits(question, item)] == [] for item in of)
     session, _ = opened("yamashita-1")
     kinds = {reply.content["type"] for reply in ask(session, asked, seq=1, **values)}

@@ -33,9 +33,8 @@ from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.laws import Law
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.signals import ROUNDING, highest_at
+from equipoise.signals import ROUNDING, Array, highest_at
 
-Array = np.ndarray[Any, Any]
 DisplacementLaw = Callable[[Any], tuple[Any, Any, Any]]
 """Displacement and its two derivatives by the angle that the cam has turned."""
 

@@ -39,7 +39,7 @@ from equipoise.mechanism.parts import laws
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import (
     Coupling,
-    Law,
+    DerivedLaw,
     LineOfAction,
     RollingLine,
     Seat,
@@ -55,7 +55,7 @@ class RelationCall(KernelCall):
     coupling: Coupling
 
     @property
-    def law(self) -> Law | None:
+    def law(self) -> DerivedLaw | None:
         """By which the driven body's angle follows; None in a fixed ratio."""
         return self.parameters[0] if self.kernel is coupled else None
 
@@ -248,7 +248,7 @@ class Flank:
         return (line.lever if isinstance(line, LineOfAction) else 0.0), 0.0
 
 
-def rolled(angle_r: Any, angle_c: Any, law: Law, centres: Any) -> tuple[Any, Any]:
+def rolled(angle_r: Any, angle_c: Any, law: DerivedLaw, centres: Any) -> tuple[Any, Any]:
     """Lever of the pitch point and slope of the pitch curves there; see `kernels.pitch_slope`."""
     _, ratio, bend = law(angle_r - angle_c)
     return centres / (1 - ratio), kernels.pitch_slope(ratio, bend)

@@ -19,8 +19,9 @@ from equipoise.errors import ChangePointError, MotionError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.builder import Group
 from equipoise.mechanism.assembly.reach import WITHOUT_CURE, FullTurn, bifurcation
-from equipoise.mechanism.assembly.steps import Array, State, initial_state, run, running_angle
+from equipoise.mechanism.assembly.steps import State, initial_state, run, running_angle
 from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.signals import Array
 
 POINTS_PER_TURN, FEWER_POINTS, MANY_TURNS = 720, 144, 100
 """Crank angles of the grid in a turn, and in each of more than so many turns."""

@@ -35,7 +35,6 @@ from equipoise.mechanism.assembly.cam_shapes import can_be_made, fits_of
 from equipoise.mechanism.assembly.joints import Structure, all_sliders, coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage, ordered
 from equipoise.mechanism.assembly.steps import (
-    Array,
     KernelCall,
     Rotation,
     RunningAngle,
@@ -54,6 +53,7 @@ from equipoise.mechanism.parts.element_kinds import element_kinds
 from equipoise.mechanism.parts.links import demands_across
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
 from equipoise.quantities.units import HUGE, TINY
+from equipoise.signals import Array
 
 Triple = tuple[Array, Array, Array]
 

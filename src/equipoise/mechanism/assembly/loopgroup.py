@@ -20,28 +20,22 @@ from equipoise.mechanism.assembly.loops import (
     CouplingLoop,
     End,
     Free,
-    Loop,
+    LinkAttachment,
+    LoopEquation,
     LoopGroup,
     PinLoop,
-    Place,
     Poses,
     Riding,
     SlideLoop,
     TrackLoop,
     poses_in,
 )
-from equipoise.mechanism.assembly.steps import (
-    Array,
-    Reaction,
-    State,
-    Step,
-    initial_state,
-    run,
-)
+from equipoise.mechanism.assembly.steps import Reaction, State, Step, initial_state, run
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.joint_kinds import Rider
 from equipoise.mechanism.parts.machine import FRAME, Position, Slider
+from equipoise.signals import Array
 
 STEPS_PER_TURN = 360
 """Crank angles in a turn at which a branch is followed from one to the next."""
@@ -57,7 +51,7 @@ class LoopForces:
     """
 
     group: LoopGroup
-    loops: tuple[Loop, ...]
+    loops: tuple[LoopEquation, ...]
     reactions: tuple[Reaction, ...]
 
     def run(self, state: State) -> None:
@@ -113,7 +107,7 @@ class LoopForces:
                 column[row] = entry
         return matrix.T
 
-    def columns(self, loop: Loop, poses: Poses, sense: Any) -> list[dict[int, Any]]:
+    def columns(self, loop: LoopEquation, poses: Poses, sense: Any) -> list[dict[int, Any]]:
         """Force and moment about the anchor on the links that it joins, by row, for a unit of each
         of its unknowns.
         """
@@ -211,7 +205,7 @@ class Maker:
         anchor = self.anchors.get(body) or self.builder.anchors[body]
         return End(body, point, self.builder.arm(body, anchor, point))
 
-    def prepare(self) -> tuple[tuple[Step, ...], tuple[Loop, ...]]:
+    def prepare(self) -> tuple[tuple[Step, ...], tuple[LoopEquation, ...]]:
         """Steps that make the known bodies' angles available, and the loop equations."""
         self.hang(self.pinned_and_sliding())
         loops = self.pinned_and_sliding()  # from the anchors that this has found
@@ -225,8 +219,8 @@ class Maker:
                 loops.append(self.coupling(coupling))
         return tuple(before), tuple(loops)
 
-    def pinned_and_sliding(self) -> list[Loop]:
-        loops: list[Loop] = []
+    def pinned_and_sliding(self) -> list[LoopEquation]:
+        loops: list[LoopEquation] = []
         for point, bodies in self.joints.pins.items():
             if free := [body for body in bodies if body in self.links]:
                 known = [body for body in bodies if body in self.builder.rank]
@@ -242,7 +236,7 @@ class Maker:
                 loops.append(self.track(name, rider))
         return loops
 
-    def hang(self, loops: list[Loop]) -> None:
+    def hang(self, loops: list[LoopEquation]) -> None:
         """Find for each link the joint that positions it, by the shortest path from a body
         that is known, and take the point in that joint for the link's anchor.  A rider is placed
         by its track alone, and places nothing: no other joint determines its parameter.
@@ -267,18 +261,18 @@ class Maker:
                 self.free.append(free)
                 placed.add(free)
 
-    def places(self, loop: Loop, end: End) -> bool:
+    def places(self, loop: LoopEquation, end: End) -> bool:
         """Whether a joint may position the body at one of its ends."""
         if isinstance(loop, TrackLoop):
             return end is loop.on
         return self.joints.tracked.keys().isdisjoint((loop.on.body, loop.by.body))
 
-    def tree(self, loops: Sequence[Loop]) -> tuple[Place, ...]:
+    def tree(self, loops: Sequence[LoopEquation]) -> tuple[LinkAttachment, ...]:
         """Where each link is; one that nothing but couplings, or riders, holds may be anywhere."""
         constrained = [loops[k].placement(link) for link, k in self.holds.items()]
         return (*map(Free, self.free), *constrained)
 
-    def roots(self, bodies: Iterable[str], loops: Sequence[Loop]) -> Iterator[str]:
+    def roots(self, bodies: Iterable[str], loops: Sequence[LoopEquation]) -> Iterator[str]:
         """Known bodies whose angles those of these bodies are counted from."""
         for body in bodies:
             if body in self.builder.rank:
@@ -312,9 +306,9 @@ def _solve_start(
     builder: Builder,
     before: tuple[Step, ...],
     group: LoopGroup,
-    loops: tuple[Loop, ...],
+    loops: tuple[LoopEquation, ...],
     start_guess: Position | None,
-) -> tuple[LoopGroup, tuple[Loop, ...]]:
+) -> tuple[LoopGroup, tuple[LoopEquation, ...]]:
     """The group with its solution at crank angle 0 and, from that, the offsets of its couplings."""
     position = start_guess or builder.machine.position
     if position is None:
@@ -369,7 +363,9 @@ def _solve_start(
     return replace(group, start=start, equations=equations), loops
 
 
-def _standing(loops: Sequence[Loop], starts: Mapping[str, float]) -> tuple[Loop, ...]:
+def _standing(
+    loops: Sequence[LoopEquation], starts: Mapping[str, float]
+) -> tuple[LoopEquation, ...]:
     """Joints for rough poses: couplings stand still as they start, and riders are
     on their tracks already.
     """
@@ -387,10 +383,10 @@ def _standing(loops: Sequence[Loop], starts: Mapping[str, float]) -> tuple[Loop,
 def _rough(
     builder: Builder,
     group: LoopGroup,
-    loops: Sequence[Loop],
+    loops: Sequence[LoopEquation],
     known: Poses,
     position: Position,
-) -> tuple[tuple[Place, ...], list[float]]:
+) -> tuple[tuple[LinkAttachment, ...], list[float]]:
     """Every link where it pleases but for riders on their tracks, and about where all of them are.
 
     What is inside of joints is where the links that the file places have it.

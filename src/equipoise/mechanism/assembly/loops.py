@@ -32,21 +32,12 @@ from equipoise.dataclass import dataclass
 from equipoise.decompositions import singular_values
 from equipoise.errors import MotionError
 from equipoise.i18n import Note
-from equipoise.mechanism.assembly.steps import (
-    Array,
-    Reaction,
-    State,
-    Step,
-    along,
-    p,
-    pin_reaction,
-    u,
-)
+from equipoise.mechanism.assembly.steps import Reaction, State, Step, along, p, pin_reaction, u
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import HERMITE
 from equipoise.mechanism.formulas.kernels import on_track
 from equipoise.mechanism.formulas.rolling import Levels
-from equipoise.signals import first_below
+from equipoise.signals import Array, first_below
 
 
 @dataclass(frozen=True)
@@ -159,7 +150,7 @@ class BodyLoop(ABC):
         key = f"({self.name}/{on})"
         return Reaction(self.name, "slider", on, by, self.on.point, f"R{key}", f"C{key}")
 
-    def placement(self, link: str) -> Place:
+    def placement(self, link: str) -> LinkAttachment:
         """Where one of the bodies is by this joint alone."""
         return Hinge(link, self.other(link))
 
@@ -331,7 +322,7 @@ class CouplingLoop(BodyLoop):
         return self.rides is not None and self.rides.own.body == self.on.body
 
 
-Loop = PinLoop | SlideLoop | TrackLoop | CouplingLoop
+LoopEquation = PinLoop | SlideLoop | TrackLoop | CouplingLoop
 
 
 @dataclass(frozen=True)
@@ -441,7 +432,7 @@ class Free:
         return [pose.place[0].real, pose.place[0].imag, pose.angle]
 
 
-Place = Hinge | Rail | Riding | Free
+LinkAttachment = Hinge | Rail | Riding | Free
 
 
 ITERATIONS = 25
@@ -483,8 +474,8 @@ class LoopGroup:
     links: tuple[str, ...]
     anchors: tuple[str, ...]
     known: tuple[tuple[str, str], ...]
-    tree: tuple[Place, ...]
-    equations: tuple[Loop, ...]
+    tree: tuple[LinkAttachment, ...]
+    equations: tuple[LoopEquation, ...]
     start: Any
     size: Any
     visible_links: tuple[str, ...] = ()

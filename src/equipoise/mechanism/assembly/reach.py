@@ -20,7 +20,6 @@ from equipoise.mechanism.assembly.assembly_modes import key_text
 from equipoise.mechanism.assembly.builder import Group
 from equipoise.mechanism.assembly.loops import BranchError
 from equipoise.mechanism.assembly.steps import (
-    Array,
     State,
     Step,
     initial_state,
@@ -33,7 +32,7 @@ from equipoise.mechanism.parts.joint_kinds import BEYOND
 from equipoise.mechanism.parts.laws import AngleLaw
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import format_quantity
-from equipoise.signals import EQUAL, highest_at
+from equipoise.signals import EQUAL, Array, highest_at
 
 MOST_DIPS = 6
 """Lowest dips of a dyad's margin that are looked at between the points of the grid."""

@@ -35,11 +35,18 @@ from equipoise.mechanism.assembly.joints import (
     no_motion,
 )
 from equipoise.mechanism.assembly.loopgroup import LoopForces, Maker
-from equipoise.mechanism.assembly.loops import CouplingLoop, Loop, LoopGroup, Poses, poses_in
-from equipoise.mechanism.assembly.steps import Array, Reaction, State, planar, running_angle
+from equipoise.mechanism.assembly.loops import (
+    CouplingLoop,
+    LoopEquation,
+    LoopGroup,
+    Poses,
+    poses_in,
+)
+from equipoise.mechanism.assembly.steps import Reaction, State, planar, running_angle
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.joint_properties import family_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.signals import Array
 
 ROUNDED = 1e-11
 """Share of a singular value in the largest that rounding explains."""
@@ -179,7 +186,7 @@ class FitCondition:
     starts : of couplings by name, where the file has them start, rad or m; 0 if left out.
     """
 
-    loops: tuple[Loop, ...]
+    loops: tuple[LoopEquation, ...]
     groups: tuple[Group, ...]
     size: float
     starts: Mapping[str, float]
@@ -209,7 +216,7 @@ class FitCondition:
                                found=degrees(np.angle(np.exp(1j * value))))  # fmt: skip
 
 
-def gap(loop: Loop, poses: Poses, size: float) -> Any:
+def gap(loop: LoopEquation, poses: Poses, size: float) -> Any:
     """By how much a joint does not fit, m; an angle counts at the size of the machine."""
     if isinstance(loop, CouplingLoop):
         (value,) = loop.gaps(poses, 0)
@@ -221,7 +228,7 @@ def gap(loop: Loop, poses: Poses, size: float) -> Any:
     return np.hypot(first, second)
 
 
-def _misfit_note(loop: Loop, misfit: Array, theta: Array, at: Any, size: float) -> Note:
+def _misfit_note(loop: LoopEquation, misfit: Array, theta: Array, at: Any, size: float) -> Note:
     turned = isinstance(loop, CouplingLoop) and not loop.slides
     apart = degrees(misfit[at] / size) if turned else misfit[at] * 1e3
     template = AHEAD if turned else MISPLACED

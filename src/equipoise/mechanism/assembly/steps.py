@@ -25,8 +25,8 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.curves import direction
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector, size_of
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 State = dict[str, Any]
 Kernel = Callable[..., tuple[Any, ...]]
 

@@ -12,14 +12,13 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.cam_shapes import fits_of, fitted, pressure_angle, sharpest
-from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.forces import forces as forces_of
 from equipoise.mechanism.dynamics.reactions import reactions
 from equipoise.mechanism.kinematics.motion import MOST_ANGLES, Motion, move
 from equipoise.mechanism.kinematics.strokes import figure
 from equipoise.mechanism.parts.cams import Cam
-from equipoise.signals import ROUNDING, highest_at
+from equipoise.signals import ROUNDING, Array, highest_at
 
 PER_TURN = 360
 """Crank angles in a turn among which the place where a follower lifts off is looked for first."""

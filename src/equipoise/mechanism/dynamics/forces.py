@@ -22,7 +22,7 @@ from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.joints import given_properties
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import Array, Reaction, p, planar, u
+from equipoise.mechanism.assembly.steps import Reaction, p, planar, u
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.friction import (
     unit_demands,
@@ -69,6 +69,7 @@ from equipoise.mechanism.parts.element_kinds import force_kinds
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.links import in_frame
 from equipoise.mechanism.parts.machine import Link, Machine, Vector
+from equipoise.signals import Array
 
 ELEMENTS: Mapping[str, str] = {
     kind.cause: kind.cause_label for kind in force_kinds(Machine).values()
@@ -479,23 +480,23 @@ def weight_demands(motion: Motion, gravity: Array | complex | None = None) -> di
     }
 
 
-Units = tuple[Array, Array, Array, Array, Array]
+UnitWrenches = tuple[Array, Array, Array, Array, Array]
 """Of a link: force for a unit of mass, and of first moment along x; moment for a unit of first
 moment along x and along y, and of inertia."""
 UNITS = "units({})"
 """Name of units in a state, by what they are for a unit of: 0, speed squared; 1, acceleration."""
 
 
-def _units(motion: Motion, rate: int) -> Mapping[str, Units]:
+def _units(motion: Motion, rate: int) -> Mapping[str, UnitWrenches]:
     """What units of inertial parameters demand; kept with the state, on which alone it depends."""
     name = UNITS.format(rate)
     if name not in motion.state:
         motion.state[name] = {link: _units_of(motion, link, rate) for link in motion.machine.links}
-    units: Mapping[str, Units] = motion.state[name]
+    units: Mapping[str, UnitWrenches] = motion.state[name]
     return units
 
 
-def _units_of(motion: Motion, link: str, rate: int) -> Units:
+def _units_of(motion: Motion, link: str, rate: int) -> UnitWrenches:
     mass, x, y, inertia = np.eye(4)[:, :, None]
     rates = (1.0, 0.0) if rate == 0 else (0.0, 1.0)
     force, turning = _inertia(motion, link, *rates, mass, x + 1j * y, inertia)
@@ -503,7 +504,7 @@ def _units_of(motion: Motion, link: str, rate: int) -> Units:
 
 
 def _needed(
-    rates: Sequence[tuple[float, Units]], mass: float, moment: complex, inertia: float
+    rates: Sequence[tuple[float, UnitWrenches]], mass: float, moment: complex, inertia: float
 ) -> Demand:
     """What a link with these inertial parameters needs for its motion, which is linear in them."""
     forces, moments = [], []

@@ -34,7 +34,6 @@ from equipoise.dataclass import dataclass
 from equipoise.decompositions import svd
 from equipoise.errors import LockError
 from equipoise.i18n import Note, all_of
-from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.reactions import (
     Acting,
     Demand,
@@ -46,6 +45,7 @@ from equipoise.mechanism.dynamics.reactions import (
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.friction_joints import RubbingJoint, rates_of, rubbing_joints
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.signals import Array
 
 Demands = Mapping[str, Demand]
 Cached = TypeVar("Cached")

@@ -24,12 +24,12 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.i18n import to_say
-from equipoise.mechanism.assembly.steps import Array, Reaction
+from equipoise.mechanism.assembly.steps import Reaction
 from equipoise.mechanism.dynamics.forces import Forces, WorkingState, joint_properties, ring_speed
 from equipoise.mechanism.dynamics.reduced import generalized_force
 from equipoise.mechanism.kinematics.strokes import figure
 from equipoise.mechanism.parts.joint_properties import RollingBearing
-from equipoise.signals import Figures
+from equipoise.signals import Array, Figures
 
 MILLION = 1e6
 LEAST, SCALE, SHAPE = 0.02, 4.439, 1.483

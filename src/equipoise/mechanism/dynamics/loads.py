@@ -13,7 +13,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import Array, u
+from equipoise.mechanism.assembly.steps import u
 from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.formulas import kernels
@@ -27,6 +27,7 @@ from equipoise.mechanism.parts.machine import FRAME, Load, LoadTable, Machine
 from equipoise.mechanism.parts.resistances import TINY
 from equipoise.mechanism.parts.row_laws import table_value
 from equipoise.mechanism.parts.run_plans import TimedLoad
+from equipoise.signals import Array
 
 MEETING = 1e-12
 """Of the coordinates of both points: where they are closer, rounding decides their direction."""

@@ -48,8 +48,7 @@ from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.links import Mechanism, masses_of, moments_across
 from equipoise.mechanism.parts.loads import Load
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from equipoise.decompositions import lstsq
 from equipoise.displays import Brief
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.assembly.steps import Array, planar
+from equipoise.mechanism.assembly.steps import planar
 from equipoise.mechanism.dynamics.forces import (
     Shares,
     demand_of_inertia,
@@ -43,6 +43,7 @@ from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.links import in_frame, moments_across
 from equipoise.mechanism.parts.machine import Link, Machine, Vector, unknown
 from equipoise.mechanism.parts.springs import MEETING
+from equipoise.signals import Array
 
 QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
 """Inertial parameters of a link: kg, kg m, kg m, kg m2; moments and inertia about its origin."""

@@ -25,7 +25,7 @@ from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.redundant_reactions import CHANGE_POINT_OFFSET, IDLE, WEAK
-from equipoise.mechanism.assembly.steps import Array, Reaction, State, demand_names, run
+from equipoise.mechanism.assembly.steps import Reaction, State, demand_names, run
 from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.cylinders import pushes
@@ -33,6 +33,7 @@ from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.signals import Array
 
 ANGLES = 7
 """In a cycle, at which it is looked for forces that hold each other."""

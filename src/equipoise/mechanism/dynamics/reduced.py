@@ -15,12 +15,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from equipoise.mechanism.assembly.steps import Array, p, u
+from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.dynamics.reactions import Demand, demands_of
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.parts.element_kinds import RatedElement
 from equipoise.mechanism.parts.machine import FRAME
+from equipoise.signals import Array
 
 
 def reduced_inertia(motion: Motion) -> tuple[Array, Array]:

@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.mechanism.assembly.steps import Array, p, planar
+from equipoise.mechanism.assembly.steps import p, planar
 from equipoise.mechanism.dynamics.loads import (
     acting_elements,
     acting_loads,
@@ -40,6 +40,7 @@ from equipoise.mechanism.kinematics.friction_joints import rubbing_joints
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.sections import LinkSection
+from equipoise.signals import Array
 
 CUTS = 41
 """Places along a link at which it is cut, beside those where something acts."""

@@ -24,8 +24,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.kernels import piece_value, plane_piece
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 MOST_POWERS = 8
 """Coefficients of the polynomial of a piece."""

@@ -32,13 +32,13 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.formulas.curves import (
     MOST_POWERS,
-    Array,
     Curves,
     PeriodicCurve,
     direction,
     spline,
 )
 from equipoise.mechanism.formulas.kernels import half_angle, series_term, unit
+from equipoise.signals import Array
 
 Levels = tuple[Array, Array, Array]
 """Value, first and second derivative."""

@@ -10,12 +10,12 @@ import numpy as np
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import coupling_pins, place_in_file
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.formulas.rolling import LEFT, RIGHT
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.machine import FRAME
+from equipoise.signals import Array
 
 ANGLES = 72
 """In a turn, at which it is looked."""

@@ -27,7 +27,8 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.reach import reach
-from equipoise.mechanism.assembly.steps import Array, run, u
+from equipoise.mechanism.assembly.steps import run, u
+from equipoise.mechanism.formulas.rolling import Levels
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.swinging import Followed
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
@@ -35,6 +36,7 @@ from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.laws import LengthLaw
 from equipoise.mechanism.parts.machine import Machine, Slider
 from equipoise.quantities import angle, format_exact
+from equipoise.signals import Array
 
 
 def slider_of(machine: Machine, drive: Drive | FurtherDrive) -> Slider:
@@ -77,7 +79,6 @@ def push_lines(
 
 STEP = pi / 360
 """rad: between angles of the link at which the length is looked at."""
-Levels = tuple[Array, Array, Array]
 INSIDE = 1e-7
 """rad: how far from where a dyad is stretched out."""
 ITERATIONS, SETTLED = 60, 1e-15

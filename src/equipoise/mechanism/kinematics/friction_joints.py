@@ -10,13 +10,14 @@ import numpy as np
 from equipoise.dataclass import dataclass
 from equipoise.mechanism.assembly.joints import given_properties
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Array, Reaction, planar, size_of_links
+from equipoise.mechanism.assembly.steps import Reaction, planar, size_of_links
 from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.joint_properties import JOINTS, JointProperties
 from equipoise.mechanism.parts.machine import FRAME, Slider
+from equipoise.signals import Array
 
 STILL = 1e-10
 """rad or lengths of the largest link, by rad of the crank: a joint that moves less is at rest, as

@@ -13,12 +13,12 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, MotionError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.kinematics.strokes import dead_positions
 from equipoise.mechanism.parts.loads import ALIKE, GasTable, IndicatorDiagram, Load
 from equipoise.quantities import Dimension
 from equipoise.quantities.numbers import format_quantity
+from equipoise.signals import Array
 
 STEP, FINER = 2 * pi / 360, 4
 """rad: crank angles between which pressure is linear, beside those of the rows of a diagram; and

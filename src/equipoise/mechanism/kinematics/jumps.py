@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Array, size_of_links
+from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.kinematics.friction_joints import STILL, rubbing_joints, ways_of
 from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move, move_again
@@ -23,7 +23,7 @@ from equipoise.mechanism.kinematics.tip import crossings, roots, surface_of
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.element_kinds import rated_elements
 from equipoise.mechanism.parts.machine import FRAME, Machine
-from equipoise.signals import JumpSampling
+from equipoise.signals import Array, JumpSampling
 
 ANGLES = 720
 """In a turn, between two of which a law passes a knot at most once, or a tip the surface."""

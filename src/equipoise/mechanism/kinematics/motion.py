@@ -19,7 +19,7 @@ from equipoise.errors import ChangePointError, ModelError, RangeError, UsageErro
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Group
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.steps import Array, State, along, p, plain_angle, running_angle, u
+from equipoise.mechanism.assembly.steps import State, along, p, plain_angle, running_angle, u
 from equipoise.mechanism.checks import NamedItems, Vector, bodies_at
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import PlaneCurve, direction
@@ -29,7 +29,7 @@ from equipoise.mechanism.parts.element_kinds import Element, named_function
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Machine, Slider
 from equipoise.quantities import HUGE, Dimension, in_si
-from equipoise.signals import Figures, JumpSampling, Periodic, first_below
+from equipoise.signals import Array, Figures, JumpSampling, Periodic, first_below
 
 
 def in_time(first: Array, second: Array, speed: float, acceleration: float) -> Array:

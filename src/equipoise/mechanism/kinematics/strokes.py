@@ -18,14 +18,13 @@ from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.cycle import FEWER_POINTS, MANY_TURNS, POINTS_PER_TURN
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.checks import NamedItems, unknown
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.tip import largest, roots
 from equipoise.mechanism.outputs.declared import guided, pinned
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Dimension
-from equipoise.signals import EQUAL, highest_at, within_period
+from equipoise.signals import EQUAL, Array, highest_at, within_period
 
 StrokeKind = Literal["slider", "rocker"]
 OF_KIND: dict[StrokeKind, Dimension] = {"slider": "length", "rocker": "angle"}

@@ -21,15 +21,9 @@ from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.cycle import POINTS_PER_TURN
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.reach import CHANGE_POINT, Reach, motion_line, reach, swing_within
-from equipoise.mechanism.assembly.steps import (
-    Array,
-    State,
-    Step,
-    needed_references,
-    plain_angle,
-    run,
-)
+from equipoise.mechanism.assembly.steps import State, Step, needed_references, plain_angle, run
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.signals import Array
 
 SWUNG = ("drive", "planting")
 """What of a machine is another where its crank swings."""

@@ -19,12 +19,12 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import Family, Triple, column
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import Array, State
+from equipoise.mechanism.assembly.steps import State
 from equipoise.mechanism.parts.field import Planting, PlantingArm
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.signals import EQUAL, highest_at
+from equipoise.signals import EQUAL, Array, highest_at
 
-Signal = Callable[[Array], Any]
+CurveFunction = Callable[[Array], Any]
 
 CLOSE = 1e-14
 """rad: a crank angle that moves by less has been found."""
@@ -39,7 +39,7 @@ highest top."""
 
 
 def roots(
-    signal: Signal, low: Array, high: Array, known: tuple[Array, Array, Array] | None = None
+    signal: CurveFunction, low: Array, high: Array, known: tuple[Array, Array, Array] | None = None
 ) -> Array:
     """Crank angles (P, K) between `low` and `high`, at which a signal passes zero.
 
@@ -54,7 +54,9 @@ def roots(
         return _roots(signal, low, high, known or (signal(low), signal(high), (low + high) / 2))
 
 
-def _roots(signal: Signal, low: Array, high: Array, known: tuple[Array, Array, Array]) -> Array:
+def _roots(
+    signal: CurveFunction, low: Array, high: Array, known: tuple[Array, Array, Array]
+) -> Array:
     x1, x2 = high, low
     f2, f1, first = known
     bracketed = np.signbit(f1) != np.signbit(f2)
@@ -87,7 +89,7 @@ def _share(x1: Array, f1: Any, x2: Array, f2: Any, x3: Array, f3: Any) -> Array:
     return clipped
 
 
-def crossings(signal: Signal, nodes: Array) -> Array:
+def crossings(signal: CurveFunction, nodes: Array) -> Array:
     """Every crank angle at which a signal of one machine passes zero in one cycle, rising.
 
     nodes : (M,) rising crank angles, from the begin to the end of the cycle, so close together that
@@ -102,7 +104,9 @@ def crossings(signal: Signal, nodes: Array) -> Array:
     return values
 
 
-def largest(signal: Signal, slope: Signal, theta: Array, samples: Array) -> tuple[Array, Array]:
+def largest(
+    signal: CurveFunction, slope: CurveFunction, theta: Array, samples: Array
+) -> tuple[Array, Array]:
     """Largest value (P,) of a periodic signal, and its crank angle (P,).
 
     Parameters
@@ -127,14 +131,16 @@ def largest(signal: Signal, slope: Signal, theta: Array, samples: Array) -> tupl
     return np.max(values, axis=1), refined[rows, best]
 
 
-def smallest(signal: Signal, slope: Signal, theta: Array, samples: Array) -> tuple[Array, Array]:
+def smallest(
+    signal: CurveFunction, slope: CurveFunction, theta: Array, samples: Array
+) -> tuple[Array, Array]:
     """Smallest value (P,) of a periodic signal, and its crank angle (P,); see `largest`."""
     value, at = largest(lambda x: -signal(x), lambda x: -slope(x), theta, -samples)
     return -value, at
 
 
 def lowest_within(
-    signal: Signal, low: Array, high: Array, samples: int = 181
+    signal: CurveFunction, low: Array, high: Array, samples: int = 181
 ) -> tuple[Array, Array]:
     """Smallest value (P,) of a signal that may have kinks, from `low` (P,) to `high`, and where.
 
@@ -157,7 +163,7 @@ def lowest_within(
         width = np.where(np.abs(width) > 8 * FINE, width / 8, 0.0)  # as alone, see `roots`
 
 
-def integral(signal: Signal, breaks: Array) -> Array:
+def integral(signal: CurveFunction, breaks: Array) -> Array:
     """Integral (P,) of a signal over crank angle, by Gauss's rule between breaks (P, B), rad.
 
     The signal should be smooth between them; falling breaks give the opposite sign.

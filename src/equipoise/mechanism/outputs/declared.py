@@ -19,8 +19,8 @@ from equipoise.mechanism.outputs.declaring import (
     DECLARED,
     GROUPS,
     Declared,
-    Measure,
     OutputSource,
+    Statistic,
     alike,
     declare_as,
     declared,
@@ -169,9 +169,9 @@ __all__ = [
 ]
 """What `declaring` has is had from here, where something is declared."""
 
-FORCE: tuple[Measure, ...] = ("rms", "peak")
-MOMENT: tuple[Measure, ...] = ("rms", "peak", "area")
-TORQUE: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak")
+FORCE: tuple[Statistic, ...] = ("rms", "peak")
+MOMENT: tuple[Statistic, ...] = ("rms", "peak", "area")
+TORQUE: tuple[Statistic, ...] = ("rms", "ripple", "peak", "peak_to_peak")
 """Measures of an output that are reported before and after balancing."""
 XY, FORCES = (".x", ".y"), (".force_x", ".force_y")
 """Components of vectors, behind their names."""

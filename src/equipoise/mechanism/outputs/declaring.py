@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 ResultT = TypeVar("ResultT")
 Needs = Literal["motion", "masses", "planes", "rows", "support"]
-Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
+Statistic = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
 """Statistic that reduces an output to one number; see `mechanism.parts.balance`."""
 Yardstick = Literal[
     "", "weight", "span", "bearings", "effort", "acting", "pressure", "transmission", "vibration"
@@ -120,7 +120,7 @@ class Declared:
     array: bool = True
     summed: bool = True
     ordered: bool = False
-    compared: tuple[Measure, ...] = ()
+    compared: tuple[Statistic, ...] = ()
     with_loads: bool = False
     unbounded: bool = False
     yardstick: Yardstick = ""

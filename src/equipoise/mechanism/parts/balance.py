@@ -44,7 +44,7 @@ from equipoise.mechanism.checks import (
     wrong_range,
 )
 from equipoise.mechanism.outputs.declared import DECLARED
-from equipoise.mechanism.outputs.declaring import Declared, Measure, matches
+from equipoise.mechanism.outputs.declaring import Declared, Statistic, matches
 from equipoise.mechanism.parts.bodies import MATERIALS, material_of
 from equipoise.mechanism.parts.links import Mechanism
 from equipoise.mechanism.parts.springs import wrong_ends
@@ -57,9 +57,9 @@ from equipoise.mechanism.parts.weights import (
     BalanceShafts,
     CenterMove,
     GearedWeight,
-    Pair,
-    Shape,
+    NumberPair,
     Weight,
+    WeightShape,
     largest_mass,
     plate_mass,
     wrong_added,
@@ -69,7 +69,7 @@ from equipoise.mechanism.parts.weights import (
 )
 from equipoise.quantities import NUMBER, Dimension, Measured, pattern
 
-MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
+MEASURES: tuple[Statistic, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
 """Root of the mean square, the same about the mean, largest size, largest minus smallest value, and
 area under the absolute value over 360 degrees of crank angle."""
 MEASURED_IN: tuple[Dimension, ...] = ("force", "torque", "power", "energy", "length", "angle")
@@ -103,7 +103,7 @@ class Objective(Frozen):
         "`gauges.NAME`, `roll_moment`, `yaw_moment`, `rocking_moment`",
         example="shaking_moment",
     )
-    measure: Measure = key(
+    measure: Statistic = key(
         TextKind(MEASURES),
         "`rms`: root of the mean square; `ripple`: the same about the mean; `peak`: largest size; "
         "`peak_to_peak`: largest minus smallest value; `area`: under the size, over 360 "
@@ -384,13 +384,13 @@ __all__ = [
     "CenterMove",
     "GearedWeight",
     "Limit",
-    "Measure",
+    "NumberPair",
     "Objective",
-    "Pair",
     "Phases",
-    "Shape",
     "SpringChoice",
+    "Statistic",
     "Weight",
+    "WeightShape",
     "largest_mass",
     "material_of",
     "plate_mass",
@@ -419,7 +419,7 @@ class SpringChoice(Frozen):
         word=to_say("other point"),
     )
     stiffness: float = key("stiffness", "the most that it may have", example="5 kN/m", above=0)
-    free_length: Pair | None = key(
+    free_length: NumberPair | None = key(
         RANGE,
         "least and largest; any if left out",
         default=None,

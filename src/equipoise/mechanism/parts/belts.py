@@ -11,8 +11,8 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
-    Conditions,
     Flag,
+    KeyConditions,
     Listing,
     Quantity,
     Whole,
@@ -48,7 +48,7 @@ class Belt(Turning):
     list_text = "toothed belts and chains"
     order = 2
     file_order = ("between", "teeth", "pitch", "radii", "crossed", "carrier", "start", "tension")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [{"required": ["teeth"]}, {"required": ["radii"]}],
         "dependentRequired": {"teeth": ["pitch"], "pitch": ["teeth"]},
     }

@@ -16,10 +16,10 @@ from equipoise.errors import ModelError, unknown
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     NO_INERTIA,
-    Conditions,
     Flag,
     Frozen,
     Key,
+    KeyConditions,
     Keys,
     KeyTable,
     Listing,
@@ -150,7 +150,7 @@ class Body(Frozen):
     file_order = ("shape", "between", "overhang", "width", "wall", "outer_diameter",
                   "inner_diameter", "corners", "at", "radius", "inner_radius", "thickness",
                   "material", "density", "mass", "mass_per_length", "inertia")  # fmt: skip
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "allOf": [
             *map(_of_shape, NEEDS),
             any_of(*MASSES),

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
-from equipoise.keys import Conditions, Listing, Quantity, TextKind, declared, key
-from equipoise.mechanism.checks import FRAME, Bodies
+from equipoise.keys import KeyConditions, Listing, Quantity, TextKind, declared, key
+from equipoise.mechanism.checks import FRAME, Bodies, Vector
 from equipoise.mechanism.parts.element_kinds import (
     Action,
     BetweenPoints,
@@ -19,7 +19,6 @@ from equipoise.mechanism.parts.element_kinds import (
 )
 from equipoise.quantities import Dimension, format_quantity
 
-Pair = tuple[float, float]
 LAWS = ("stiffness", "damping", "torsional_stiffness", "torsional_damping")
 """Keys of which a bushing has at least one."""
 
@@ -36,7 +35,7 @@ class Bushing(BetweenPoints, RatedElement):
     order = 5
     file_order = ("link", "point", "to", "on", "direction", "stiffness", "damping", "preload",
                   "torsional_stiffness", "torsional_damping", "angle", "torque")  # fmt: skip
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "anyOf": [{"required": [name]} for name in LAWS],
         "dependentRequired": {"angle": ["torsional_stiffness"]},
     }
@@ -114,21 +113,21 @@ class Bushing(BetweenPoints, RatedElement):
         word=to_say("other body"),
     )
     direction: float = key("angle", "of its first axis from the x axis of `on`", default=0.0)
-    stiffness: Pair = key(
+    stiffness: Vector = key(
         Listing(Quantity("stiffness"), (2,)),
         "along its direction and across it",
         default=(0.0, 0.0),
         written_default=["0 N/m", "0 N/m"],
         example=["20 kN/m", "400 kN/m"],
     )
-    damping: Pair = key(
+    damping: Vector = key(
         Listing(Quantity("damping"), (2,)),
         "along its direction and across it",
         default=(0.0, 0.0),
         written_default=["0 N s/m", "0 N s/m"],
         example=["50 N s/m", "90 N s/m"],
     )
-    preload: Pair = key(
+    preload: Vector = key(
         Listing(Quantity("force"), (2,)),
         "force on the link along its direction and across it, where its points meet",
         default=(0.0, 0.0),
@@ -237,7 +236,7 @@ class Bushing(BetweenPoints, RatedElement):
             return Note(
                 "Bushing: {rate} about {point} of {link}, on {on}", rate=self._turning(), **ends
             )
-        laws: tuple[tuple[Pair, Dimension, str], ...] = (
+        laws: tuple[tuple[Vector, Dimension, str], ...] = (
             (self.stiffness, "stiffness", "N/m"),
             (self.damping, "damping", "N s/m"),
         )
@@ -276,7 +275,7 @@ class Bushing(BetweenPoints, RatedElement):
                 on=self.on,
             )
         ]
-        pairs: tuple[tuple[Pair, Dimension, str], ...] = (
+        pairs: tuple[tuple[Vector, Dimension, str], ...] = (
             (self.stiffness, "stiffness", "N/m"),
             (self.damping, "damping", "N s/m"),
             (self.preload, "force", "N"),

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Literal
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.i18n.terms import with_meaning
-from equipoise.keys import Conditions, KeyTable, TextKind, declared, key, not_both
+from equipoise.keys import KeyConditions, KeyTable, TextKind, declared, key, not_both
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
 from equipoise.mechanism.outputs.declared import (
     CONTACT,
@@ -69,7 +69,7 @@ class Cam(Coupling):
     speed_ratio: ClassVar[float] = 0.0
     exact_ratio: ClassVar[Fraction] = Fraction(0)
     file_order = ("cam", "follower", "carrier", "rides", "point", "roller_radius", "base_radius")
-    conditions: ClassVar[Conditions] = not_both("lift", "swing")
+    conditions: ClassVar[KeyConditions] = not_both("lift", "swing")
 
     driver: str = key(
         TextKind(of="body"),

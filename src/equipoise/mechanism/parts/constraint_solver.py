@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import chain
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from equipoise.decompositions import lstsq
 from equipoise.errors import ModelError
@@ -18,13 +16,12 @@ from equipoise.mechanism.parts.constraints import (
     HOLDS,
     IN_LINE,
     MISSES,
+    BodyLine,
+    BodyPoint,
     Constraint,
-    Line,
-    Point,
 )
 from equipoise.quantities import clean_place
-
-Array = NDArray[Any]
+from equipoise.signals import Array
 
 SOLVED = 1e-12
 """Far below `HOLDS`, and well above the rounding of its equations in double precision."""
@@ -51,7 +48,7 @@ class ConstraintEquations:
         lines = chain.from_iterable(self.lines)
         return max(float(np.hypot(*(self.places[b] - self.places[a]))) for a, b in lines)
 
-    def residuals(self, places: Mapping[Point, Array]) -> Array:
+    def residuals(self, places: Mapping[BodyPoint, Array]) -> Array:
         """Residual of each equation at places (2,), m, of the points."""
         rows = []
         for miss, ((a, b), (c, d)) in zip(self.kinds, self.lines, strict=True):
@@ -65,7 +62,7 @@ class ConstraintEquations:
             worst = float(np.max(np.abs(self.residuals(self.places))))
         return worst if np.isfinite(worst) else np.inf
 
-    def solve(self, movers: Sequence[Point]) -> bool:
+    def solve(self, movers: Sequence[BodyPoint]) -> bool:
         """Move points, as little as possible, until all equations hold; whether they do.
 
         Each step goes to the place nearest to the start at which the equations hold to first
@@ -85,7 +82,7 @@ class ConstraintEquations:
                 return True
         return self.residual <= HOLDS
 
-    def _slopes(self, movers: Sequence[Point]) -> Array:
+    def _slopes(self, movers: Sequence[BodyPoint]) -> Array:
         """Derivatives of the equations by the coordinates of movers, by complex steps."""
         columns = []
         for point in movers:
@@ -99,9 +96,9 @@ class ConstraintEquations:
 def constrained(
     constraints: Sequence[Constraint],
     bodies: Bodies,
-    changed: frozenset[Point] = frozenset(),
-    given: frozenset[Point] = frozenset(),
-) -> dict[Point, Vector]:
+    changed: frozenset[BodyPoint] = frozenset(),
+    given: frozenset[BodyPoint] = frozenset(),
+) -> dict[BodyPoint, Vector]:
     """Points that have to go elsewhere so that constraints hold.
 
     An end moves of the second line of each constraint that is missed, or of the first where that
@@ -128,7 +125,7 @@ def constrained(
     start = ConstraintEquations(constraints, bodies)
     if start.residual <= SOLVED:
         return {}
-    for staying in dict.fromkeys((changed, frozenset[Point]())):
+    for staying in dict.fromkeys((changed, frozenset[BodyPoint]())):
         ends = [_ends(constraint.kind, lines, staying, given)
                 for constraint, lines in zip(constraints, start.lines, strict=True)]  # fmt: skip
         violated = [end for end, constraint in zip(ends, constraints, strict=True)
@@ -143,8 +140,11 @@ def constrained(
 
 
 def _ends(
-    kind: str, lines: tuple[Line, Line], staying: frozenset[Point], given: frozenset[Point]
-) -> list[Point]:
+    kind: str,
+    lines: tuple[BodyLine, BodyLine],
+    staying: frozenset[BodyPoint],
+    given: frozenset[BodyPoint],
+) -> list[BodyPoint]:
     """The points that move for a constraint: ends of its second line, or of its first where those
     stay.  Of two lengths that which was changed keeps its value.
     """
@@ -160,8 +160,8 @@ def _ends(
 
 
 def _moved(
-    before: Mapping[Point, Array], after: Mapping[Point, Array], size: float
-) -> dict[Point, Vector]:
+    before: Mapping[BodyPoint, Array], after: Mapping[BodyPoint, Array], size: float
+) -> dict[BodyPoint, Vector]:
     moved = {}
     for point, place in after.items():
         if np.abs(place - before[point]).max() > SOLVED * size:

@@ -17,54 +17,54 @@ from equipoise.keys import Frozen, Listing, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown
 from equipoise.quantities import format_quantity
 
-Point = tuple[str, str]
+BodyPoint = tuple[str, str]
 """A body and its point."""
-Line = tuple[Point, Point]
-Place = Any
+BodyLine = tuple[BodyPoint, BodyPoint]
+PlaneVector = Any
 """A pair of x and y, m; complex numbers where a derivative is taken by a complex step."""
-Ends = tuple[Place, Place]
+LineEnds = tuple[PlaneVector, PlaneVector]
 
 HOLDS = 1e-6
 """Largest miss, as of `MISSES`: files give lengths with some six digits, which have to do."""
 
 
-def _way(line: Ends) -> Place:
+def _way(line: LineEnds) -> PlaneVector:
     (x, y), (to_x, to_y) = line
     return to_x - x, to_y - y
 
 
-def _dot(place: Place, other: Place) -> Any:
+def _dot(place: PlaneVector, other: PlaneVector) -> Any:
     return place[0] * other[0] + place[1] * other[1]
 
 
-def _cross(place: Place, other: Place) -> Any:
+def _cross(place: PlaneVector, other: PlaneVector) -> Any:
     return place[0] * other[1] - place[1] * other[0]
 
 
-def _length(line: Ends) -> Any:
+def _length(line: LineEnds) -> Any:
     return _dot(_way(line), _way(line)) ** 0.5
 
 
-def _equal(line: Ends, to: Ends) -> list[Any]:
+def _equal(line: LineEnds, to: LineEnds) -> list[Any]:
     length, other = _length(line), _length(to)
     return [2 * (length - other) / (length + other)]
 
 
-def _parallel(line: Ends, to: Ends) -> list[Any]:
+def _parallel(line: LineEnds, to: LineEnds) -> list[Any]:
     return [_cross(_way(line), _way(to)) / (_length(line) * _length(to))]
 
 
-def _perpendicular(line: Ends, to: Ends) -> list[Any]:
+def _perpendicular(line: LineEnds, to: LineEnds) -> list[Any]:
     return [_dot(_way(line), _way(to)) / (_length(line) * _length(to))]
 
 
-def _in_line(line: Ends, to: Ends) -> list[Any]:
+def _in_line(line: LineEnds, to: LineEnds) -> list[Any]:
     way = _way(line)
     return [_cross(way, _way((line[0], end))) / _dot(way, way) for end in to]
 
 
 IN_LINE = "in line"
-MISSES: Mapping[str, Callable[[Ends, Ends], list[Any]]] = MappingProxyType({
+MISSES: Mapping[str, Callable[[LineEnds, LineEnds], list[Any]]] = MappingProxyType({
     "equal": _equal,
     "parallel": _parallel,
     "perpendicular": _perpendicular,
@@ -127,7 +127,7 @@ class Constraint(Frozen):
             )
             yield ModelError(f"{where}.to", what)
 
-    def lines(self, bodies: Bodies) -> tuple[Line, Line]:
+    def lines(self, bodies: Bodies) -> tuple[BodyLine, BodyLine]:
         """Both lines in a machine of these bodies."""
         both = _shared(self, bodies)
         of = (both, both) if both else (bodies_of(self.line, bodies), bodies_of(self.to, bodies))
@@ -178,7 +178,7 @@ def _shared(constraint: Constraint, bodies: Bodies) -> list[str]:
     return [body for body in bodies_of(constraint.line, bodies) if body in other]
 
 
-def changed_points(before: Bodies, after: Bodies) -> frozenset[Point]:
+def changed_points(before: Bodies, after: Bodies) -> frozenset[BodyPoint]:
     """Points that lie elsewhere in the axes of their body than before; new ones are none."""
     return frozenset(
         (body, point)

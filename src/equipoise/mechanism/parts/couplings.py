@@ -32,7 +32,7 @@ Relation = tuple[Callable[..., tuple[Any, ...]], tuple[Any, ...]]
 carrier, then these numbers and an offset, it gives those of the driven body."""
 PathPattern = tuple[str | type, ...]
 """Keys that lead into a table, with `str` for any key and `int` for any place in a list."""
-Law = Callable[[Any], tuple[Any, Any, Any]]
+DerivedLaw = Callable[[Any], tuple[Any, Any, Any]]
 """A function of an angle, with its first and second derivative."""
 
 
@@ -113,7 +113,7 @@ class RollingLine:
     where the pitch curves lie square to it.
     """
 
-    law: Law
+    law: DerivedLaw
     centres: Any
     radial: Any
 
@@ -262,7 +262,7 @@ class Coupling(PartKind):
         return ""
 
     @property
-    def rolling_law(self) -> Law | None:
+    def rolling_law(self) -> DerivedLaw | None:
         """The driven body's angle by the driver's, seen from the carrier, where pitch curves that
         are no circles roll on each other.
         """
@@ -488,7 +488,7 @@ def coupled(
     angle_c: Any,
     w_c: Any,
     a_c: Any,
-    law: Law,
+    law: DerivedLaw,
     offset: Any,
 ) -> tuple[Any, Any, Any]:
     """Angle of a driven body: seen from the carrier c it is a function of that of the driver r."""

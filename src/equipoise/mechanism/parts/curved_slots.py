@@ -15,9 +15,9 @@ from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
-    Conditions,
     File,
     Flag,
+    KeyConditions,
     Listing,
     Point,
     TextKind,
@@ -79,7 +79,7 @@ class CurvedSlot(JointKind):
         "direction",
         "label",
     )
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [{"required": [name]} for name in ("points", "table")]
     }
     still: ClassVar[tuple[str, ...]] = ("points", "table")

@@ -8,7 +8,17 @@ from typing import Any, ClassVar
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, say, to_say
 from equipoise.i18n.terms import with_meaning
-from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
+from equipoise.keys import (
+    ROW,
+    File,
+    KeyConditions,
+    Listing,
+    Quantity,
+    TextKind,
+    declared,
+    inside,
+    key,
+)
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
@@ -46,7 +56,7 @@ class Damper(BetweenPoints, Damping):
     list_text = "dampers between links, or links and frame"
     order = 3
     file_order = ("link", "point", "to", "on", "damping", "speeds", "forces", "table")
-    conditions: ClassVar[Conditions] = one_law("damping", ("speeds", "forces"))
+    conditions: ClassVar[KeyConditions] = one_law("damping", ("speeds", "forces"))
 
     lists = ("speeds", "forces")
     legend = ("damper", to_say("damper"))

@@ -12,9 +12,9 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     NO_INERTIA,
-    Conditions,
     Flag,
     Frozen,
+    KeyConditions,
     KeyTable,
     Listing,
     Number,
@@ -115,7 +115,7 @@ class Drive(Pushing, Frozen):
 
     called = to_say("{what} of the drive")
     file_order = ("link", "speed", "speeds")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "dependentRequired": {"between": ["stroke"], "slider": ["stroke"], "start": ["stroke"]}
     }
 
@@ -208,7 +208,7 @@ class FurtherDrive(Pushing, Frozen):
     """Another driven link, whose motion has a common period with the crank angle."""
 
     called = to_say("{what} of the drive of the {link}")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "dependentRequired": {"between": ["stroke"], "slider": ["stroke"]},
         "dependentSchemas": {
             "motion": {"properties": {"ratio": False, "start": False}},

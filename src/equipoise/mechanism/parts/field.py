@@ -14,9 +14,9 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     ROW,
-    Conditions,
     File,
     Frozen,
+    KeyConditions,
     KeyTable,
     Listing,
     Point,
@@ -130,7 +130,7 @@ class Planting(Frozen):
     file_order = ("tip", "forward_speed", "hill_spacing", "depth", "surface", "release",
              "acceleration_limit", "soil_acceleration_limit", "units_per_turn", "travel",
              "finger_from", "tray", "arms", "soil")  # fmt: skip
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "allOf": [
             {"oneOf": [{"required": [item]}, {"required": [other]}]}
             for item, other in (("forward_speed", "hill_spacing"), ("depth", "surface"))

@@ -10,8 +10,8 @@ from typing import Any, ClassVar, Literal, Protocol
 
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
-    Conditions,
     Frozen,
+    KeyConditions,
     Listing,
     Number,
     Quantity,
@@ -58,7 +58,7 @@ class GearShape(Frozen):
     """
 
     called = to_say("{what} of the shape of the gears")
-    conditions: ClassVar[Conditions] = {"allOf": [*map(_of_kind, KINDS)]}
+    conditions: ClassVar[KeyConditions] = {"allOf": [*map(_of_kind, KINDS)]}
 
     kind: Literal["elliptic", "eccentric", "limacon", "ratio", "radius"] = key(
         TextKind((*KINDS,)),

@@ -11,8 +11,8 @@ from typing import Any, ClassVar, Literal
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
-    Conditions,
     Key,
+    KeyConditions,
     Keys,
     KeyTable,
     Listing,
@@ -28,7 +28,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.outputs.declared import of_mesh
 from equipoise.mechanism.parts.couplings import (
     Coupling,
-    Law,
+    DerivedLaw,
     LineOfAction,
     PathPattern,
     Pushed,
@@ -62,7 +62,7 @@ class Gear(Turning):
         ),
     }
     file_order = ("between", "ratio", "teeth", "mesh")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [{"required": ["ratio"]}, {"required": ["teeth"]}],
         "dependentRequired": {"mesh": ["teeth"]},
     }
@@ -140,7 +140,7 @@ class Gear(Turning):
         return kernels.in_ratio, (self.speed_ratio,)
 
     @property
-    def rolling_law(self) -> Law | None:
+    def rolling_law(self) -> DerivedLaw | None:
         """The driven gear's angle by the driver's, seen from the carrier, if the ratio varies."""
         if self.shape is None:
             return None

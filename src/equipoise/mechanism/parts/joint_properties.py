@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
-from equipoise.keys import Conditions, Frozen, KeyTable, Number, TextKind, any_of, declared, key
+from equipoise.keys import Frozen, KeyConditions, KeyTable, Number, TextKind, any_of, declared, key
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.couplings import Coupling
@@ -80,7 +80,7 @@ class JointProperties(Frozen):
         "stribeck_speed", "guide_length", "damping", "torsional_damping", "drag_force",
         "drag_torque", "mesh_loss",
     )  # fmt: skip
-    conditions: ClassVar[Conditions] = any_of("radius", "stiffness", "bearing", *RUBBING) | {
+    conditions: ClassVar[KeyConditions] = any_of("radius", "stiffness", "bearing", *RUBBING) | {
         "dependentRequired": {
             "width": ["radius"],
             "static_friction": ["friction", "stribeck_speed"],

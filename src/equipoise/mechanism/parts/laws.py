@@ -19,9 +19,9 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     ROW,
-    Conditions,
     File,
     Frozen,
+    KeyConditions,
     KeyTable,
     Listing,
     Quantity,
@@ -38,7 +38,8 @@ from equipoise.keys.paths import KeyPath
 from equipoise.quantities import KINDS, Measured
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.formulas.curves import Array, PeriodicCurve
+    from equipoise.mechanism.formulas.curves import PeriodicCurve
+    from equipoise.signals import Array
 
 LAWS = ("cycloidal", "modified sine", "modified trapezoid", "3-4-5", "4-5-6-7", "harmonic",
         "s-curve", "trapezoid", "linear")  # fmt: skip
@@ -125,7 +126,7 @@ class Law(Frozen):
 
     whole: ClassVar[float]
     dimension: ClassVar[Literal["angle", "length"]]
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [{"required": [name]} for name in ("between", "segments", "values", "table")],
         "dependentRequired": {
             "crank_angles": ["values"],

@@ -12,8 +12,8 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import KeyName, Note, all_of, key_names, to_say
 from equipoise.keys import (
     NO_INERTIA,
-    Conditions,
     Frozen,
+    KeyConditions,
     KeyTable,
     Named,
     Point,
@@ -75,7 +75,7 @@ class Link(Frozen):
     """
 
     called = to_say("{what} of the {name}")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "dependentRequired": {
             "mass": ["center_of_mass", "inertia"],
             "center_of_mass": ["mass", "inertia"],

@@ -13,9 +13,9 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     ROW,
-    Conditions,
     File,
     Frozen,
+    KeyConditions,
     Listing,
     Quantity,
     TextKind,
@@ -294,7 +294,7 @@ class Load(AlongLine, Frozen):
     file_order = ("link", "point", "force", "torque", "table", "gas", "indicator", "bore",
                   "back_pressure", "side", "axes", "toward", "outside", "from", "to",
                   "reaction")  # fmt: skip
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [{"required": [name]} for name in KINDS],
         "dependentRequired": {
             "from": ["to"], "to": ["from"], "force": ["point"], "axes": ["point"],

@@ -12,9 +12,9 @@ from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
     NO_INERTIA,
     ROW,
-    Conditions,
     File,
     Frozen,
+    KeyConditions,
     KeyTable,
     Number,
     TextKind,
@@ -180,7 +180,7 @@ class Motor(Frozen):
     called = to_say("{what} of the motor")
     file_order = ("no_load_speed", "stall_torque", "torque", "table", "dc", "induction", "servo",
                   "ratio", "inertia", "mean_speed")  # fmt: skip
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [
             needs(*kind)
             | lacks(*(name for other in MOTOR_KINDS if other != kind for name in other))

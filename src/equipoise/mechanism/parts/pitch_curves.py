@@ -13,7 +13,6 @@ import numpy as np
 from equipoise.i18n import Note
 from equipoise.keys import with_fields
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.formulas.curves import Array
 from equipoise.mechanism.formulas.rolling import (
     EccentricCircle,
     HalfAngle,
@@ -25,6 +24,7 @@ from equipoise.mechanism.formulas.rolling import (
     Waves,
 )
 from equipoise.mechanism.parts.gear_shapes import TABLED, GearShape, KeyProblem, MeshingGears
+from equipoise.signals import Array
 
 MISFIT = 1e-4
 """Share by which a table may miss that its curves close; it is spread over all of it."""

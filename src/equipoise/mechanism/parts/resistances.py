@@ -10,9 +10,9 @@ from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
-    Conditions,
     File,
     Flag,
+    KeyConditions,
     Listing,
     Quantity,
     TextKind,
@@ -69,7 +69,7 @@ class Resistance(BetweenPoints, TableRows, RatedElement):
     order = 7
     file_order = ("link", "point", "to", "on", "direction", "one_way", "force", "damping",
                   "positions", "forces", "table", "speed")  # fmt: skip
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "anyOf": [{"required": [name]} for name in ("force", "damping", "positions", "table")],
         "dependentRequired": {
             "table": ["direction", "speed"],

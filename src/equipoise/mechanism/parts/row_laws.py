@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, say, to_say
-from equipoise.keys import Conditions, lacks, needs
+from equipoise.keys import KeyConditions, lacks, needs
 from equipoise.mechanism.formulas.kernels import positive
 from equipoise.mechanism.parts.element_kinds import RatedElement
 from equipoise.quantities import Dimension, format_quantity
@@ -80,7 +80,7 @@ def wrong_rows(
         yield ModelError(where, Note("the {what} must rise from row to row", what=keys[0]))
 
 
-def one_law(constant: str, lists: tuple[str, str], beside: tuple[str, ...] = ()) -> Conditions:
+def one_law(constant: str, lists: tuple[str, str], beside: tuple[str, ...] = ()) -> KeyConditions:
     """What the JSON Schema says of an element that gives its law in one way; see `RowLaw`."""
     return {
         "oneOf": [

@@ -10,9 +10,9 @@ from typing import Any, ClassVar, Literal
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
-    Conditions,
     Flag,
     Frozen,
+    KeyConditions,
     Listing,
     Number,
     Quantity,
@@ -115,7 +115,7 @@ class TimedLoad(AlongLine, Frozen):
 
     called = to_say("{what} of load {number} over time")
     file_order = ("link", "point", "on", "force", "torque", "axes", "toward", "times", "factors")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [{"required": [name]} for name in ("force", "torque")],
         "dependentRequired": {
             "force": ["point"],

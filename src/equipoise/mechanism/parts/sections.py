@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
-    Conditions,
     Frozen,
+    KeyConditions,
     Listing,
     Number,
     TextKind,
@@ -32,7 +32,7 @@ class LinkSection(Frozen):
     """
 
     called = to_say("{what} of the section")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [
             needs("height", "width") | lacks("diameter", "web", "flange"),
             needs("height", "width", "web", "flange") | lacks("diameter", "wall"),

@@ -17,7 +17,7 @@ from equipoise.keys import Frozen, Key, TextKind, declared, key, keys_of
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import KINDS, Amount, Dimension, parse_amount, parse_expression
-from equipoise.quantities.expressions import Names, names_in, parse_number, spelled
+from equipoise.quantities.expressions import NamedAmounts, names_in, parse_number, spelled
 from equipoise.quantities.reading import described, plain_unit, unit_meant
 from equipoise.quantities.units import OF_UNIT
 
@@ -163,7 +163,7 @@ MOST = 1000
 """Parameters of a model; each may name others, so that a file could make its reading long."""
 
 
-def amounts_of(parameters: object) -> Names:
+def amounts_of(parameters: object) -> NamedAmounts:
     """What the names of parameters stand for, by the name as an expression has it.
 
     Parameters
@@ -206,7 +206,7 @@ def amounts_of(parameters: object) -> Names:
     return amounts
 
 
-def worked_out(expression: str, dimension: Dimension | None, names: Names) -> float:
+def worked_out(expression: str, dimension: Dimension | None, names: NamedAmounts) -> float:
     """The number that an expression gives, in SI units.
 
     dimension : of the number; None of a plain one.

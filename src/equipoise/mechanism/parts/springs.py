@@ -10,8 +10,8 @@ from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
-    Conditions,
     File,
+    KeyConditions,
     Listing,
     Quantity,
     TextKind,
@@ -79,7 +79,7 @@ class Spring(BetweenPoints, RowLaw, ForceElement):
     file_order = ("link", "point", "to", "stiffness", "free_length", "preload", "lengths", "forces",
                   "table", "on")  # fmt: skip
     constant, lists, beside = "stiffness", ("lengths", "forces"), ("free_length", "preload")
-    conditions: ClassVar[Conditions] = one_law(constant, lists, beside)
+    conditions: ClassVar[KeyConditions] = one_law(constant, lists, beside)
 
     title = to_say("Springs, each with its crank angle; below 0 they push their ends apart")
     group = to_say("springs")

@@ -13,10 +13,11 @@ from typing import Any, ClassVar
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of, key_names, to_say
 from equipoise.keys import (
-    Conditions,
+    DirectionKind,
     Flag,
     Frozen,
     Key,
+    KeyConditions,
     Keys,
     KeyTable,
     Listing,
@@ -28,11 +29,10 @@ from equipoise.keys import (
     declared,
     key,
 )
-from equipoise.keys import Direction as DirectionKind
 from equipoise.mechanism.checks import too_many
 from equipoise.quantities import Measured
 
-Place = tuple[float, float, float]
+SpaceVector = tuple[float, float, float]
 """x (forward), y (up) and z (to the right), m."""
 Direction = float | tuple[float, float, float]
 """Angle from the x axis in the plane of the drawing, rad; or any vector along it."""
@@ -40,7 +40,7 @@ AXES = ("roll", "yaw", "pitch")
 UP = pi / 2
 
 
-def unit_vector(direction: Direction) -> Place:
+def unit_vector(direction: Direction) -> SpaceVector:
     """Vector of length 1 along a direction."""
     if isinstance(direction, tuple):
         length = hypot(*direction)
@@ -100,11 +100,11 @@ class Mount(Frozen):
     }
     file_order = ("point", "axis", "direction", "stiffness", "damping", "torsional_stiffness",
              "torsional_damping", "preload", "torsional_preload", "one_sided")  # fmt: skip
-    conditions: ClassVar[Conditions] = _point_or_axis(
+    conditions: ClassVar[KeyConditions] = _point_or_axis(
         point=("stiffness", "damping"), axis=OF_AXIS[:2]
     )
 
-    point: Place | None = key(
+    point: SpaceVector | None = key(
         Point(space=True),
         "of the support, at which it acts",
         default=None,
@@ -163,9 +163,9 @@ class Gauge(Frozen):
     """
 
     called = to_say("{what} of gauge {name}")
-    conditions: ClassVar[Conditions] = _point_or_axis()
+    conditions: ClassVar[KeyConditions] = _point_or_axis()
 
-    point: Place | None = key(
+    point: SpaceVector | None = key(
         Point(space=True),
         "of the support, whose displacement is read",
         default=None,
@@ -237,8 +237,8 @@ __all__ = [
     "Direction",
     "Gauge",
     "Mount",
-    "Place",
     "Row",
+    "SpaceVector",
     "Support",
     "idle_parts",
     "unit_vector",
@@ -287,7 +287,7 @@ class Support(Frozen):
     """The rigid body that carries the linkages, without their moving links."""
 
     called = to_say("{what} of the support")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "oneOf": [
             {"required": ["inertia"], "properties": {"pivot_inertia": False}},
             {
@@ -305,7 +305,7 @@ class Support(Frozen):
         example="60 kg",
         above=0,
     )
-    center_of_mass: Place = key(
+    center_of_mass: SpaceVector = key(
         Point(space=True),
         "in the frame's axes",
         example=["0 mm", "300 mm"],
@@ -365,7 +365,7 @@ class Support(Frozen):
         return set(self.coordinates) <= set(PLANAR)
 
     @property
-    def reference(self) -> Place:
+    def reference(self) -> SpaceVector:
         """Point whose displacement describes the support's: the pivot, or the centre of mass."""
         return self.center_of_mass if self.pivot is None else (*self.pivot, 0.0)
 

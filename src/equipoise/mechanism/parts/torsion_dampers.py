@@ -8,7 +8,17 @@ from typing import Any, ClassVar
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, say, to_say
 from equipoise.i18n.terms import with_meaning
-from equipoise.keys import ROW, Conditions, File, Listing, Quantity, TextKind, declared, inside, key
+from equipoise.keys import (
+    ROW,
+    File,
+    KeyConditions,
+    Listing,
+    Quantity,
+    TextKind,
+    declared,
+    inside,
+    key,
+)
 from equipoise.keys.csv_tables import CsvTable
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.parts.element_kinds import Action, BetweenBodies, Placed
@@ -42,7 +52,7 @@ class TorsionDamper(BetweenBodies, Damping):
     list_text = "dampers of links that turn against each other"
     order = 4
     file_order = ("link", "on", "damping", "speeds", "torques", "table")
-    conditions: ClassVar[Conditions] = one_law("damping", ("speeds", "torques"))
+    conditions: ClassVar[KeyConditions] = one_law("damping", ("speeds", "torques"))
 
     lists = ("speeds", "torques")
     legend = ("vane", to_say("torsion damper"))

@@ -10,8 +10,8 @@ from equipoise.i18n import Note, localized, say, series, to_say
 from equipoise.i18n.terms import with_meaning
 from equipoise.keys import (
     ROW,
-    Conditions,
     File,
+    KeyConditions,
     Listing,
     Quantity,
     TextKind,
@@ -66,7 +66,7 @@ class TorsionSpring(BetweenBodies, RowLaw, ForceElement):
     order = 2
     file_order = ("link", "on", "stiffness", "angle", "preload", "angles", "torques", "table")
     constant, lists, beside = "stiffness", ("angles", "torques"), ("angle", "preload")
-    conditions: ClassVar[Conditions] = one_law(constant, lists, beside)
+    conditions: ClassVar[KeyConditions] = one_law(constant, lists, beside)
 
     legend = ("spiral", to_say("torsion spring"))
     sign = "equipoise.symbols.torsion_springs:torsion_sign"

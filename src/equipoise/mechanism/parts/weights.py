@@ -9,8 +9,8 @@ from typing import Any, ClassVar, Literal
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names, to_say
 from equipoise.keys import (
-    Conditions,
     Frozen,
+    KeyConditions,
     Keys,
     KeyTable,
     Listing,
@@ -37,9 +37,9 @@ from equipoise.mechanism.parts.bodies import (
 from equipoise.mechanism.parts.links import Mechanism
 from equipoise.quantities import Measured
 
-Pair = tuple[float, float]
-Shape = Literal["any", "point", "disc", "ring", "sector"]
-SHAPES: tuple[Shape, ...] = ("any", "point", "disc", "ring", "sector")
+NumberPair = tuple[float, float]
+WeightShape = Literal["any", "point", "disc", "ring", "sector"]
+SHAPES: tuple[WeightShape, ...] = ("any", "point", "disc", "ring", "sector")
 CUT = ("disc", "ring", "sector")
 """Shapes cut from a plate, which need a thickness and a density."""
 HOLLOW = ("ring", "sector")
@@ -87,7 +87,7 @@ class Weight(Frozen):
     extra_keys: ClassVar[Keys] = material_key("", "of that plate")
     file_order = ("shape", "radius", "inner_radius", "thickness", "material", "density")
 
-    shape: Shape = key(
+    shape: WeightShape = key(
         TextKind(SHAPES),
         "`any`: however it is spread in its room; `point`: in one point; `disc`: a round plate "
         "anywhere in the room; `ring` and `sector`: about the centre",
@@ -134,7 +134,7 @@ class AddedMass(Frozen):
     """Mass may be added to a link, about one of its points."""
 
     called = to_say("{what} of added mass {number}")
-    conditions: ClassVar[Conditions] = {"allOf": [*WEIGHT]}
+    conditions: ClassVar[KeyConditions] = {"allOf": [*WEIGHT]}
 
     link: str = key(TextKind(of="link"), "name of the link", example="crank")
     at: str = key(
@@ -153,20 +153,20 @@ class CenterMove(Frozen):
     """
 
     called = to_say("{what} of move {number}")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "dependentRequired": {"center": ["radius"], "radius": ["center"]},
         "dependentSchemas": {"center": {"properties": {"x": False, "y": False}}},
     }
 
     link: str = key(TextKind(of="link"), "a link with a mass", example="coupler")
-    x: Pair | None = key(
+    x: NumberPair | None = key(
         RANGE,
         "lowest and highest, in the link's axes; without limit if left out",
         default=None,
         example=["-60 mm", "20 mm"],
     )
-    y: Pair | None = key(RANGE, "as `x`", default=None, example=["-30 mm", "30 mm"])
-    center: Pair | None = key(
+    y: NumberPair | None = key(RANGE, "as `x`", default=None, example=["-30 mm", "30 mm"])
+    center: NumberPair | None = key(
         Point(axes="link"),
         "of a circle that the centre of mass does not leave, instead of `x` and `y`",
         default=None,
@@ -376,7 +376,7 @@ class GearedWeight(Frozen):
     file_order = ("driver", "ratio", "teeth", "module", "pitch_radius", "axis", "direction",
                   "gear_thickness", "gear_material", "gear_density", "clear_of", "weight",
                   "name")  # fmt: skip
-    conditions: ClassVar[Conditions] = {"allOf": [*WEIGHT, *GEARED]}
+    conditions: ClassVar[KeyConditions] = {"allOf": [*WEIGHT, *GEARED]}
 
     driver: str = key(
         TextKind(of="link"),
@@ -384,7 +384,7 @@ class GearedWeight(Frozen):
         example="rocker",
     )
     weight: Weight = key(KeyTable(Weight, flat=True))
-    ratio: Pair | None = key(
+    ratio: NumberPair | None = key(
         OneOr(
             Number(),
             2,
@@ -417,10 +417,10 @@ class GearedWeight(Frozen):
         example="50 mm",
         above=0,
     )
-    axis: Pair | None = key(
+    axis: NumberPair | None = key(
         Point(), "of the shaft in the frame, instead of `direction`", default=None
     )
-    direction: Pair | None = key(
+    direction: NumberPair | None = key(
         OneOr(Quantity("angle"), 2, repeat=True),
         "from the driver's pin to the shaft: an angle, or the least and the most; if left out as "
         "from the drive's pivot to that pin",
@@ -459,12 +459,12 @@ class BalanceShafts(Frozen):
     """
 
     called = to_say("{what} of balance shafts {number}")
-    conditions: ClassVar[Conditions] = {
+    conditions: ClassVar[KeyConditions] = {
         "allOf": [*WEIGHT, {"properties": {"shape": {"not": {"const": "ring"}}}}]
     }
 
     order: int = key(Whole(names=(1, 2)), "turns in one turn of the crank", example=2)
-    axes: tuple[Pair, Pair] = key(
+    axes: tuple[NumberPair, NumberPair] = key(
         Listing(Point(), (2,)),
         "of the shaft that is geared to the drive's link and turns against it, and of the other",
         example=[["0 mm", "-60 mm"], ["40 mm", "-60 mm"]],
