@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from equipoise.errors import UsageError
-from equipoise.results.charts import Chart
+from equipoise.results.charts import Chart, PictureFormat
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-PictureFormat = Literal["svg", "png", "pdf"]
 Picture = Chart
 """What can be drawn."""
 
