@@ -140,8 +140,8 @@ class DesignLimit(Frozen, RequiredFigure):
         asks: Asks = (),
         **requirement: Any,
     ) -> None:
-        given = requirement if at_most is None else {"at_most": at_most, **requirement}
-        asked = asks_of(given, asks)
+        changed = requirement if at_most is None else {"at_most": at_most, **requirement}
+        asked = asks_of(changed, asks)
         for name, value in (("output", output), ("station", station), ("asks", asked)):
             object.__setattr__(self, name, value)
         self.__post_init__()
