@@ -99,13 +99,13 @@ export class Palette {
   private readonly asked = new Map<string, HTMLElement>();
 
   constructor(private readonly page: Palettes) {
-    const buttons = this.tools.map((told) => {
-      const title = `${told.name} (${told.key.toUpperCase()}): ${told.first}`;
-      const attributes = { type: "button", title, "aria-label": told.name, "aria-pressed": "false" };
-      const name = h("span", { class: "name", "aria-hidden": "true" }, told.name);
-      const button = h("button", { ...attributes, "aria-keyshortcuts": told.key }, icon(told.picture), name);
-      button.addEventListener("click", () => page.chosen(told.tool));
-      this.buttons.set(told.tool, button);
+    const buttons = this.tools.map((item) => {
+      const title = `${item.name} (${item.key.toUpperCase()}): ${item.first}`;
+      const attributes = { type: "button", title, "aria-label": item.name, "aria-pressed": "false" };
+      const name = h("span", { class: "name", "aria-hidden": "true" }, item.name);
+      const button = h("button", { ...attributes, "aria-keyshortcuts": item.key }, icon(item.picture), name);
+      button.addEventListener("click", () => page.chosen(item.tool));
+      this.buttons.set(item.tool, button);
       return button;
     });
     const make = h("button", { type: "button", onclick: () => page.made() }, say("New"));
@@ -132,8 +132,8 @@ export class Palette {
   /** Which tool is used, and what to do next with it. */
   show(tool: string, pending: boolean): void {
     for (const [name, button] of this.buttons) set(button, { "aria-pressed": String(name === tool) });
-    const told = this.tools.find((one) => one.tool === tool);
-    write(this.next, tool === "select" || !told ? "" : pending ? told.then : told.first);
+    const shown = this.tools.find((item) => item.tool === tool);
+    write(this.next, tool === "select" || !shown ? "" : pending ? shown.then : shown.first);
     const word = partTool(tool)?.options?.word;
     for (const [asked, inputs] of this.asked) inputs.hidden = asked !== word;
   }

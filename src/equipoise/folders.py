@@ -53,9 +53,8 @@ def reason(error: Exception) -> Note | str:
         return error.note
     if isinstance(error, FileNotFoundError) and is_nowhere():
         return NOWHERE
-    if isinstance(error, OSError) and error.strerror:
-        return error.strerror.lower()
-    return str(error).lower()
+    message = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return message[:1].lower() + message[1:]  # names in it stay as they are
 
 
 class Folder:

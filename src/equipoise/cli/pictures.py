@@ -105,7 +105,7 @@ def plot(
         for picture in chosen:
             name = f"{picture.name}.{kind}"
             write_all(folder, {name: render(picture.chart, kind)})
-            written.append(f"{os.path.join(folder, name)}  {picture.chart.caption}")
+            written.append(f"{os.path.join(folder, name)}  {say(picture.chart.caption)}")
     swings = getattr(result, "swings", None)
     notes = [] if swings is None else [say("note: {note}", note=localized(swings))]
     notes += [

@@ -575,10 +575,10 @@ def _effort(scales: _Scales, output: AnalysisOutput) -> FigureAssessment | None:
     torque = output.analysis.summary[output.name]
     mean = abs(torque.mean)
     lifted = rows * scales.links_weight * scales.throw
-    is_trifle = lifted < TRIFLE * torque.peak_to_peak
-    if (is_trifle and scales.swings_drive("load", "resistance")) or scales.swings_drive(
-        "resistance"
-    ):
+    working = ["resistance"]
+    if lifted < TRIFLE * torque.peak_to_peak:
+        working.append("load")
+    if scales.swings_drive(*working):
         lifted = 0.0
     if mean >= max(lifted, LEAST_MEAN * torque.rms):
         uneven = speed_fluctuation(output.analysis)

@@ -32,7 +32,7 @@ from equipoise.codegen.figures import COMPUTED
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError, at_place, needed
 from equipoise.fence import OutsideError, open_folder
-from equipoise.folders import NOWHERE, Folder, LinkError, is_nowhere
+from equipoise.folders import Folder, LinkError, reason
 from equipoise.i18n import Note, to_say, worded
 from equipoise.results.result import Result
 from equipoise.signals import Array
@@ -445,10 +445,7 @@ LONGEST = 200
 
 def brief(error: Exception) -> Note | str:
     """Say briefly what went wrong."""
-    if isinstance(error, LinkError):
-        return error.note
-    if isinstance(error, FileNotFoundError) and is_nowhere():
-        return NOWHERE
-    message = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    line = message.splitlines()[0].rstrip(".") if message else type(error).__name__
-    return line[:1].lower() + line[1:LONGEST]
+    words = reason(error)
+    if isinstance(words, Note):
+        return words
+    return words.splitlines()[0].rstrip(".")[:LONGEST] if words else type(error).__name__

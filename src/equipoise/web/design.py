@@ -183,27 +183,27 @@ def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
 
 
 MOST_STEPS = 500
-D = TypeVar("D")
+DesignT = TypeVar("DesignT")
 
 
 @dataclass(frozen=True)
-class HistoryStep(Generic[D]):
+class HistoryStep(Generic[DesignT]):
     """What was edited to, and what was done to get there."""
 
-    design: D
+    design: DesignT
     label: str
 
 
 @dataclass(frozen=True)
-class History(Generic[D]):
+class History(Generic[DesignT]):
     """Steps for undo and redo, as they were made; `now` stands between `past` and `future`."""
 
-    now: HistoryStep[D]
-    past: tuple[HistoryStep[D], ...] = ()
-    future: tuple[HistoryStep[D], ...] = ()
+    now: HistoryStep[DesignT]
+    past: tuple[HistoryStep[DesignT], ...] = ()
+    future: tuple[HistoryStep[DesignT], ...] = ()
 
     @property
-    def first(self) -> D:
+    def first(self) -> DesignT:
         """The design that was opened, or the oldest that is kept."""
         return (*self.past, self.now)[0].design
 
@@ -223,17 +223,17 @@ class History(Generic[D]):
         steps = [len(self.past), len(self.future)]
         return {"undo": self.undo, "redo": self.redo, "steps": steps}
 
-    def then(self, design: D, label: str) -> History[D]:
+    def then(self, design: DesignT, label: str) -> History[DesignT]:
         """One step more; what was taken back is forgotten."""
         return History(HistoryStep(design, label), (*self.past[1 - MOST_STEPS :], self.now))
 
-    def undone(self) -> History[D]:
+    def undone(self) -> History[DesignT]:
         """One step back, or a `UsageError`."""
         if not self.past:
             raise UsageError(Note("there is nothing to undo"))
         return History(self.past[-1], self.past[:-1], (self.now, *self.future))
 
-    def redone(self) -> History[D]:
+    def redone(self) -> History[DesignT]:
         """One step forth again, or a `UsageError`."""
         if not self.future:
             raise UsageError(Note("there is nothing to redo"))

@@ -31,12 +31,10 @@ from equipoise.mechanism.assembly.steps import State, planar
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.couplings import DerivedLaw
 from equipoise.mechanism.parts.laws import Law
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import ROUNDING, Array, highest_at
-
-DisplacementLaw = Callable[[Any], tuple[Any, Any, Any]]
-"""Displacement and its two derivatives by the angle that the cam has turned."""
 
 GRID = 3600
 """Angles of the cam among which the sharpest place is looked for."""
@@ -117,11 +115,12 @@ class CamShape:
     """A cam under its follower, at angles (N,), rad, that it has turned against its carrier.
 
     radius : of the roller, m; 0 of an edge or a flat face.
+    law : displacement, with its two derivatives by that angle.
     """
 
     angle: Array
     path: FollowerPath
-    law: DisplacementLaw
+    law: DerivedLaw
     radius: float = 0.0
 
     @cached_property
