@@ -38,7 +38,15 @@ from equipoise.mechanism.parts.balance import (
     Weight,
     material_of,
 )
-from equipoise.quantities import PER_RPM, brief, change, display, format_quantity, percent
+from equipoise.quantities import (
+    PER_RPM,
+    Display,
+    brief,
+    change,
+    display,
+    format_quantity,
+    percent,
+)
 from equipoise.results.blocks import Block, Cell, Column, RelativeChange, Table, Text
 from equipoise.results.cam_blocks import preloads_to_hold
 from equipoise.results.outputs import (
@@ -101,16 +109,24 @@ def _grown(balanced: Balanced, worse: Worse) -> str:
     what = figure_named(f"{aim.output}.{aim.measure}", rows)
     if aim.speeds or aim.about or aim.orders:
         what = objective_named(aim, rows)
-    if worse.before > 0:
-        return larger(what, worse.growth)
     unit = shown_in(figure_unit(balanced, f"{aim.output}.{aim.measure}"), [worse.after])
-    size = unit.text(worse.after, digits=3)
-    return say("{what}, from 0 to {size} {unit}", what=what, size=size, unit=unit.name)
+    return larger(what, worse.before, worse.after, unit)
 
 
-def larger(what: str, growth: float) -> str:
-    """A figure that got worse, and by which share."""
-    return say("{what}, by {share} %", what=what, share=percent(growth, 1 if growth < FEW else 0))
+def larger(what: str, before: float, after: float, unit: Display) -> str:
+    """A figure that got worse, by its sizes: a share alone does not say whether it matters."""
+    size = unit.text(after, digits=3)
+    if before <= 0:
+        return say("{what}, from 0 to {size} {unit}", what=what, size=size, unit=unit.name)
+    growth = after / before - 1
+    return say(
+        "{what}, {before} → {after} {unit} (+{share} %)",
+        what=what,
+        before=unit.text(before, after, 3),
+        after=size,
+        unit=unit.name,
+        share=percent(growth, 1 if growth < FEW else 0),
+    )
 
 
 def figure_named(name: str, rows: int) -> str:

@@ -16,7 +16,15 @@ from equipoise.handheld.model import PLANES, number_of
 from equipoise.handheld.response import rms_over_time
 from equipoise.handheld.shaft import KEYS
 from equipoise.i18n import Note, localized, number_list, say, to_say
-from equipoise.quantities import PER_RPM, Dimension, brief, format_quantity, number
+from equipoise.quantities import (
+    PER_RPM,
+    Dimension,
+    Display,
+    brief,
+    display,
+    format_quantity,
+    number,
+)
 from equipoise.results.blocks import (
     Block,
     Cell,
@@ -68,6 +76,12 @@ def cell(value: float, dimension: str, **options: Any) -> Value:
     """A number of a dimension, in the unit that is usual of tools."""
     kind: Dimension = dimension  # type: ignore[assignment]
     return Value(value, dimension=kind, unit=UNITS.get(kind), **options)
+
+
+def unit_of_tool(dimension: str, *values: float) -> Display:
+    """The unit in which figures of tools of a dimension are shown."""
+    kind: Dimension = dimension  # type: ignore[assignment]
+    return display(kind, values, UNITS.get(kind))
 
 
 def column(label: str, dimension: Dimension, at: tuple[Dimension, str] = RPM) -> Column:

@@ -23,7 +23,7 @@ from equipoise.balancing.outcome import (
 from equipoise.errors import UsageError
 from equipoise.exposure.blocks import VERDICTS, clock, limit_broken
 from equipoise.exposure.daily import verdict_of
-from equipoise.handheld.blocks import UNITS, figure_named, varied_named
+from equipoise.handheld.blocks import figure_named, unit_of_tool, varied_named
 from equipoise.handheld.hand_exposure import WORKING, grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import Note, number_list, say, sentence_start, to_say
@@ -41,7 +41,6 @@ from equipoise.quantities import (
     angle,
     brief,
     change,
-    display,
     format_quantity,
     percent,
 )
@@ -572,8 +571,7 @@ def _near_resonances(findings: ToolFindings, modes: ToolModes) -> Iterator[str]:
 
 def _helps(design: ToolDesign, findings: ToolFindings) -> Iterator[str]:
     for variable in design.variables:
-        kind: Dimension = variable.dimension  # type: ignore[assignment]
-        unit = display(kind, [variable.before, variable.after], UNITS.get(kind))
+        unit = unit_of_tool(variable.dimension, variable.before, variable.after)
         before, after = unit.text(variable.before), unit.text(variable.after)
         if before != after:
             name = varied_named(variable.name)
@@ -600,7 +598,12 @@ def _helps(design: ToolDesign, findings: ToolFindings) -> Iterator[str]:
             verdict=say(VERDICTS[day.verdict]),
         )
     worse = [
-        larger(figure_named(figure), figure.after / figure.before - 1)
+        larger(
+            figure_named(figure),
+            figure.before,
+            figure.after,
+            unit_of_tool(figure.dimension, figure.before, figure.after),
+        )
         for figure in design.figures[1:]
         if figure.dimension != "mass" and figure.after > (1 + WORSE) * figure.before > 0
     ]

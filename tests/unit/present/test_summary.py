@@ -134,11 +134,11 @@ def test_what_gets_worse_is_told():
     """A weight on the driving shaft of a knife makes its bearing carry more; it is not offered."""
     heavy = eq.load("yamashita-rig-counterweight").with_balance(None)
     told = " ".join(benefit_sentences(advise(heavy)))
-    assert "In exchange these become larger, frame and drive: shaking force y, peak, by " in told
+    assert "In exchange these become larger, frame and drive: shaking force y, peak, " in told
     found = advise(eq.load("knife-drive").with_balance(None))
     tried = (one for one in found.tried if one.changes[0].link == "shaft")
     weight = max(tried, key=lambda one: one.gain)
-    assert "In exchange these become larger, joints: force in joint S, peak, by " in " ".join(
+    assert "In exchange these become larger, joints: force in joint S, peak, " in " ".join(
         deterioration_sentences(weight)
     )
     assert not found.helps
@@ -288,7 +288,7 @@ def test_a_tool_s_hand_that_gets_worse_is_told():
     worse = replace(kept[0], before=2.0, after=2.03)
     told = of_tool(found, replace(design, figures=(first, worse, *kept[1:])))
     assert told[-1].startswith("In exchange these become larger, hands and holders: ")
-    assert told[-1].endswith(", by 1.5 %.")
+    assert told[-1].endswith(" 2.00 → 2.03 m/s² (+1.5 %).")
 
 
 def of_tool(found, design):
