@@ -21,9 +21,8 @@ from equipoise.balancing import (
     problem,
 )
 from equipoise.cli import COMMANDS, app, reports
-from equipoise.design import lifts
+from equipoise.design import lifts, minimax
 from equipoise.figures import film
-from equipoise.handheld import design
 from equipoise.limits import THREAD, USUAL
 from equipoise.measured import fits
 from equipoise.planting import search
@@ -205,7 +204,7 @@ CLAIMS = {
         f"most {steady.ROUNDS} times",
         f"{coupled.KNOTS} crank angles a turn",
     ],
-    "tools.md": [f"{design.TRIED} designs of a Sobol sequence"],
+    "tools.md": [f"{minimax.TRIED} designs of a Sobol sequence"],
     "trust.md": [f"{SAMPLES_OF_TURN} crank angles a turn"],
     "vibration.md": [f"at most {steady.MOST_SWINGS} free swings"],
 }

@@ -16,6 +16,7 @@ import numpy as np
 
 from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
+from equipoise.design.minimax import ValuesAndSlopes
 from equipoise.signals import STEPS_BETWEEN_BENDS, Array, JumpSampling
 
 SPACING = pi / 720
@@ -214,7 +215,7 @@ class JumpingRows:
         row = np.concatenate([np.full(len(theta), -1), rows])
         return row, np.concatenate([theta, np.tile(sides, len(phases))])
 
-    def followed(self, phases: Array, row: Array, at: Array, sign: float) -> tuple[Array, Array]:
+    def followed(self, phases: Array, row: Array, at: Array, sign: float) -> ValuesAndSlopes:
         """Values (P,) at anchors, times a sign, or sizes of a vector; slopes (P, m) by phases."""
         theta = at - np.where(row >= 0, phases[row], 0.0)
         each = self.each(phases, theta)  # (m, P, C)
@@ -228,7 +229,7 @@ class JumpingRows:
         # a side of a jump goes back as its row goes ahead
         carried = np.flatnonzero(row >= 0)
         by_phase[carried, row[carried]] -= np.sum(by_phase[carried], axis=1)
-        return size if self.is_vector else sign * total[:, 0], by_phase
+        return ValuesAndSlopes(size if self.is_vector else sign * total[:, 0], by_phase)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ phases, since the signal is level there.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
@@ -27,12 +27,11 @@ from equipoise.balancing.cylinder_phasing import (
 )
 from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
+from equipoise.design.minimax import ValuesAndSlopes, descended
 from equipoise.signals import Array, Periodic
 
 AfterStep = Callable[[], None]
 """Is called after each step of what may take minutes."""
-ValuesAndSlopes = tuple[Array, Array]
-"""Values (P,) and their slopes (P, m) by the phases."""
 
 SMOOTHING = (1e-1, 1e-2, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
 """e over the value that counts as one."""
@@ -225,7 +224,7 @@ def _step(cost: Cost, phases: Array, region: float) -> tuple[Array, float]:
         np.concatenate([np.zeros(free), weights * unit]),
         rows,
         -np.concatenate([values for values, _ in items]),
-        bounds=[(-1.0, 1.0)] * free + _peak_bounds(cost, unit),
+        bounds=[(-1.0, 1.0)] * free + [(float(low), None) for low in _least(cost) / unit],
     )
     if result.x is None:
         return np.zeros(free), 0.0
@@ -244,43 +243,25 @@ def _curved(cost: Cost, phases: Array, after: AfterStep) -> Array:
 
     Where fewer tops tie than there are phases, linear programs come near it only.
     """
-    from scipy.optimize import minimize
-
     tops = [ActivePeaks.of(term, phases) for term in cost.measured]
     now = np.array([np.max(each.pieces(phases)[0]) for each in tops])
-    unit, free = np.where(now > 0, now, 1.0), len(phases) - 1
-
     at_phases = partial(_pieces_at, tops, {})  # values and slopes are asked for one by one
 
-    def pieces(x: Array) -> list[ValuesAndSlopes]:
-        return at_phases(np.concatenate([phases[:1], phases[1:] + x[:free]]))
+    def groups(moves: Array) -> list[ValuesAndSlopes]:
+        pieces = at_phases(np.concatenate([phases[:1], phases[1:] + moves]))
+        return [ValuesAndSlopes(values, slopes[:, 1:]) for values, slopes in pieces]
 
-    def room(x: Array) -> Array:
-        result = zip(pieces(x), x[free:] * unit, unit, strict=True)
-        return np.concatenate([(most - values) / scale for (values, _), most, scale in result])
-
-    def slopes(x: Array) -> Array:
-        result = pieces(x)
-        scale = np.repeat(unit, [len(values) for values, _ in result])
-        return np.asarray(-_below(result, unit) / scale[:, None])
-
-    def total(x: Array) -> float:
-        return float(cost.of(list(x[free:] * unit)))
-
-    def total_slope(x: Array) -> Array:
-        return np.concatenate([np.zeros(free), _weights(cost, x[free:] * unit) * unit])
-
-    result = minimize(
-        total,
-        np.concatenate([np.zeros(free), np.maximum(now, _least(cost)) / unit]),
-        jac=total_slope,
-        method="SLSQP",
-        bounds=[(-LEAP, LEAP)] * free + _peak_bounds(cost, unit),
-        constraints={"type": "ineq", "fun": room, "jac": slopes},
-        options={"ftol": UNCHANGED, "maxiter": CURVED_ROUNDS},
-        callback=lambda _: after(),
+    moves = descended(
+        groups,
+        np.zeros(len(phases) - 1),
+        units=np.where(now > 0, now, 1.0),
+        box=(-LEAP, LEAP),
+        most=(CURVED_ROUNDS, UNCHANGED),
+        total=lambda largest: (float(cost.of(list(largest))), _weights(cost, largest)),
+        least=_least(cost),
+        after=after,
     )
-    return np.concatenate([phases[:1], phases[1:] + result.x[:free]])
+    return np.concatenate([phases[:1], phases[1:] + moves])
 
 
 def _pieces_at(
@@ -306,11 +287,6 @@ def _weights(cost: Cost, now: Array) -> Array:
 def _least(cost: Cost) -> Array:
     """Values of terms and limits below which it is all the same."""
     return np.array([0.0] * len(cost.terms) + [limit.scale for limit in cost.limits])
-
-
-def _peak_bounds(cost: Cost, unit: Array) -> list[tuple[float, None]]:
-    """Ends of the numbers that are the largest values, over their units."""
-    return [(float(least), None) for least in _least(cost) / unit]
 
 
 @dataclass(frozen=True, eq=False)
@@ -343,7 +319,7 @@ class ActivePeaks:
             return self._of_ends(high, low, jumping.is_vector)
         turned = self.term.signals.turned(phases)
         values = [self._of_speed(*each) for each in zip(turned, self.places, strict=True)]
-        return np.concatenate([v for v, _ in values]), np.vstack([s for _, s in values])
+        return _stacked(values)
 
     def _of_speed(self, turned: Array, places: tuple[Array, Array]) -> ValuesAndSlopes:
         """Active peaks at one speed, from the amplitudes (m, C, K + 1) of all rows."""
@@ -366,18 +342,23 @@ class ActivePeaks:
         """Of tops, and of bottoms with their sign turned; a vector's size has tops alone."""
         (high, rising), (low, falling) = of_tops, of_bottoms
         if self.term.measure == "peak" and is_vector:
-            return high, rising
+            return of_tops
         if self.term.measure == "peak":
-            return np.concatenate([high, low]), np.vstack([rising, falling])
+            return _stacked((of_tops, of_bottoms))
         # The largest of all sums is that of the largest; low values come with their sign turned.
         both = (high[:, None] + low).ravel()
-        return both, (rising[:, None] + falling).reshape(len(both), -1)
+        return ValuesAndSlopes(both, (rising[:, None] + falling).reshape(len(both), -1))
+
+
+def _stacked(parts: Iterable[ValuesAndSlopes]) -> ValuesAndSlopes:
+    values, slopes = zip(*parts, strict=True)
+    return ValuesAndSlopes(np.concatenate(values), np.vstack(slopes))
 
 
 def _root(total: Array, slopes: Array, shares: Array) -> ValuesAndSlopes:
     root = np.sqrt(np.sum(np.abs(total) ** 2 * shares))
     slope = np.sum((total.conj() * slopes * shares).real, axis=(1, 2)) / max(root, TINY)
-    return np.array([root]), slope[None]
+    return ValuesAndSlopes(np.array([root]), slope[None])
 
 
 def _area(total: Periodic, slopes: Array) -> ValuesAndSlopes:
@@ -385,7 +366,7 @@ def _area(total: Periodic, slopes: Array) -> ValuesAndSlopes:
     values = total.samples(count)[0]
     change = np.sign(values) * Periodic(slopes[:, 0], total.turns).samples(count)
     area = 2 * np.pi * np.mean(np.abs(values), keepdims=True)
-    return area, 2 * np.pi * np.mean(change, axis=1)[None]
+    return ValuesAndSlopes(area, 2 * np.pi * np.mean(change, axis=1)[None])
 
 
 def _tops_with_slopes(total: Periodic, slopes: Array, start: Array, sign: int) -> ValuesAndSlopes:
@@ -398,9 +379,10 @@ def _tops_with_slopes(total: Periodic, slopes: Array, start: Array, sign: int) -
     values = total.values(theta)
     change = Periodic(slopes, total.turns).values(theta)
     if len(values) == 1:
-        return sign * values[0], sign * change[:, 0].T
+        return ValuesAndSlopes(sign * values[0], sign * change[:, 0].T)
     sizes = np.linalg.norm(values, axis=0)
-    return sign * sizes, sign * np.sum(change * values, axis=1).T / np.maximum(sizes, TINY)[:, None]
+    slopes = sign * np.sum(change * values, axis=1).T / np.maximum(sizes, TINY)[:, None]
+    return ValuesAndSlopes(sign * sizes, slopes)
 
 
 def _levelled(total: Periodic, sign: int) -> Periodic:

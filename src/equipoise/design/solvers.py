@@ -70,6 +70,10 @@ class DesignProblem(ABC):
     def evaluate(self, places: Array) -> tuple[Array, Array]:
         """Costs (n, M) and violations (n, L) of designs at places (n, d)."""
 
+    def jacobian(self, places: Array) -> tuple[Array, Array] | None:
+        """Slopes of costs (n, M, d) and violations (n, L, d) at places (n, d); None if unknown."""
+        return None
+
     @property
     def first(self) -> Array:
         """Places (P, d) to begin with, evenly spread."""

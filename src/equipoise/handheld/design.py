@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.design.solvers import DesignProblem, DesignSolution, solve
+from equipoise.design.minimax import MinimaxProblem, SequentialPrograms, ValuesAndSlopes
+from equipoise.design.solvers import DesignSolution, solve
 from equipoise.design.variables import Range
-from equipoise.errors import ModelError, ResponseError
+from equipoise.errors import ModelError
 from equipoise.exposure.daily import Exposure
 from equipoise.handheld.chain import Dual
 from equipoise.handheld.design_plan import DesignLimit, DesignPlan
@@ -29,26 +30,13 @@ from equipoise.handheld.shaft import KEYS
 from equipoise.handheld.sweep import speeds_between
 from equipoise.i18n import Note, to_say
 from equipoise.results.result import ProgressCallback, Result
-from equipoise.sequences import sobol
 from equipoise.signals import Array
 
-TRIED, FOLLOWED = 256, 8
-"""Designs spread over the room, and how many of the best are followed downhill."""
-STEPS, TOLERANCE = 200, 1e-9
-"""Of the sequential programs: steps at most, and the change of the measure, over its start, at the
-end."""
 LEAST = 1e-3
 """Share of the largest force below which an order does not count in the search."""
-WITHIN = 1e-6
-"""Share of a limit by which a design may pass it: what the programs end with."""
-NONE_WITHIN = Note(
-    "no design within the limits was found; raise a limit, or widen the range of a variable"
-)
-SAME = 1e-4
-"""Share of the best within which a search has arrived at it too."""
 
 
-class Search(DesignProblem):
+class Search(MinimaxProblem):
     """The measure of a design's numbers, each from 0 to 1 of its range, and the limits.
 
     The measure is a square, (m/s2)^2: mean or largest a_hv^2 over the band, of the worst hand.
@@ -62,7 +50,7 @@ class Search(DesignProblem):
         report: ProgressCallback = lambda done, total: None,
         starts: Array | None = None,
     ) -> None:
-        self.solvers = (QuadraticPrograms(report, starts),)
+        self.solvers = (SequentialPrograms(report, starts),)
         self.tool, self.design, self.band = tool, design, SpeedBand(tool, speed, LEAST)
         self.variables = [entry.variable for entry in design.variables]
         self.numbers: list[ToolNumber] = [(entry.station, entry.key) for entry in design.variables]
@@ -73,21 +61,24 @@ class Search(DesignProblem):
             limit.station for limit in design.limits if limit.output == "force" and limit.station
         )
         self.force_stations = tuple(dict.fromkeys(forces))
-        self.start = values_of(tool, self.numbers)
+        self.present = values_of(tool, self.numbers)
+        self.start = (self.present - self.low) / self.wide
         self._last: tuple[bytes, Any] = (b"", None)
 
-    def at(self, place: Array, slopes: bool = True) -> tuple[Dual, Dual]:
-        """Measures (M,), of which the largest counts, and limits (C,), each at most 1."""
+    def functions(
+        self, place: Array, slopes: bool = True
+    ) -> tuple[ValuesAndSlopes, ValuesAndSlopes]:
+        """Squares over the band (P,), of which the largest counts, and limits (C,), at most 1."""
         key = np.ascontiguousarray(place).tobytes()
         if self._last[0] != key:
             pair = self._at(self.values_of(place[None])[0], slopes)
             if not slopes:
                 return pair
             self._last = (key, pair)
-        pair_at: tuple[Dual, Dual] = self._last[1]
+        pair_at: tuple[ValuesAndSlopes, ValuesAndSlopes] = self._last[1]
         return pair_at
 
-    def _at(self, values: Array, slopes: bool) -> tuple[Dual, Dual]:
+    def _at(self, values: Array, slopes: bool) -> tuple[ValuesAndSlopes, ValuesAndSlopes]:
         felt = self.band.felt(self.numbers, values, self.force_stations, slopes)
         squares = [felt.hands[name] for name in self.hands]
         if self.design.measure == "rms":
@@ -99,119 +90,25 @@ class Search(DesignProblem):
         """What is limited, over its limit."""
         if limit.output == "added_mass":
             mine = np.array([key in ("mass", "absorber.mass") for _, key in self.numbers])
-            added = float(np.sum((values - self.start)[mine]))
+            added = float(np.sum((values - self.present)[mine]))
             slopes = mine.astype(float)[: len(felt.hands[self.hands[0]].slopes), None]
             return Dual(np.array([added]), slopes) / max(limit.most, 1e-12)
         source = felt.hands if limit.output == "acceleration" else felt.forces
         return source[str(limit.station)] / limit.most**2
 
-    def _joined(self, parts: list[Dual]) -> Dual:
+    def _joined(self, parts: list[Dual]) -> ValuesAndSlopes:
         """All values in a row, with slopes by place."""
         if not parts:
-            return Dual(np.empty(0), np.empty((len(self.wide), 0)))
+            return ValuesAndSlopes(np.empty(0), np.empty((0, len(self.wide))))
         slopes = np.concatenate([part.slopes for part in parts], axis=1)
         wide = self.wide[: len(slopes), None]
-        return Dual(np.concatenate([part.value for part in parts]), slopes * wide)
+        values = np.concatenate([part.value for part in parts])
+        return ValuesAndSlopes(values, (slopes * wide).T)
 
     @property
     def spreads(self) -> list[Range]:
         spreads = (variable.spread for variable in self.variables)
         return [spread for spread in spreads if isinstance(spread, Range)]
-
-    def evaluate(self, places: Array) -> tuple[Array, Array]:
-        """Measures (P, 1), and by how much the limits are passed, each over its own (P, 1)."""
-        values = [self.at(place, slopes=False) for place in places]
-        measures = [np.max(measure.value) for measure, _ in values]
-        beyond = [np.max(limits.value, initial=0.0) - 1 - WITHIN for _, limits in values]
-        return np.array(measures)[:, None], np.array(beyond)[:, None]
-
-    def measure(self, place: Array) -> float:
-        """The measure, (m/s2)^2."""
-        return float(np.max(self.at(place, slopes=False)[0].value))
-
-
-@dataclass(frozen=True, eq=False)
-class QuadraticPrograms:
-    """Designs spread over the room are tried, and the best of them followed downhill.
-
-    progress : is called with how many are followed, and how many there are.
-    starts : places (K, d) that are followed instead.
-    """
-
-    progress: ProgressCallback
-    starts: Array | None = None
-    name: ClassVar[str] = "sequential quadratic programs"
-
-    def suits(self, problem: Search) -> bool:
-        return True
-
-    def solve(self, problem: Search) -> DesignSolution:
-        """The best place; details : how many searches arrived there, and how many there were.
-
-        Raises
-        ------
-        ResponseError : nothing within the limits was found.
-        """
-        places = _promising(problem) if self.starts is None else self.starts
-        result = []
-        for done, place in enumerate(places):
-            self.progress(done, len(places))
-            result.append(_downhill(problem, place))
-        ends = np.array(result)
-        values, beyond = (item[:, 0] for item in problem.evaluate(ends))
-        if not np.any(beyond <= 0):
-            raise ResponseError(NONE_WITHIN)
-        values = np.where(beyond <= 0, values, np.inf)
-        best = int(np.argmin(values))
-        arrived = int(np.sum(values <= values[best] * (1 + SAME)))
-        return DesignSolution(ends[best][None], details=(arrived, len(places)))
-
-
-def _promising(problem: Search) -> Array:
-    """The best of designs spread over the room; the tool's own is among them."""
-    spread = sobol(len(problem.wide), 1).random(TRIED)
-    own = np.clip((problem.start - problem.low) / problem.wide, 0, 1)
-    places = np.vstack([own, spread])
-    worth = [_worth(problem, place) for place in places]
-    order = np.argsort(worth, kind="stable")[:FOLLOWED]
-    return places[order if 0 in order else np.append(order[:-1], 0)]
-
-
-def _worth(problem: Search, place: Array) -> float:
-    measures, limits = problem.at(place, slopes=False)
-    beyond = float(np.sum(np.maximum(limits.value - 1, 0)))
-    return float(np.nan_to_num(np.max(measures.value), nan=np.inf)) * (1 + 10 * beyond)
-
-
-def _downhill(problem: Search, place: Array) -> Array:
-    """The least bound on all measures, by sequential quadratic programs."""
-    from scipy.optimize import Bounds, minimize
-
-    unit = problem.measure(place)
-
-    def room(x: Array) -> Array:
-        measures, limits = problem.at(x[:-1])
-        return np.concatenate([x[-1] - measures.value / unit, 1 - limits.value])
-
-    def slopes(x: Array) -> Array:
-        measures, limits = problem.at(x[:-1])
-        values = np.ones((measures.value.size, 1))
-        upper = np.hstack([-measures.slopes.T / unit, values])
-        lower = np.hstack([-limits.slopes.T, np.zeros((limits.value.size, 1))])
-        return np.vstack([upper, lower])
-
-    ahead = np.eye(len(place) + 1)[-1]
-    done = minimize(
-        lambda x: x[-1],
-        np.append(place, 1.0),
-        jac=lambda x: ahead,
-        bounds=Bounds(0 * ahead, np.append(np.ones(len(place)), np.inf)),
-        constraints={"type": "ineq", "fun": room, "jac": slopes},
-        method="SLSQP",
-        options={"maxiter": STEPS, "ftol": TOLERANCE},
-    )
-    end = np.clip(done.x[:-1], 0, 1)
-    return np.asarray(end if _worth(problem, end) <= _worth(problem, place) else place)
 
 
 SPEEDS = 81
@@ -328,7 +225,7 @@ def design_tool(tool: Tool, progress: ProgressCallback | None = None) -> ToolDes
         best = solution.places[0]
         rounds.append(solution)
         fine = Search(tool, design, np.linspace(*design.speeds, FINER * (count - 1) + 1))
-        coarse, exact = search.measure(best), fine.measure(best)
+        coarse, exact = search.cost(best), fine.cost(best)
         if abs(exact - coarse) <= STILL * exact:
             break
         count, starts = 2 * count - 1, best[None]
@@ -347,7 +244,7 @@ def _tool_design(search: Search, best: Array, solution: DesignSolution) -> ToolD
     after = values_of(better, search.numbers)
     rows = tuple(
         Before(entry.name, KEYS[entry.key], float(start), float(end))
-        for entry, start, end in zip(design.variables, search.start, after, strict=True)
+        for entry, start, end in zip(design.variables, search.present, after, strict=True)
     )
     speed = search.band.speed
     edges = ("lowest" if at < EDGE else "highest" if at > 1 - EDGE else "" for at in best.tolist())
