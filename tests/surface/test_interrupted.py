@@ -17,7 +17,7 @@ from support.chosen import EXHAUSTIVE, few
 from surface.running import SERVER, heed_interrupts, replaced
 from surface.studies import LENGTHS, TOLERANCES
 
-MOMENTS = int(os.environ.get("EQUIPOISE_INTERRUPTS", "6"))
+MOMENTS = int(os.environ.get("EQUIPOISE_INTERRUPTS", "3"))
 """At which each command is interrupted."""
 STUDY = Path("study.toml")
 LENGTHS_OF_FEW = replaced(LENGTHS, ("designs = 200", "designs = 40"))
