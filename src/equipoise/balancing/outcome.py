@@ -90,7 +90,7 @@ def deterioration_sentences(balanced: Balanced) -> Iterator[str]:
         )
 
 
-MOST_WORST = 3
+MOST_WORST = 2
 """Figures that are named in short."""
 
 
