@@ -202,7 +202,7 @@ def _rewrite_share(config: pytest.Config) -> None:
     number, count = int(worker["workerid"].removeprefix("gw")), worker["workercount"]
     asked = [config.invocation_params.dir / argument for argument in config.args]
     files = sorted(Path(__file__).parent.rglob("test_*.py"))
-    files = [file for file in files if any(one == file or one in file.parents for one in asked)]
+    files = [file for file in files if any(item == file or item in file.parents for item in asked)]
     for file in files[number::count]:
         cached = rewrite.get_cache_dir(file) / f"{file.stem}{rewrite.PYC_TAIL}"
         if rewrite._read_pyc(file, cached) is None and rewrite.try_makedirs(cached.parent):
@@ -283,7 +283,7 @@ def _thinned(mark: pytest.Mark, seeds: int | None, every: bool, some: str | None
         given, marks = (value.values, value.marks) if isinstance(value, PARAM) else (value, ())
         if not isinstance(value, PARAM) and len(names) == 1:
             given = (value,)
-        if not every and any(one.name == "exhaustive" for one in marks):
+        if not every and any(item.name == "exhaustive" for item in marks):
             continue
         if seeds is not None:
             place, seed = _seed_of(dict(zip(names, given, strict=True)))
@@ -297,7 +297,7 @@ def _thinned(mark: pytest.Mark, seeds: int | None, every: bool, some: str | None
     how = dict(mark.kwargs)
     ids = how.get("ids")
     if ids is not None and not callable(ids):
-        how["ids"] = [one for k, one in enumerate(ids) if k in kept]
+        how["ids"] = [item for k, item in enumerate(ids) if k in kept]
     return pytest.mark.parametrize(mark.args[0], [values[k] for k in kept], *rest, **how).mark
 
 

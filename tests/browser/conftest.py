@@ -37,8 +37,8 @@ def server() -> Iterator[tuple[str, int]]:
     """A server with a machine: its address, and the number of its process."""
     if not runpy.run_path(str(ROOT / "page" / "bundle.py"))["is_fresh"]():
         unavailable("there is no bundle of the live page, or an old one: make page")
-    with served("yamashita-1") as found:
-        yield found
+    with served("yamashita-1") as result:
+        yield result
 
 
 @pytest.fixture(scope="session")

@@ -68,7 +68,7 @@ class Live:
     def field(self, name: str) -> Locator:
         return self.page.get_by_role("textbox", name=name, exact=True)
 
-    def told(self, text: str) -> Locator:
+    def status(self, text: str) -> Locator:
         """Return what is said of the last question, if the text is in it."""
         return self.page.get_by_role("status").filter(has_text=text)
 
@@ -97,10 +97,10 @@ class Live:
             self.settled()
         self.page.evaluate(AXE.read_text(encoding="utf-8"))
         options = "{resultTypes: ['violations'], preload: false}"
-        found = self.page.evaluate(f"axe.run(document, {options})")
+        result = self.page.evaluate(f"axe.run(document, {options})")
         return [
-            f"{one['id']}: {one['help']}: {[node['html'][:200] for node in one['nodes'][:3]]}"
-            for one in found["violations"]
+            f"{item['id']}: {item['help']}: {[node['html'][:200] for node in item['nodes'][:3]]}"
+            for item in result["violations"]
         ]
 
     def download(self, name: str) -> tuple[str, str]:

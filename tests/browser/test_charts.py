@@ -71,7 +71,7 @@ def test_every_axis_has_three_numbers(live: Live) -> None:
             live.page.wait_for_timeout(100)
             axes = live.page.evaluate(AXES)
             assert len(axes) > 8
-            assert [one for one in axes if one[1] < 3 or not one[2]] == [], width
+            assert [axis for axis in axes if axis[1] < 3 or not axis[2]] == [], width
             assert live.page.evaluate(CLIPPED) == [], width
 
 
@@ -109,17 +109,17 @@ def test_outputs_are_listed_within_the_window(live: Live) -> None:
     """Those that are meant first; and Tab goes on to what comes after the box."""
     page = live.page
     search = page.get_by_role("combobox", name="Any output over crank angle")
-    found = page.get_by_role("listbox", name="Any output over crank angle")
+    result = page.get_by_role("listbox", name="Any output over crank angle")
     for block in ("end", "start"):
         search.evaluate("(one, block) => { one.blur(); one.scrollIntoView({ block }); }", block)
         search.focus()
-        expect(found).to_be_visible()
-        assert found.evaluate(INSIDE), block
+        expect(result).to_be_visible()
+        assert result.evaluate(INSIDE), block
     search.fill("velocity P")
     search.press("Enter")
     expect(page.get_by_role("figure", name=re.compile("^Velocity of P:"))).to_be_visible()
     search.fill("force")
-    expect(found).to_be_visible()  # what scrolls would be a stop of its own
+    expect(result).to_be_visible()  # what scrolls would be a stop of its own
     search.press("Tab")
     assert page.evaluate("document.activeElement.getAttribute('role')") != "listbox"
     assert page.evaluate("document.activeElement.matches('button')")
@@ -127,7 +127,7 @@ def test_outputs_are_listed_within_the_window(live: Live) -> None:
 
 def test_every_chart_asks_what_it_shows_by_its_own_name(live: Live) -> None:
     asks = live.page.locator(".charts figure:visible .why")
-    names = [one.get_attribute("aria-label") for one in asks.all()]
+    names = [item.get_attribute("aria-label") for item in asks.all()]
     assert len(names) > 6 and len(set(names)) == len(names)
     live.button("Shaking moment: what does it show?").click()
     expect(live.page.locator(".explained:visible")).to_have_count(1)
@@ -216,7 +216,7 @@ def test_numbers_without_end_stay_in_their_places(live: Live) -> None:
     paths = live.page.locator("svg path").evaluate_all(
         "all => all.map(one => one.getAttribute('d'))"
     )
-    assert not [one for one in paths if one and ("Infinity" in one or "NaN" in one)]
+    assert not [path for path in paths if path and ("Infinity" in path or "NaN" in path)]
     assert live.page.evaluate(CLIPPED) == []
     texts = live.page.locator(
         ".charts .numbers span, .charts .reading, .plane text"
@@ -226,7 +226,7 @@ def test_numbers_without_end_stay_in_their_places(live: Live) -> None:
     paths = live.page.locator("svg path").evaluate_all(
         "all => all.map(one => one.getAttribute('d'))"
     )
-    assert not [one for one in paths if one and ("Infinity" in one or "NaN" in one)]
+    assert not [path for path in paths if path and ("Infinity" in path or "NaN" in path)]
 
 
 @pytest.mark.exhaustive
@@ -242,8 +242,8 @@ def test_any_output_is_drawn_over_the_crank_angle(live: Live) -> None:
     search.press("Enter")
     chart = live.page.get_by_role("figure", name="Transmission angle at C")
     angle = np.degrees(eq.analyze(eq.load("yamashita-1")).motion.transmission["C"])
-    told = f"from {np.min(angle):.3g} to {np.max(angle):.3g} °"
-    expect(chart).to_have_attribute("aria-label", f"Transmission angle at C: {told}")
+    text = f"from {np.min(angle):.3g} to {np.max(angle):.3g} °"
+    expect(chart).to_have_attribute("aria-label", f"Transmission angle at C: {text}")
     search.fill("angle of crank")
     search.press("Enter")
     turning = live.page.get_by_role("figure", name=re.compile("^Angle of crank: from 0 to 360 °"))

@@ -80,7 +80,7 @@ def test_what_is_beside_a_drawing_has_it_laid_out_once(live: Live) -> None:
 
 
 @pytest.mark.exhaustive
-def test_charts_tell_their_values_while_a_joint_is_held(live: Live) -> None:
+def test_charts_report_their_values_while_a_joint_is_held(live: Live) -> None:
     joint, readings = live.joint("B"), live.page.locator(".square .legend").first
     x, y = live.spot(joint)
     before = readings.inner_text()
@@ -223,7 +223,7 @@ ANSWERED = """() => {
 """What was tried last has been painted, as it stands or as it cannot."""
 
 
-def test_what_cannot_turn_is_told_and_the_last_good_state_stays(live: Live) -> None:
+def test_what_cannot_turn_is_reported_and_the_last_good_state_stays(live: Live) -> None:
     joint, still = live.joint("B"), others(live)
     x, y = live.spot(joint)
     live.page.mouse.move(x, y)
@@ -231,7 +231,7 @@ def test_what_cannot_turn_is_told_and_the_last_good_state_stays(live: Live) -> N
     live.page.mouse.move(x, y - 30, steps=5)
     expect(joint).not_to_have_attribute("aria-valuetext", "x 33.50 mm, y 0.00 mm")
     live.page.mouse.move(x, y - 150, steps=5)
-    expect(live.told("cannot")).to_be_visible()
+    expect(live.status("cannot")).to_be_visible()
     live.page.wait_for_function(ANSWERED)
     expect(live.page.locator(".tried")).to_have_count(1)
     live.page.mouse.up()

@@ -50,19 +50,19 @@ def test_a_file_is_dropped_and_one_with_its_table(live: Live) -> None:
     assert live.machine() == eq.load("watt-six-bar")
     model, table = "four-stroke-engine.toml", "four-stroke-gas.csv"
     live.drop(model, example_text("four-stroke-engine"))
-    expect(live.told(f"got '{table}', which is not known here")).to_be_visible()
+    expect(live.status(f"got '{table}', which is not known here")).to_be_visible()
     text = (files(eq) / "examples" / table).read_text("utf-8")
     live.drop(model, example_text("four-stroke-engine"), beside=(table, text))
     expect(live.page.get_by_role("combobox", name="Example")).to_have_value(model)
     live.settled()
-    assert live.told("not known here").count() == 0
+    assert live.status("not known here").count() == 0
 
 
 @pytest.mark.exhaustive
 def test_what_is_no_machine_is_refused_with_a_sentence(live: Live) -> None:
-    for name, text, told in BAD:
+    for name, text, reported in BAD:
         live.drop(name, text, 100_000 if name == "huge.toml" else 1)
-        expect(live.told(told)).to_be_visible()
+        expect(live.status(reported)).to_be_visible()
     assert live.machine() == eq.load("yamashita-1")
 
 
@@ -124,4 +124,4 @@ def test_drawing_and_charts_are_recorded_as_a_video(live: Live, what: str, tmp_p
         page.get_by_label("Download", exact=True).click()
         page.get_by_role("button", name="Drawing and charts as video").click()
         page.get_by_role("button", name="Back to the cycle").click()
-        expect(live.told("The recording was ended")).to_be_visible()
+        expect(live.status("The recording was ended")).to_be_visible()

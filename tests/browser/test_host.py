@@ -89,11 +89,11 @@ def test_what_the_first_machine_needs_is_compiled_already(hosted: Site) -> None:
         ("wheels/equipoise-*.whl", "equipoise/results/analysis", "equipoise/cli/site"),
         ("wheels/equipoise-*.whl", "equipoise/balancing/optimisation", "equipoise/cli/balance"),
     ):
-        found = names(path)
-        assert {f"{needed}.pyc", f"{other}.py"} <= found
-        assert not {f"{needed}.py", f"{other}.pyc"} & found
-    assert "numpy/ma/core.pyc" in (found := names("wheels/numpy-*.whl"))
-    assert not [name for name in found if name.endswith(".py")]
+        result = names(path)
+        assert {f"{needed}.pyc", f"{other}.py"} <= result
+        assert not {f"{needed}.py", f"{other}.pyc"} & result
+    assert "numpy/ma/core.pyc" in (result := names("wheels/numpy-*.whl"))
+    assert not [name for name in result if name.endswith(".py")]
 
 
 @pytest.mark.exhaustive
@@ -103,7 +103,7 @@ def test_every_machine_opens(context: BrowserContext, host: str, name: str) -> N
     page = context.new_page()
     live = opened(page, host, name)
     expect(page.locator("[data-kind=point][aria-valuetext*=mm]").first).to_be_attached()
-    expect(live.told("went wrong")).to_have_count(0)
+    expect(live.status("went wrong")).to_have_count(0)
     page.close()
 
 
@@ -186,7 +186,7 @@ def test_a_balance_is_cancelled_and_begun_again(browser: Browser, hosted: Site) 
         joint.press("ArrowRight")
         expect(joint).not_to_have_attribute("aria-valuetext", before)
         page.get_by_role("button", name="Cancel", exact=True).click()
-        expect(live.told("cancelled; nothing was changed")).to_be_visible()
+        expect(live.status("cancelled; nothing was changed")).to_be_visible()
         expect(loading).to_be_hidden()
         keep = page.get_by_role("button", name="Keep", exact=True)
         expect(keep).to_be_hidden()
@@ -265,7 +265,7 @@ def test_a_link_opens_on_servers_and_hosts_alike(
     for there in (host, server[0]):  # from a server to a host, and on to a server
         live.page.get_by_text("Download", exact=True).click()
         live.button("Copy link").click()
-        expect(live.told("The link is copied")).to_be_visible()
+        expect(live.status("The link is copied")).to_be_visible()
         _, _, model = live.page.evaluate("navigator.clipboard.readText()").partition("#")
         other = Live.open(context.new_page(), f"{there}#{model}")
         expect(other.field("crank mass")).to_have_value("311 g")

@@ -144,7 +144,7 @@ def test_a_link_that_holds_no_model_is_refused_in_a_sentence(
     live = Live.open(new_page(), address)
     before = most_memory()
     live.page.evaluate("hash => { location.hash = hash }", WRONG[kind]())
-    expect(live.told(WHOLE)).to_be_visible()
+    expect(live.status(WHOLE)).to_be_visible()
     live.joint("B").press("ArrowRight")  # the machine that was there still is
     live.settled()
     assert live.page.evaluate(RUN) == []
@@ -164,8 +164,8 @@ def test_tables_of_other_kinds_are_refused_in_a_sentence(
     link = link_of(address, model, tables=packed(json.dumps(tables).encode()))
     live = Live.open(new_page(), address)
     live.page.goto(link)
-    told = live.told("load.csv").or_(live.told("texts of files")).or_(live.told(WHOLE))
-    expect(told.first).to_be_visible()
+    reported = live.status("load.csv").or_(live.status("texts of files")).or_(live.status(WHOLE))
+    expect(reported.first).to_be_visible()
     assert live.page.evaluate(RUN) == []
 
 
@@ -178,7 +178,7 @@ def test_an_example_of_a_link_is_a_name_and_nothing_else(
         live.page.evaluate(
             "name => { location.hash = new URLSearchParams({ example: name }) }", name
         )
-        expect(live.told(name[:20])).to_be_visible()
+        expect(live.status(name[:20])).to_be_visible()
         assert live.page.evaluate(RUN) == []
     live.joint("B").press("ArrowRight")
     live.settled()
@@ -194,8 +194,8 @@ def test_machines_from_nothing_open_by_a_link_or_are_refused(
     page = new_page()
     page.goto(link_of(address, tomli_w.dumps(document), **more))
     title = page.get_by_role("heading", name=document["title"], exact=True)
-    told = page.get_by_role("status").filter(has_text="mine.toml")
-    expect(title.or_(told).first).to_be_visible()
+    texts = page.get_by_role("status").filter(has_text="mine.toml")
+    expect(title.or_(texts).first).to_be_visible()
     assert page.evaluate(RUN) == []
 
 

@@ -122,7 +122,7 @@ def test_it_shows_what_analyze_prints(open_file: Open) -> None:
     printed = json.loads(equipoise("analyze", "yamashita-1", "--json").out)["summary"]
     shown = figures(page)
     assert {"shaking_force", "drive_torque", "joints.B"} <= {
-        one.rpartition(".")[0] for one in shown
+        item.rpartition(".")[0] for item in shown
     }
     for name, value in shown.items():
         output, _, measure = name.rpartition(".")
@@ -135,7 +135,7 @@ def test_a_dragged_joint_takes_forces_and_lengths_along(open_file: Open) -> None
     length = field(page, "D to C")
     old = float(length.input_value())
     drag(live, "C", 40, 20)
-    expect(live.told("changed: coupler, rocker")).to_be_visible()
+    expect(live.status("changed: coupler, rocker")).to_be_visible()
     assert abs(float(length.input_value()) - old) > 1
     machine = changed("yamashita-1", page)
     place = complex(*machine.links["rocker"].points["C"]) - complex(
@@ -163,12 +163,12 @@ def test_typed_numbers_and_keys(open_file: Open) -> None:
     mass = field(page, "mass of the crank")
     mass.fill("-3")
     mass.press("Enter")
-    expect(live.told("mass of the crank: got -3 g; give 0 g or more")).to_be_visible()
+    expect(live.status("mass of the crank: got -3 g; give 0 g or more")).to_be_visible()
     assert figures(page) == before
     joint = live.joint("B")
     joint.focus()
     page.keyboard.press("Shift+ArrowRight")
-    expect(live.told("changed: crank, coupler")).to_be_visible()
+    expect(live.status("changed: crank, coupler")).to_be_visible()
     live.button("Reset all").click()
     assert figures(page) == before
 
@@ -192,11 +192,11 @@ def test_what_cannot_turn_is_refused_in_words(open_file: Open) -> None:
     length.fill("90")
     length.press("Enter")
     sentence = "the crank cannot turn fully: 'coupler' and 'rocker' reach each other only from"
-    expect(live.told(sentence)).to_be_visible()
+    expect(live.status(sentence)).to_be_visible()
     assert figures(page) == before
     length.press("Escape")
     drag(live, "B", 200, 0)
-    expect(live.told("the crank cannot turn fully")).to_be_visible()
+    expect(live.status("the crank cannot turn fully")).to_be_visible()
     assert figures(page) == before
 
 
@@ -220,7 +220,7 @@ def test_it_fits_every_width(open_file: Open, name: str, joint: str) -> None:
         )
     if live.joint(joint).count():
         drag(live, joint, 8, -6)
-        expect(live.told("changed")).to_be_visible()
+        expect(live.status("changed")).to_be_visible()
 
 
 @pytest.mark.exhaustive
@@ -231,7 +231,7 @@ def test_a_cam_is_left_out_where_its_numbers_are_others(open_file: Open) -> None
     drawn = "all => all.map(one => one.getAttribute('d') ?? one.getAttribute('r')).join()"
     before = page.locator(".piece *").evaluate_all(drawn)
     drag(live, "R", 10, 10)
-    expect(live.told("changed: pusher")).to_be_visible()
+    expect(live.status("changed: pusher")).to_be_visible()
     assert page.locator(".piece *").evaluate_all(drawn) != before
     live.button("Undo").click()
     assert page.locator(".piece *").evaluate_all(drawn) == before

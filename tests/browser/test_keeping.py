@@ -41,14 +41,14 @@ def test_a_file_is_saved_and_its_steps_outlive_the_server(free_page: Page, tmp_p
         asked = page.get_by_role("dialog", name="Question")
         expect(asked).to_contain_text("comments")
         asked.get_by_role("button", name="Save").click()
-        expect(live.told("is saved")).to_be_visible()
+        expect(live.status("is saved")).to_be_visible()
         assert eq.load(path).links["crank"].mass == 0.3
         assert page.evaluate(LEAVES) is True
         live.button("Undo").click()
         expect(live.button("Save")).to_be_enabled()
         path.write_text(path.read_text(encoding="utf-8") + "\n", encoding="utf-8")
         live.button("Save").click()
-        expect(live.told("by another page or program")).to_be_visible()
+        expect(live.status("by another page or program")).to_be_visible()
         path.write_text(path.read_text(encoding="utf-8")[:-1], encoding="utf-8")
         page.get_by_role("combobox", name="Example").select_option("drag-link")
         expect(asked).to_contain_text("mine.toml is not saved")
@@ -83,7 +83,7 @@ def test_the_file_of_a_tool_is_saved_and_its_steps_outlive_the_server(
         assert page.evaluate(LEAVES) is False
         live.button("Save").click()
         page.get_by_role("dialog", name="Question").get_by_role("button", name="Save").click()
-        expect(live.told("mine.toml is saved")).to_be_visible()
+        expect(live.status("mine.toml is saved")).to_be_visible()
         expect(live.button("Save")).to_be_disabled()
     with serving(path, "--port", port) as address:
         page.goto(address)
@@ -121,7 +121,7 @@ def test_nothing_is_undone_before_there_is_anything(
     page.keyboard.press("Control+s")
     while not held:
         page.wait_for_timeout(20)
-    assert [json.loads(one)["type"] for one in held] == ["ready"]
+    assert [json.loads(item)["type"] for item in held] == ["ready"]
 
 
 @pytest.mark.exhaustive
@@ -194,9 +194,9 @@ def test_edits_without_a_server_are_kept_for_the_next_one(free_page: Page, tmp_p
     expect(alert).to_contain_text("Changes waiting for the server: 1")
     page.get_by_title("Download", exact=True).click()
     live.button("Download model").click()
-    expect(live.told("the server does not answer; ask again when it does")).to_be_visible()
+    expect(live.status("the server does not answer; ask again when it does")).to_be_visible()
     live.button("Balance").click()
-    expect(live.told("the server does not answer; ask again when it does")).to_be_visible()
+    expect(live.status("the server does not answer; ask again when it does")).to_be_visible()
     eq.save(eq.load("drag-link"), tmp_path / "other.toml")
     with serving(tmp_path / "other.toml", "--port", port) as address:
         other = page.context.new_page()
@@ -231,17 +231,17 @@ def test_a_link_holds_the_model(live: Live, new_page: Callable[..., Page]) -> No
     expect(live.button("Undo")).to_be_enabled()
     live.page.get_by_text("Download", exact=True).click()
     live.button("Copy link").click()
-    expect(live.told("The link is copied")).to_be_visible()
+    expect(live.status("The link is copied")).to_be_visible()
     link = live.page.evaluate("navigator.clipboard.readText()")
     there = Live.open(new_page(), link)
     expect(there.field("crank mass")).to_have_value("300 g")
-    files = [one.download("Download model") for one in (live, there)]
+    files = [item.download("Download model") for item in (live, there)]
     assert files[0] == files[1] and 'table = "four-stroke-gas.csv"' in files[0][1]
     figures = ".readings .value"
     live.settled()
     expect(there.page.locator(figures)).to_have_text(live.page.locator(figures).all_inner_texts())
     assert "#" not in there.page.url  # a reload goes on with what is done from here
     there.page.goto(link[:-30])
-    expect(there.told("holds only a part of a model")).to_be_visible()
+    expect(there.status("holds only a part of a model")).to_be_visible()
     damaged = Live.open(new_page(), link.replace("model=", "model=A"))
-    expect(damaged.told("holds only a part of a model")).to_be_visible()
+    expect(damaged.status("holds only a part of a model")).to_be_visible()

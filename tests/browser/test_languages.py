@@ -53,14 +53,14 @@ def test_korean_particles_go_by_the_name_before_them(
     for name in OPENED:
         page.get_by_role("combobox", name=ko["Example"]).select_option(name)
         with speaking("ko"):
-            told = say(
+            reported = say(
                 "Opening {name} discards the changes to {machine} and everything that can be "
                 "undone.",
                 name=name,
                 machine="yamashita-1",
             )
-        assert "(" not in told
-        expect(asked).to_contain_text(told)
+        assert "(" not in reported
+        expect(asked).to_contain_text(reported)
         asked.get_by_role("button", name=ko["Cancel"]).click()
     page.keyboard.press("?")
     keys = page.get_by_role("dialog", name=ko["Keys"]).locator("kbd").all_inner_texts()

@@ -34,17 +34,17 @@ class Sheet:
         expect(self.live.page.locator(".making .status")).to_contain_text(text)
 
     @property
-    def told(self) -> tuple[float, float]:
+    def crosshair_place(self) -> tuple[float, float]:
         """Where the crosshair is, mm."""
         cross = self.live.page.get_by_role("slider", name="Crosshair")
-        told = (cross.get_attribute("aria-valuetext") or "").replace("−", "-")
-        x, y = map(float, NUMBER.findall(told))
+        text = (cross.get_attribute("aria-valuetext") or "").replace("−", "-")
+        x, y = map(float, NUMBER.findall(text))
         return x, y
 
     @property
     def crosshair(self) -> tuple[float, float, float, float]:
         """The same, and the pixels of the page."""
-        x, y = self.told
+        x, y = self.crosshair_place
         cross = self.live.page.get_by_role("slider", name="Crosshair")
         px, py = map(float, NUMBER.findall(cross.get_attribute("transform") or ""))
         box = self.live.page.get_by_role("group", name="Linkage", exact=True).bounding_box()
@@ -84,12 +84,12 @@ class Sheet:
         cross = self.live.page.get_by_role("slider", name="Crosshair")
         for axis, (more, less) in enumerate((("Right", "Left"), ("Up", "Down"))):
             for size in ("Shift+", "", "Alt+", "Alt+"):
-                off = (x, y)[axis] - self.told[axis]
+                off = (x, y)[axis] - self.crosshair_place[axis]
                 if abs(off) < 0.5:
                     break
                 key = f"{size}Arrow{more if off > 0 else less}"
                 cross.press(key)
-                left = (x, y)[axis] - self.told[axis]
+                left = (x, y)[axis] - self.crosshair_place[axis]
                 for _ in range(int(left / (off - left))):
                     cross.press(key)
         cross.press("Enter")
@@ -140,15 +140,15 @@ def test_tools_have_their_keys_while_a_button_has_the_focus(sheet: Sheet) -> Non
 
 
 @pytest.mark.exhaustive
-def test_a_place_is_told_as_it_is_rounded(sheet: Sheet) -> None:
+def test_a_place_is_reported_as_it_is_rounded(sheet: Sheet) -> None:
     sheet.take("Point")
     x, y = sheet.pixel(31.234, 7.891)
     sheet.live.page.mouse.move(x, y)
     hint = sheet.live.page.locator(".hint")
     expect(hint).to_have_text(re.compile(r"^[\d.]+, [\d.]+ mm$"))
-    told = [float(one) for one in NUMBER.findall(hint.inner_text())]
+    texts = [float(match) for match in NUMBER.findall(hint.inner_text())]
     sheet.live.page.mouse.click(x, y)
-    sheet.live.comes_to(sheet.live.joint("A"), (told[0], told[1]), 0.006)
+    sheet.live.comes_to(sheet.live.joint("A"), (texts[0], texts[1]), 0.006)
 
 
 @pytest.mark.exhaustive
@@ -162,20 +162,20 @@ def test_what_is_traced_is_not_rounded_to_the_sheet(sheet: Sheet, tmp_path: Path
     x, y = map(round, sheet.pixel(31.234, 7.891))
     hint = page.locator(".hint")
 
-    def told() -> complex:
+    def place_in_hint() -> complex:
         page.mouse.move(x + 9, y)
         page.mouse.move(x, y)
-        return complex(*(float(one) for one in NUMBER.findall(hint.inner_text())))
+        return complex(*(float(match) for match in NUMBER.findall(hint.inner_text())))
 
-    rounded = told()
+    rounded = place_in_hint()
     page.get_by_label("Picture or DXF drawing").set_input_files(picture)
     expect(page.locator(".underlay image")).to_have_count(1)
     (x0, y0), (x1, _) = sheet.pixel(0, 0), sheet.pixel(100, 0)
     exact = complex(x - x0, y0 - y) * 100 / (x1 - x0)
-    assert abs(told() - exact) < 0.02
+    assert abs(place_in_hint() - exact) < 0.02
     assert abs(rounded - exact) > 0.05
     page.get_by_label("Hidden").check()
-    assert told() == rounded
+    assert place_in_hint() == rounded
 
 
 def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:

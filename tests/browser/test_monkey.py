@@ -130,11 +130,11 @@ class Monkey:
             getattr(self, f"_{what}")()
         self.done += 1
 
-    def _found(self, what: str) -> Locator | None:
+    def _element(self, what: str) -> Locator | None:
         """One of those that a selector finds; no handle, which would keep what is taken away."""
         self.live.page.evaluate(FOUND, [what, self.chance.random()])
-        found = self.live.page.locator("[data-found]")
-        return found if found.count() else None
+        result = self.live.page.locator("[data-found]")
+        return result if result.count() else None
 
     @property
     def _spot(self) -> tuple[float, float]:
@@ -146,12 +146,12 @@ class Monkey:
         self.live.page.mouse.click(*self._spot)
 
     def _button(self) -> None:
-        if (found := self._found("button, summary, input[type=checkbox]")) is not None:
-            found.click(timeout=LONGEST)
+        if (result := self._element("button, summary, input[type=checkbox]")) is not None:
+            result.click(timeout=LONGEST)
 
     def _hold(self, to: Callable[[float, float], tuple[float, float]]) -> None:
-        found = self._found("svg [role=slider]")
-        box = None if found is None else found.bounding_box(timeout=LONGEST)
+        result = self._element("svg [role=slider]")
+        box = None if result is None else result.bounding_box(timeout=LONGEST)
         if box is None:
             return
         x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
@@ -177,30 +177,30 @@ class Monkey:
         """Type a number a little larger or smaller than what there is."""
         factor = self.chance.uniform(0.8, 1.25)
         self._enter(
-            lambda old: re.sub(r"\d+(\.\d+)?", lambda one: f"{float(one[0]) * factor:.4g}", old)
+            lambda old: re.sub(r"\d+(\.\d+)?", lambda item: f"{float(item[0]) * factor:.4g}", old)
         )
 
     def _enter(self, text: str | Callable[[str], str]) -> None:
-        field = self._found("input:not([type=checkbox], [type=range], [type=file])")
+        field = self._element("input:not([type=checkbox], [type=range], [type=file])")
         if field is not None:
             old = field.input_value(timeout=LONGEST)
             field.fill(text if isinstance(text, str) else text(old), timeout=LONGEST)
             field.press("Enter", timeout=LONGEST)
 
     def _key(self) -> None:
-        found = self._found("svg [role=slider]") if self.chance.random() < 0.5 else None
-        if found is not None:
-            found.focus()
+        actual = self._element("svg [role=slider]") if self.chance.random() < 0.5 else None
+        if actual is not None:
+            actual.focus()
         self.live.page.keyboard.press(self.chance.choice(KEYS))
 
     def _choose(self) -> None:
-        found = self._found("select")
-        if found is not None:
-            values = found.evaluate(
+        result = self._element("select")
+        if result is not None:
+            values = result.evaluate(
                 "one => [...one.options].map(({ value }) => value)", timeout=LONGEST
             )
             if values:  # a machine without joints has none to choose from
-                found.select_option(self.chance.choice(values), timeout=LONGEST)
+                result.select_option(self.chance.choice(values), timeout=LONGEST)
 
     def _scroll(self) -> None:
         self.live.page.mouse.wheel(0, self.chance.choice((-400, 400)))
@@ -230,14 +230,14 @@ class Monkey:
         """Open an example in the place of what there is, whatever that is."""
         self.rest()
         choice = self.live.page.locator("select[data-machines]")
-        for one in (AWAY, name) if choice.input_value() == name else (name,):
-            choice.select_option(one)
+        for item in (AWAY, name) if choice.input_value() == name else (name,):
+            choice.select_option(item)
             self.live.page.wait_for_function(ASKED)
             question = self.live.page.locator(".question[open] button.strong")
             question.click() if question.count() else None
             expect(self.live.button("Undo")).to_be_disabled()
-            expect(choice).to_have_value(one)
-            opening = self.live.page.get_by_text(f"Opening {one} …").filter(visible=True)
+            expect(choice).to_have_value(item)
+            opening = self.live.page.get_by_text(f"Opening {item} …").filter(visible=True)
             expect(opening).to_have_count(0)
 
     def check(self) -> None:
@@ -259,7 +259,7 @@ class Monkey:
         made = to_csv(eq.analyze(analysis.machine, angles))
         assert shown.partition("\n")[0] == made.partition("\n")[0]
         tables = (io.StringIO(text) for text in (shown, made))
-        of_page, of_model = (np.genfromtxt(one, delimiter=",", skip_header=1) for one in tables)
+        of_page, of_model = (np.genfromtxt(table, delimiter=",", skip_header=1) for table in tables)
         near = 1e-6 * np.nanmax(np.abs(of_model), axis=0) + 1e-12  # a file has 12 digits
         assert np.all((np.abs(of_page - of_model) <= near) | np.isnan(of_model))
         self.checked += 1
@@ -278,7 +278,7 @@ class Monkey:
         self.live.page.locator("summary[aria-label=Download]").click()
         name, end = {"csv": ("Download CSV", ".csv"), "model": ("Download model", ".toml")}[kind]
         with self.live.page.expect_download(
-            lambda one: one.suggested_filename.endswith(end)
+            lambda item: item.suggested_filename.endswith(end)
         ) as coming:
             self.live.button(name).click()
         text: str = coming.value.path().read_text(encoding="utf-8")
@@ -291,14 +291,14 @@ class Memory:
 
     page: CDPSession
     server: int | None
-    told: list[tuple[float, float, float]] = field(default_factory=list)
+    samples: list[tuple[float, float, float]] = field(default_factory=list)
 
     def measure(self) -> None:
         """Tell the script's memory (MB), the number of nodes, and the server's memory (MB)."""
         self.page.send("HeapProfiler.collectGarbage")
         heap = self.page.send("Runtime.getHeapUsage")["usedSize"] / 1e6
         nodes = self.page.send("Memory.getDOMCounters")["nodes"]
-        self.told.append((heap, nodes, self._resident()))
+        self.samples.append((heap, nodes, self._resident()))
 
     def _resident(self) -> float:
         if self.server is None:
@@ -310,8 +310,8 @@ class Memory:
 
     def growth(self) -> list[float]:
         """How much each has grown over the last half, by the line that fits best."""
-        late = np.array(self.told[len(self.told) // 2 :])
-        return [float(np.polyfit(range(len(late)), one, 1)[0] * len(late)) for one in late.T]
+        late = np.array(self.samples[len(self.samples) // 2 :])
+        return [float(np.polyfit(range(len(late)), item, 1)[0] * len(late)) for item in late.T]
 
 
 @pytest.mark.exhaustive(but=["socket-0"] if MINUTES else [])
@@ -326,15 +326,17 @@ def test_a_monkey(
     memory = Memory(page.context.new_cdp_session(page), process)
     end = time.monotonic() + 60 * MINUTES
     machines = cycle(MACHINES[seed:] + MACHINES[:seed])
-    told = SCREENSHOTS.parent / f"monkey-{seed}.txt"
-    told.parent.mkdir(exist_ok=True)
+    text = SCREENSHOTS.parent / f"monkey-{seed}.txt"
+    text.parent.mkdir(exist_ok=True)
     while monkey.rounds < 1 or time.monotonic() < end:
         monkey.round(next(machines), ACTIONS)
         monkey.open(REST)
         memory.measure()
         lines = [f"{monkey.done} actions, {monkey.checked} checks; heap, nodes, server"]
-        lines += [f"{heap:.2f} MB {nodes} {server:.0f} MB" for heap, nodes, server in memory.told]
-        told.write_text("\n".join(lines), encoding="utf-8")
+        lines += [
+            f"{heap:.2f} MB {nodes} {server:.0f} MB" for heap, nodes, server in memory.samples
+        ]
+        text.write_text("\n".join(lines), encoding="utf-8")
     assert monkey.wrong == []
     assert monkey.checked
     if MINUTES >= LONG:

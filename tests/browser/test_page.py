@@ -81,8 +81,8 @@ def test_name_title_and_drawing_are_of_one_machine(live: Live) -> None:
         expect(live.page.get_by_role("heading", name=eq.load(name).title)).to_be_visible()
         live.settled()
         live.painted()  # and is seen
-    seen = [json.loads(one) for one in live.page.evaluate("[...seen]")]
-    assert [one[:2] for one in seen] == [[name, eq.load(name).title] for name in names]
+    seen = [json.loads(item) for item in live.page.evaluate("[...seen]")]
+    assert [item[:2] for item in seen] == [[name, eq.load(name).title] for name in names]
 
 
 FOR = {
@@ -109,7 +109,7 @@ def test_what_a_machine_is_for_comes_first(live: Live) -> None:
         top = heading.bounding_box()
         assert top and spectrum and top["y"] < spectrum["y"], name
         others = live.page.locator(".charts .heading, .charts .finder").all()
-        boxes = [box for box in (one.bounding_box() for one in others) if box]
+        boxes = [box for box in (other.bounding_box() for other in others) if box]
         assert top["y"] <= min(box["y"] for box in boxes) + 1, name
         shown = live.page.get_by_role("figure", name="Angle of output")
         expect(shown).to_have_count(int(first == "Any output over crank angle"))
@@ -117,13 +117,13 @@ def test_what_a_machine_is_for_comes_first(live: Live) -> None:
 
 @pytest.mark.exhaustive
 def test_pages_do_not_disturb_each_other(new_page: Callable[..., Page], address: str) -> None:
-    one, other = (Live.open(new_page(), address) for _ in range(2))
-    one.type(one.field("crank mass"), "0.3 kg")
+    first, other = (Live.open(new_page(), address) for _ in range(2))
+    first.type(first.field("crank mass"), "0.3 kg")
     other.type(other.field("drive speed"), "100 rpm")
-    expect(one.button("Undo")).to_be_enabled()
+    expect(first.button("Undo")).to_be_enabled()
     expect(other.button("Undo")).to_be_enabled()
     own = eq.load("yamashita-1")
-    assert one.machine() == own.with_link("crank", mass=0.3)
+    assert first.machine() == own.with_link("crank", mass=0.3)
     assert other.machine().links == own.links
     assert other.machine().drive.speed == pytest.approx(100 * np.pi / 30)
 
@@ -157,7 +157,7 @@ def test_by_keyboard_alone(live: Live) -> None:
 
 
 @OVER_A_SOCKET
-def test_a_broken_line_is_told_and_nothing_is_lost(
+def test_a_broken_line_is_reported_and_nothing_is_lost(
     new_page: Callable[..., Page], address: str
 ) -> None:
     page, lines = new_page(), []

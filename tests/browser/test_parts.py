@@ -64,12 +64,12 @@ def dxf() -> str:
 
 def boxes(path: str) -> list[tuple[float, ...]]:
     """Least and largest coordinates of each line of a path in m, inches."""
-    found = []
+    actual = []
     for line in path.split("M")[1:]:
-        places = [[float(one) / 0.0254 for one in place.split()] for place in line.split("L")]
+        places = [[float(item) / 0.0254 for item in place.split()] for place in line.split("L")]
         xs, ys = zip(*places, strict=True)
-        found.append((min(xs), min(ys), max(xs), max(ys)))
-    return found
+        actual.append((min(xs), min(ys), max(xs), max(ys)))
+    return actual
 
 
 @pytest.mark.exhaustive
@@ -168,7 +168,7 @@ def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None
     picture = tmp_path / "photo.svg"
     picture.write_text(svg, encoding="utf-8")
     live.drop("huge.jpg", "0123456789", 2_100_000)
-    expect(live.told("huge.jpg has 21.0 MB; at most 20 MB are drawn")).to_be_visible()
+    expect(live.status("huge.jpg has 21.0 MB; at most 20 MB are drawn")).to_be_visible()
     page.get_by_label("Picture or DXF drawing").set_input_files(picture)
     image = page.locator(".underlay image")
 
@@ -193,9 +193,9 @@ def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None
     click("first")
     expect(page.locator(".picking")).to_have_attribute("aria-label", "Click where to measure to.")
     click("third")
-    told = page.locator(".measured")
-    expect(told).to_have_text(re.compile("along y$"))
-    measured = [float(one) for one in NUMBER.findall(told.inner_text())]
+    element = page.locator(".measured")
+    expect(element).to_have_text(re.compile("along y$"))
+    measured = [float(match) for match in NUMBER.findall(element.inner_text())]
     assert measured == pytest.approx([56.57, 45, 40, 40], abs=1)  # 0.4 mm a pixel
 
     page.get_by_text("Parts of the model").click()
@@ -224,20 +224,20 @@ def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path)
     page.get_by_label("Picture or DXF drawing").set_input_files(file)
     lines = page.locator(".underlay path")
     expect(lines).to_be_attached()
-    for found, wanted in zip(boxes(lines.get_attribute("d") or ""), BOXES, strict=True):
-        assert found == pytest.approx(wanted, abs=1e-3)
+    for actual, wanted in zip(boxes(lines.get_attribute("d") or ""), BOXES, strict=True):
+        assert actual == pytest.approx(wanted, abs=1e-3)
     board, drawn = page.locator(".board").first.bounding_box(), lines.bounding_box()
     assert board is not None and drawn is not None
     assert drawn["y"] > board["y"]  # 180 mm up, and in sight
     live.button("Measure").click()
     aim = page.locator(".picking")
     expect(aim).to_be_focused()
-    expect(live.told("Click where to measure from.")).to_be_visible()
+    expect(live.status("Click where to measure from.")).to_be_visible()
     page.mouse.click(*live.spot(live.joint("A")))
     expect(aim).to_have_attribute("aria-label", "Click where to measure to.")
     for _ in range(200):  # to the centre of the circle, 25.4 mm to the right and 50.8 mm up
         hint = page.locator(".hint").inner_text()
-        x, y = (float(one.replace("−", "-")) for one in NUMBER.findall(hint)[-2:])
+        x, y = (float(match.replace("−", "-")) for match in NUMBER.findall(hint)[-2:])
         if "25.40, 50.80" in hint:
             break
         aim.press("ArrowRight" if x < 25 else "ArrowUp" if y < 50 else "ArrowLeft")
@@ -246,7 +246,7 @@ def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path)
     assert live.findings() == []
     file.write_text("no drawing", encoding="utf-8")
     page.get_by_label("Picture or DXF drawing").set_input_files(file)
-    expect(live.told("plan.dxf is no DXF drawing that can be read")).to_be_visible()
+    expect(live.status("plan.dxf is no DXF drawing that can be read")).to_be_visible()
     live.button("Remove").click()
     expect(page.locator(".underlay path")).to_be_hidden()
 

@@ -76,9 +76,9 @@ def test_a_file_plays_without_a_server(
     page.keyboard.press(".")  # where nothing has the focus
     expect(page.locator(".transport")).not_to_have_text(turned)
     there.drag(there.joint("B"), (20, 0))
-    told = there.told("plays what was computed")
-    told.click()
-    expect(told).to_be_hidden()
+    reported = there.status("plays what was computed")
+    reported.click()
+    expect(reported).to_be_hidden()
     search = page.get_by_role("combobox", name="Any output over crank angle")
     search.fill("transmission angle at C")
     search.press("Enter")

@@ -26,7 +26,7 @@ SCALE = """kind => {
 """What is told of the scale of a kind, and how long it is drawn, pixels."""
 
 
-def told_and_drawn(page: Page, kind: str) -> tuple[complex, float]:
+def arrow_and_scale(page: Page, kind: str) -> tuple[complex, float]:
     """Return the first arrow of a kind as it is to be read from its scale, and its unit's size."""
     [[x0, y0], [x1, y1]] = page.evaluate(ENDS, kind)[0]
     text, length = page.evaluate(SCALE, kind)
@@ -35,7 +35,7 @@ def told_and_drawn(page: Page, kind: str) -> tuple[complex, float]:
 
 
 @pytest.mark.exhaustive
-def test_arrows_are_as_long_as_their_scale_tells(live: Live) -> None:
+def test_arrows_are_as_long_as_their_scale_reports(live: Live) -> None:
     page = live.page
     page.get_by_role("combobox", name="Arrows at").select_option("C")
     page.get_by_role("slider", name="Crank angle").fill("200")
@@ -49,7 +49,7 @@ def test_arrows_are_as_long_as_their_scale_tells(live: Live) -> None:
         "acceleration": point.acceleration_vector,
         "force": whole.forces.joints["C"].value,
     }.items():
-        seen, scale = told_and_drawn(page, kind)
+        seen, scale = arrow_and_scale(page, kind)
         assert seen == pytest.approx(complex(values[200]), abs=0.03 * scale + 0.02 * abs(seen))
     page.get_by_role("checkbox", name="force").uncheck()
     expect(page.locator(".scales li")).to_have_count(2)
@@ -70,10 +70,10 @@ def test_variants_are_drawn_pale_and_compared(live: Live) -> None:
     assert pale and now and pale["width"] != pytest.approx(now["width"], abs=0.5)
     chart = page.get_by_role("figure", name="Path", exact=True)
     drawn = [
-        page.locator(f".linkage .{one} .path").first.bounding_box() for one in ("pale", "paths")
+        page.locator(f".linkage .{text} .path").first.bounding_box() for text in ("pale", "paths")
     ]
-    drawn += [chart.locator(f".{one}").bounding_box() for one in ("before", "now")]
-    assert all(drawn) and len({round(one["width"], 1) for one in drawn if one}) == len(drawn)
+    drawn += [chart.locator(f".{text}").bounding_box() for text in ("before", "now")]
+    assert all(drawn) and len({round(item["width"], 1) for item in drawn if item}) == len(drawn)
     expect(page.locator(".readings .was").first).not_to_be_empty()
     name = table.get_by_role("textbox", name="Name of variant A")
     name.fill("as built")
@@ -110,12 +110,12 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
     expect(page.get_by_text("the crank stands still")).to_be_visible()
     crank.fill("45")
     live.painted()
-    one = live.spot(live.joint("L"))
+    first = live.spot(live.joint("L"))
     crank.fill("225")  # half a swing later
     live.painted()
     other = live.spot(live.joint("L"))
-    assert np.hypot(one[0] - other[0], one[1] - other[1]) > 2
-    middle = (np.array(one) + np.array(other)) / 2
+    assert np.hypot(first[0] - other[0], first[1] - other[1]) > 2
+    middle = (np.array(first) + np.array(other)) / 2
     assert middle == pytest.approx(at_rest, abs=2)
 
 
@@ -142,7 +142,7 @@ def test_a_record_is_drawn_beside_the_model(live: Live) -> None:
     )
     expect(chart).to_be_visible()
     live.drop("bad.csv", "place [m],drive torque [N m]\n1,2\n")
-    expect(live.told("bad.csv, line 1: got 'place [m]'")).to_be_visible()
+    expect(live.status("bad.csv, line 1: got 'place [m]'")).to_be_visible()
     page.reload()
     expect(page.get_by_text("Record run.csv; drive torque: RMS measured")).to_be_visible()
     live.button("Remove the record").click()

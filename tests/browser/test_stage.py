@@ -15,9 +15,9 @@ from support.chosen import few_together
 
 def box(part: Locator) -> tuple[float, float, float, float]:
     """Left, top, width and height on the screen, pixels."""
-    found = part.bounding_box()
-    assert found is not None
-    return found["x"], found["y"], found["width"], found["height"]
+    result = part.bounding_box()
+    assert result is not None
+    return result["x"], result["y"], result["width"], result["height"]
 
 
 def board(live: Live) -> Locator:
@@ -117,20 +117,20 @@ def menu(live: Live, of: str) -> Locator:
     return live.page.get_by_role("menu", name=of, exact=True)
 
 
-def items(found: Locator) -> list[str]:
-    return found.get_by_role("menuitem").all_inner_texts()
+def items(result: Locator) -> list[str]:
+    return result.get_by_role("menuitem").all_inner_texts()
 
 
 def test_a_joint_has_a_menu_by_the_right_button(live: Live) -> None:
     live.joint("C").click(button="right")
-    found = menu(live, "C")
-    assert items(found) == [
+    result = menu(live, "C")
+    assert items(result) == [
         "Spring …", "Load …", "Cylinder …", "Pin to the frame", "Separate", "Delete",
         "Mount of the support …", "Gauge of the support …",
     ]  # fmt: skip
     live.page.screenshot(path=SCREENSHOTS / "menu-1280.png")
     assert live.findings() == []
-    found.get_by_role("menuitem", name="Spring …").click()
+    result.get_by_role("menuitem", name="Spring …").click()
     form = live.page.get_by_role("form", name="New: springs")
     expect(form.get_by_label("link", exact=True)).to_have_value("coupler")
     expect(form.get_by_label("point", exact=True)).to_have_value("C")
@@ -148,13 +148,13 @@ def test_a_link_has_a_menu_that_leads_to_its_counterweight_and_mass(live: Live) 
         live.page.mouse.click(ax + 0.65 * (bx - ax), ay + 0.65 * (by - ay), button="right")
         return menu(live, "crank")
 
-    found = opened()
-    assert "Drive" not in items(found)  # it is the drive
-    found.get_by_role("menuitem", name="Counterweight").click()
+    page = opened()
+    assert "Drive" not in items(page)  # it is the drive
+    page.get_by_role("menuitem", name="Counterweight").click()
     focused = live.page.evaluate("document.activeElement.getAttribute('aria-label')")
     assert "counterweight on crank" in focused
-    found = opened()
-    found.get_by_role("menuitem", name="Mass …").click()
+    page = opened()
+    page.get_by_role("menuitem", name="Mass …").click()
     form = live.page.get_by_role("form", name="crank")
     expect(form.get_by_label("mass", exact=True)).to_be_focused()
     expect(form.get_by_label("mass", exact=True)).to_have_value("199 g")
@@ -177,7 +177,9 @@ def test_every_joint_and_link_has_a_menu(live: Live) -> None:
         page.get_by_role("combobox", name="Example").select_option(name)
         expect(page.get_by_role("heading", name=machine.title)).to_be_visible()
         live.settled()
-        joints = {one.get_attribute("data-name") or "": one for one in page.locator(JOINTS).all()}
+        joints = {
+            item.get_attribute("data-name") or "": item for item in page.locator(JOINTS).all()
+        }
         held = {point for link in machine.links.values() for point in link.points}
         assert held <= {*joints}
         for point in sorted(held):
@@ -231,12 +233,12 @@ def test_a_constraint_of_a_links_menu_holds_while_one_drags(live: Live) -> None:
 def test_a_place_has_a_menu_and_a_mount_asks_for_the_support_first(live: Live) -> None:
     x, y, width, height = box(board(live))
     live.page.mouse.click(x + 0.6 * width, y + 0.15 * height, button="right")
-    found = menu(live, "This place")
-    found.get_by_role("menuitem", name="Mount of the support …").click()
+    result = menu(live, "This place")
+    result.get_by_role("menuitem", name="Mount of the support …").click()
     expect(live.page.get_by_role("form", name="New: support")).to_be_visible()
     live.page.mouse.click(x + 0.6 * width, y + 0.15 * height, button="right")
     before = live.page.locator("[data-kind=point]").count()
-    found.get_by_role("menuitem", name="Point of the frame").click()
+    result.get_by_role("menuitem", name="Point of the frame").click()
     expect(live.page.locator("[data-kind=point]")).to_have_count(before + 1)
 
 
@@ -419,7 +421,7 @@ def test_the_gallery_is_by_kind_and_is_searched_by_words(live: Live) -> None:
 
 
 @pytest.mark.exhaustive
-def test_help_tells_what_each_tool_does_and_leads_to_the_documentation(
+def test_help_reports_what_each_tool_does_and_leads_to_the_documentation(
     new_page: Callable[..., Page], address: str
 ) -> None:
     page = new_page()

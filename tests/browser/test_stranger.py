@@ -117,7 +117,7 @@ def test_two_fingers_zoom_and_pan(new_page: Callable[..., Page], address: str) -
         touch("touchMove", (x - 2.5 * step, y - 3 * step), (x + 50 + 2.5 * step, y - 3 * step))
     touch("touchEnd")
     after = [live.spot(live.joint(name)) for name in "AD"]
-    apart = [abs(complex(*one[0]) - complex(*one[1])) for one in (before, after)]
+    apart = [abs(complex(*item[0]) - complex(*item[1])) for item in (before, after)]
     assert abs(apart[1] / apart[0] - 2) < 0.1
     fixed = complex(x + 25, y)
     moved = complex(*after[0]) - (fixed - 30j + 2 * (complex(*before[0]) - fixed))
@@ -126,7 +126,7 @@ def test_two_fingers_zoom_and_pan(new_page: Callable[..., Page], address: str) -
 
 
 @pytest.mark.exhaustive
-def test_an_edit_while_examples_are_drawn_is_told_to_its_end(live: Live) -> None:
+def test_an_edit_while_examples_are_drawn_is_reported_to_its_end(live: Live) -> None:
     live.page.get_by_role("button", name="Open", exact=True).click()
     expect(live.page.get_by_role("dialog", name="Open a machine")).to_be_visible()
     live.page.keyboard.press("Escape")

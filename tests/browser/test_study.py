@@ -31,9 +31,9 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
         yield address
 
 
-def count(told: Locator) -> int:
-    found = re.search(r"(\d+) within the ranges", told.inner_text())
-    return int(found[1]) if found else -1
+def count(text: Locator) -> int:
+    match = re.search(r"(\d+) within the ranges", text.inner_text())
+    return int(match[1]) if match else -1
 
 
 def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
@@ -41,8 +41,8 @@ def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
     wrong: list[str] = []
     page.on("pageerror", lambda error: wrong.append(str(error)))
     page.goto(store)
-    told = page.get_by_role("status").filter(has_text="designs are drawn")
-    expect(told).to_contain_text("64 of 64 designs are drawn")
+    texts = page.get_by_role("status").filter(has_text="designs are drawn")
+    expect(texts).to_contain_text("64 of 64 designs are drawn")
     expect(page.get_by_text(re.compile(r"\d+ × does not turn fully"))).to_be_visible()
     lines = page.get_by_role("img", name="Designs from axis to axis").locator("svg")
     points = page.get_by_role("img", name="Designs over two columns").locator("svg")
@@ -54,37 +54,37 @@ def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
     page.mouse.down()
     page.mouse.move(x, y + 288, steps=5)
     page.mouse.up()
-    expect(told).to_contain_text("within the ranges")
-    first = count(told)
+    expect(texts).to_contain_text("within the ranges")
+    first = count(texts)
     assert 0 < first < 64
     typed = page.get_by_role("textbox", name=re.compile("^length A–B of the crank, to"))
     typed.fill("30")
     typed.press("Enter")
     expect(points.locator(".range")).to_have_count(1)  # brushed in the other picture as well
-    assert 0 < count(told) < first
+    assert 0 < count(texts) < first
     page.get_by_role("button", name="All designs").click()
     for name, end in (("^length A–B of the crank, to", "60"), ("^speed of the drive, from", "110")):
         limit = page.get_by_role("textbox", name=re.compile(name, re.IGNORECASE))
         limit.fill(end)
         limit.press("Enter")
-    expect(told).to_contain_text("within the ranges")
+    expect(texts).to_contain_text("within the ranges")
     rows = page.locator(".scrolled tbody tr")
     listed = [
-        (one.get_attribute("class"), one.locator("td").last.inner_text()) for one in rows.all()
+        (item.get_attribute("class"), item.locator("td").last.inner_text()) for item in rows.all()
     ]
     kinds = [kind for kind, _ in listed]
     assert len(listed) == 12 and kinds == sorted(kinds, key=["kept", "beyond"].index)
     for kind in {*kinds}:
-        forces = [float(force) for one, force in listed if one == kind]
+        forces = [float(force) for item, force in listed if item == kind]
         assert forces == sorted(forces)
     typed.fill("wide")
     typed.press("Enter")
     expect(page.get_by_text("got “wide”; give a number")).to_be_visible()
     page.get_by_role("button", name="All designs").click()
-    expect(told).not_to_contain_text("within the ranges")
+    expect(texts).not_to_contain_text("within the ranges")
     page.evaluate(AXE.read_text(encoding="utf-8"))
-    found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
-    assert [one for one in found if one["impact"] in {"serious", "critical"}] == []
+    result = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
+    assert [item for item in result if item["impact"] in {"serious", "critical"}] == []
     page.screenshot(path=SCREENSHOTS / "study.png")
     page.set_viewport_size({"width": 400, "height": 900})
     page.wait_for_function(f"() => {FITS}")
@@ -104,7 +104,7 @@ def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
     expect(live.joint("B")).to_be_visible()
     expect(page.get_by_role("combobox", name="Example")).to_have_value(re.compile("lengths.zarr "))
     page.get_by_role("button", name="Designs of the study").click()
-    expect(told).to_be_visible()
+    expect(texts).to_be_visible()
     page.get_by_role("button", name=re.compile("^Open design")).first.click()
     expect(live.joint("B")).to_be_visible()
     page.reload()
@@ -118,7 +118,7 @@ def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
     assert dialog.evaluate("one => one.scrollWidth <= one.clientWidth")
     page.set_viewport_size({"width": 1280, "height": 900})
     page.get_by_role("button", name="lengths.zarr", exact=True).click()
-    expect(told).to_be_visible()
+    expect(texts).to_be_visible()
     page.get_by_role("button", name="Open", exact=True).click()
     page.get_by_role("button", name="New machine").click()
     expect(page.get_by_text("nothing moves yet")).to_be_visible()

@@ -70,9 +70,9 @@ def test_a_machine_is_changed_balanced_and_taken_along(wired: Live) -> None:
     keep.click()
     expect(keep).to_be_hidden()
     wired.settled()
-    made, found = wired.machine(), eq.balance(own).machine
+    made, actual = wired.machine(), eq.balance(own).machine
     assert made.balance == own.balance
-    for name, link in found.links.items():
+    for name, link in actual.links.items():
         assert made.links[name].mass == pytest.approx(link.mass, rel=1e-5)
         assert made.links[name].center_of_mass == pytest.approx(link.center_of_mass, abs=1e-6)
 
@@ -91,9 +91,9 @@ def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -
     cycle.fill("90")
     again = page.get_by_role("button", name="Run", exact=True)
     again.click()
-    told = page.get_by_role("region", name="Result of the run", exact=True)
-    expect(told).to_contain_text(printed(run.headline()[0].text), timeout=LONGEST * 1000)
-    expect(told.get_by_role("table", name="Events")).to_contain_text("stands still")
+    element = page.get_by_role("region", name="Result of the run", exact=True)
+    expect(element).to_contain_text(printed(run.headline()[0].text), timeout=LONGEST * 1000)
+    expect(element.get_by_role("table", name="Events")).to_contain_text("stands still")
     assert wired.findings() == []
     charts = page.get_by_role("group", name="Run over time", exact=True)
     expect(charts.get_by_role("figure")).to_have_count(2)
@@ -115,18 +115,18 @@ def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -
         within = length * pi / 360 + 0.01
         wired.comes_to(joint, (1000 * place.real, 1000 * place.imag), within)
     expect(clock).to_have_attribute("aria-valuetext", f"{run.end.time:.3f} s after the start")
-    told.get_by_role("button", name="Back to the cycle").click()
+    element.get_by_role("button", name="Back to the cycle").click()
     expect(cycle).to_be_visible()
-    told.get_by_role("button", name="Play the run").click()
+    element.get_by_role("button", name="Play the run").click()
     expect(clock).to_be_visible()
-    told.get_by_role("button", name="Close").click()
-    expect(told).to_be_hidden()
+    element.get_by_role("button", name="Close").click()
+    expect(element).to_be_hidden()
     expect(cycle).to_be_visible()
     expect(again).to_be_focused()
     again.click()
     expect(clock).to_be_visible(timeout=LONGEST * 1000)
     wired.type(wired.field("crank mass"), "9 kg")
-    expect(told).to_be_hidden()
+    expect(element).to_be_hidden()
     expect(charts).to_be_hidden()
     expect(cycle).to_be_visible()
 
@@ -149,7 +149,7 @@ def test_a_run_is_cancelled_and_the_page_goes_on(wired: Live) -> None:
     expect(card).to_have_count(0)  # it waits for the run
     page.keyboard.press("Escape")
     cancel.click()
-    expect(wired.told("cancelled; nothing was changed")).to_be_visible()
+    expect(wired.status("cancelled; nothing was changed")).to_be_visible()
     wired.button("Open").click()
     expect(card).to_be_attached()
     page.keyboard.press("Escape")
@@ -175,8 +175,8 @@ def test_drives_that_go_their_own_ways_are_drawn_and_not_dragged(wired: Live) ->
     expect(clock).to_have_attribute("aria-valuetext", "1.000 s after the start")
     turned = run.drives["left-crank"].angle[-1]
     end = 1000 * complex(*own.links["left-crank"].points["B"]) * np.exp(1j * turned)
-    told = f"{end.real:.2f}".rstrip("0")
-    expect(joint).to_have_attribute("aria-valuetext", re.compile(re.escape(told)))
+    text = f"{end.real:.2f}".rstrip("0")
+    expect(joint).to_have_attribute("aria-valuetext", re.compile(re.escape(text)))
     # Who moves the sheet takes hold of nothing.
     box = page.get_by_role("group", name="Linkage", exact=True).bounding_box()
     assert box is not None
@@ -207,8 +207,8 @@ def test_a_machine_moves_on_its_mounts_while_its_run_is_played(wired: Live) -> N
     wired.button("Run").click()
     clock = page.get_by_role("slider", name="Time of the run", exact=True)
     expect(clock).to_be_visible(timeout=LONGEST * 1000)
-    told = page.get_by_role("region", name="Result of the run", exact=True)
-    expect(told).to_contain_text("movement of the support to scale")
+    element = page.get_by_role("region", name="Result of the run", exact=True)
+    expect(element).to_contain_text("movement of the support to scale")
     clock.fill("1000")
     expect(clock).to_have_attribute("aria-valuetext", f"{run.end.time:.3f} s after the start")
     wired.painted()
@@ -218,7 +218,7 @@ def test_a_machine_moves_on_its_mounts_while_its_run_is_played(wired: Live) -> N
     assert float(angle[1]) == pytest.approx(
         -np.degrees(run.support.place[FREEDOMS.index("pitch"), -1]), abs=1e-3
     )
-    told.get_by_role("button", name="Close").click()
+    element.get_by_role("button", name="Close").click()
     expect(clock).to_be_hidden()
 
 
@@ -251,7 +251,7 @@ def test_a_tool_makes_nothing_in_poses_of_a_run(wired: Live) -> None:
 
 @pytest.mark.exhaustive
 @pytest.mark.parametrize("address", few(WIRES, {"socket"}), indirect=True)
-def test_what_cannot_be_is_told_and_the_last_good_state_stays(wired: Live) -> None:
+def test_what_cannot_be_is_reported_and_the_last_good_state_stays(wired: Live) -> None:
     field = wired.field("crank mass")
     field.fill("3 mm")
     field.press("Enter")

@@ -34,8 +34,8 @@ def difference(at_speed: bool) -> float:
     simulation = eq.simulate(machine, DURATION, speed, drive=not at_speed, samples=samples)
     apart = []
     for axis, exact in simulation.gauges.items():
-        one, other = getattr(fine, axis), getattr(coarse, axis)
-        apart.append(np.max(np.abs(one + (one - other) / 3 - exact)) / np.max(np.abs(exact)))
+        first, other = getattr(fine, axis), getattr(coarse, axis)
+        apart.append(np.max(np.abs(first + (first - other) / 3 - exact)) / np.max(np.abs(exact)))
     return float(max(apart))
 
 

@@ -46,13 +46,13 @@ def action(subject: Subject, link: str, at: Array, force: Array, couple: Array |
 def pushing(subject: Subject) -> list[tuple[str, Array]]:
     """What drives that push do to the links between which they are."""
     machine = subject.machine
-    found = []
+    actual = []
     for drive in machine.pushers:
         push = cylinder(machine, drive, subject.poses)
         force = subject.forces.drives[drive.link][:, None] * push.directions[0]
         both = ((push.on, force), (push.by, -force))
-        found += [(b, action(subject, b, push.at, f, 0.0)) for b, f in both if b != FRAME]
-    return found
+        actual += [(b, action(subject, b, push.at, f, 0.0)) for b, f in both if b != FRAME]
+    return actual
 
 
 def pushes(subject: Subject) -> list[tuple[Any, Array, Array]]:
@@ -69,9 +69,9 @@ def pushes(subject: Subject) -> list[tuple[Any, Array, Array]]:
         at, _ = line_of_force(machine, cam, poses)
         actions.append((forces.cams[cam.name], at, np.zeros(len(at))))
     for belt in machine.belts:
-        found = forces.belts[belt.name]
+        belts = forces.belts[belt.name]
         strands = strand_contacts(belt, machine, poses)
-        for strand, tension in zip(strands, (found.left, found.right), strict=True):
+        for strand, tension in zip(strands, (belts.left, belts.right), strict=True):
             actions.append(
                 (reaction(strand, tension[:, None]), strand.at, np.zeros(len(strand.at)))
             )

@@ -25,15 +25,15 @@ def difference(theory: str) -> float:
     pytest.importorskip("ross")
     from support import ross_shaft
 
-    tool, found = TOOLS[theory], []
+    tool, actual = TOOLS[theory], []
     for count in (12, 24, 48):
         lengths, nodes = mesh(count)
         rotor = ross_shaft.rotor(tool, lengths, nodes)
-        found.append(ross_shaft.response(rotor, nodes[ENGINE], UNBALANCE, SPEEDS, nodes[HANDLE]))
+        actual.append(ross_shaft.response(rotor, nodes[ENGINE], UNBALANCE, SPEEDS, nodes[HANDLE]))
     for order in (POWERS[theory], POWERS[theory] + 2):
-        found = [fine + (fine - one) / (2**order - 1) for one, fine in pairwise(found)]
+        actual = [fine + (fine - first) / (2**order - 1) for first, fine in pairwise(actual)]
     exact = respond_tool(tool, SPEEDS).displacement(HANDLE)[:, 0]
-    return float(np.max(np.abs(found[0] - exact)) / np.max(np.abs(exact)))
+    return float(np.max(np.abs(actual[0] - exact)) / np.max(np.abs(exact)))
 
 
 @compared(ROSS, "displacement of the handle under unbalance", 1e-7, "Euler-Bernoulli's beam")

@@ -255,9 +255,9 @@ def rubs(machine: eq.Machine) -> Callable[[Any], None]:
         from exudyn import itemInterface as item
 
         for number, pin in zip(built.pins, built.model["pins"], strict=True):
-            (one, _), (other, _) = pin
-            label = "A" if "ground" in (one, other) else "B"
-            if "piston" in (one, other):
+            (first, _), (other, _) = pin
+            label = "A" if "ground" in (first, other) else "B"
+            if "piston" in (first, other):
                 continue
 
             def against(
@@ -267,7 +267,7 @@ def rubs(machine: eq.Machine) -> Callable[[Any], None]:
                 force = system.GetObjectOutput(number, exudyn.OutputVariableType.Force)
                 return float(np.sign(speed) * FRICTION * radius * np.hypot(force[0], force[1]))
 
-            ends = [name if name != "ground" else "" for name in (one, other)]
+            ends = [name if name != "ground" else "" for name in (first, other)]
             built.add(
                 item.ObjectConnectorCoordinateSpringDamper(
                     markerNumbers=built.pair(*ends),

@@ -122,7 +122,7 @@ def _point(t: Any, exp: Exp) -> tuple[Any, ...]:
 def _four_bar(t: Any, exp: Exp) -> tuple[Any, ...]:
     pin = G(t, exp)
     ends = ((U, 0.6), (V, 2.3))
-    outer = (one for turn, arm in ends for one in kernels.point(*pin, *turn(t, exp), arm))
+    outer = (item for turn, arm in ends for item in kernels.point(*pin, *turn(t, exp), arm))
     return (*outer, *pin, *U(t, exp)[1:], *V(t, exp)[1:])
 
 

@@ -54,8 +54,8 @@ def machine_of(name: str) -> eq.Machine:
     kind, _, seed = name.partition(":")
     # What may be changed of it does nothing to what is analysed, and its names need not follow.
     # Friction, which has laws of its own, is left out.
-    found = make(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
-    return spelled_out(found.without_friction())
+    actual = make(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
+    return spelled_out(actual.without_friction())
 
 
 def spelled_out(machine: eq.Machine) -> eq.Machine:
@@ -88,16 +88,16 @@ def forces(machine: eq.Machine, angles: Any = ANGLES, **how: Any) -> eq.mechanis
     return eq.analyze(machine, angles, **how).forces
 
 
-def kinetic_power(found: eq.mechanism.Forces) -> Array:
+def kinetic_power(result: eq.mechanism.Forces) -> Array:
     """Rate of change of kinetic energy, from velocities and accelerations.
 
     Two rows a link, and one of the flywheel, which turns with the drive's link.
     """
-    drive = found.motion.machine.drive
-    crank = found.motion.links[drive.link]
+    drive = result.motion.machine.drive
+    crank = result.motion.links[drive.link]
     rows = [drive.flywheel * crank.angular_velocity * crank.angular_acceleration]
-    for name, link in found.motion.machine.links.items():
-        center, turning = found.motion.mass_centers[name], found.motion.links[name]
+    for name, link in result.motion.machine.links.items():
+        center, turning = result.motion.mass_centers[name], result.motion.links[name]
         assert link.mass is not None
         assert link.inertia is not None
         rows.append(link.mass * along(center.velocity, center.acceleration_vector))
@@ -105,23 +105,23 @@ def kinetic_power(found: eq.mechanism.Forces) -> Array:
     return np.array(rows)
 
 
-def gravity_power(found: eq.mechanism.Forces) -> Array:
+def gravity_power(result: eq.mechanism.Forces) -> Array:
     """Power of gravity, one row a link."""
-    machine = found.motion.machine
+    machine = result.motion.machine
     gravity = complex(*machine.gravity)
     return np.array([
-        (link.mass or 0.0) * along(found.motion.mass_centers[name].velocity, gravity)
+        (link.mass or 0.0) * along(result.motion.mass_centers[name].velocity, gravity)
         for name, link in machine.links.items()
     ])  # fmt: skip
 
 
-def load_power(found: eq.mechanism.Forces) -> Array:
+def load_power(result: eq.mechanism.Forces) -> Array:
     """Power of the loads, one row a load.
 
     The soil's is what it does relative to the machine; the rest drives the machine over ground.
     """
-    motion, rows = found.motion, [np.zeros(len(found.motion.crank_angle))]
-    for link, point, force, torque in acting(found):
+    motion, rows = result.motion, [np.zeros(len(result.motion.crank_angle))]
+    for link, point, force, torque in acting(result):
         turning, center = motion.links[link].angular_velocity, motion.mass_centers[link]
         at: Any = 0.0
         if point is not None:  # of the link there, of which it need not be a point
@@ -130,9 +130,9 @@ def load_power(found: eq.mechanism.Forces) -> Array:
     return np.array(rows)
 
 
-def spring_power(found: eq.mechanism.Forces) -> Array:
+def spring_power(result: eq.mechanism.Forces) -> Array:
     """Power of the springs, one row a spring: what their pull takes as they lengthen."""
-    motion, machine = found.motion, found.motion.machine
+    motion, machine = result.motion, result.motion.machine
     rows = [np.zeros(len(motion.crank_angle))]
     for spring in machine.springs:
         point, to = motion.points[spring.point], motion.points[spring.to]
@@ -150,9 +150,9 @@ def spring_power(found: eq.mechanism.Forces) -> Array:
     return np.array(rows)
 
 
-def acting(found: eq.mechanism.Forces) -> Iterator[tuple[str, str | None, Array, Array]]:
+def acting(result: eq.mechanism.Forces) -> Iterator[tuple[str, str | None, Array, Array]]:
     """Link and point of each load, its force (complex, N) and torque (N m), evaluated anew."""
-    motion, machine = found.motion, found.motion.machine
+    motion, machine = result.motion, result.motion.machine
     for load in machine.loads:
         parts, torque = force_and_torque(load, motion.crank_angle)
         force = parts[:, 0] + 1j * parts[:, 1]
@@ -179,28 +179,28 @@ def along(a: Any, b: Any) -> Any:
     return (np.conj(a) * b).real
 
 
-def outputs(found: eq.mechanism.Forces) -> Iterator[tuple[str, Array]]:
+def outputs(result: eq.mechanism.Forces) -> Iterator[tuple[str, Array]]:
     """Every output of the forces by name; vectors are complex."""
     for name in ("shaking_force", "frame_force"):
-        yield name, getattr(found, name).value
+        yield name, getattr(result, name).value
     for name in ("shaking_moment", "frame_moment", "drive_torque"):
-        yield name, getattr(found, name)
-    yield from families_of(found)
+        yield name, getattr(result, name)
+    yield from families_of(result)
 
 
-def families_of(found: Any) -> Iterator[tuple[str, Array]]:
+def families_of(result: Any) -> Iterator[tuple[str, Array]]:
     """Every array of joints and contacts by name, of forces, a split or a regressor."""
     for family in ("joints", "gears", "racks", "cams", "belts"):
-        for name, joint in getattr(found, family).items():
+        for name, joint in getattr(result, family).items():
             for part in ("value", "normal", "moment", "tangential", "radial", *STRANDS):
                 if hasattr(joint, part):
                     yield f"{family}/{name}/{part}", getattr(joint, part)
 
 
-def sizes(found: eq.mechanism.Forces) -> tuple[float, float]:
+def sizes(result: eq.mechanism.Forces) -> tuple[float, float]:
     """Largest force (N) and moment (N m) that occur anywhere in a machine."""
     force, moment = [0.0], [0.0]
-    for name, value in outputs(found):
+    for name, value in outputs(result):
         (force if is_force(name) else moment).append(float(np.max(np.abs(value))))
     return max(force), max(moment)
 

@@ -79,14 +79,14 @@ Added = tuple[str, complex, dict[str, Any], float | None, set[str]]
 SAID = "in a plane of its own beside "
 
 
-def sectors(found: Balanced) -> list[Added]:
+def sectors(result: Balanced) -> list[Added]:
     """Link, centre, piece and plane of each sector that is added, and the pins or links that its
     sentence says it lies beside.
     """
     return [
         (change.link, complex(*change.values["center"]), piece, change.values.get("plane"),
          set(re.sub("^pin ", "", said.split(SAID)[1]).split(", ")) if SAID in said else set())
-        for change in found.changes
+        for change in result.changes
         for said in [" ".join(in_short(change))]
         for piece in change.values.get("pieces", ())
     ]  # fmt: skip
@@ -99,17 +99,17 @@ def lies_in(piece: dict[str, Any], seen: np.ndarray[Any, Any]) -> np.ndarray[Any
     return np.asarray(between & (np.abs(ahead) < piece["angle"] / 2))
 
 
-def is_clear(found: Balanced) -> None:
+def is_clear(result: Balanced) -> None:
     """No sector goes through a pin or shaft, or through a link in its plane, at any crank angle.
 
     One whose sentence says that it lies beside pins or links has a plane of its own, which shafts
     and guided pins cross.
     """
-    machine = found.original
+    machine = result.original
     motion = eq.move(machine, ANGLES)
     joined = {name for name, bodies in bodies_at(machine.bodies).items() if len(bodies) > 1}
     guided = {slider.point for slider in machine.sliders if slider.on == "frame"}
-    for link, center, piece, plane, beside in sectors(found):
+    for link, center, piece, plane, beside in sectors(result):
         assert not beside & (guided | machine.frame.keys())
         assert not (beside and machine.has_planes)
         points, own = machine.links[link].points, motion.links[link]
@@ -144,9 +144,9 @@ def is_clear(found: Balanced) -> None:
                 assert not any(np.any(lies_in(piece, line)) for line in lines), (link, name)
 
 
-def can_be_drawn(found: Balanced) -> None:
+def can_be_drawn(result: Balanced) -> None:
     """Radii of 10 mm, of 1 mm where all is small; whole degrees; plate in stock; one piece each."""
-    for _, _, piece, _, _ in sectors(found):
+    for _, _, piece, _, _ in sectors(result):
         assert piece["shape"] == "sector"
         grid = 10e-3 if piece["outer_radius"] >= 20e-3 * (1 - 1e-9) else 1e-3
         for name in ("outer_radius", "inner_radius"):
@@ -154,7 +154,7 @@ def can_be_drawn(found: Balanced) -> None:
         for name in ("angle", "direction"):
             degrees = np.degrees(piece[name])
             assert degrees == pytest.approx(round(degrees), abs=1e-6)
-        assert min(abs(piece["thickness"] / one - 1) for one in STOCK) < 1e-9
+        assert min(abs(piece["thickness"] / item - 1) for item in STOCK) < 1e-9
         assert piece["angle"] <= np.pi * (1 + 1e-9) and piece["thickness"] <= 0.03 * (1 + 1e-9)
         flat = piece["outer_radius"] ** 2 - piece["inner_radius"] ** 2
         assert piece["mass"] == pytest.approx(7850 * piece["thickness"] * piece["angle"] / 2 * flat)
@@ -165,61 +165,61 @@ def headlines(machine: eq.Machine) -> dict[tuple[str, str], float]:
     and what gauges read.
     """
     analysis = eq.analyze(machine, acceleration=0.0)
-    found: dict[tuple[str, str], float] = {}
-    for name, one in analysis.summary.items():
+    actual: dict[tuple[str, str], float] = {}
+    for name, value in analysis.summary.items():
         known = declared(name)
         if known is None or not known[0].yardstick or f"rows.{name}" in analysis.summary:
             continue
         swings = known[0].yardstick == "effort" and known[0].dimension == "torque"
         measure = "peak_to_peak" if swings else "peak"
         key = known[0].name, measure
-        found[key] = max(found.get(key, 0.0), float(getattr(one, measure)))
+        actual[key] = max(actual.get(key, 0.0), float(getattr(value, measure)))
     if machine.support is not None and machine.support.gauges:
         for name, gauge in eq.respond(machine).gauges.items():
-            found[f"gauges.{name}", "rms"] = float(gauge.velocity.vibration_rms)
-    return found
+            actual[f"gauges.{name}", "rms"] = float(gauge.velocity.vibration_rms)
+    return actual
 
 
-def allowed(found: Balanced, figure: FigureAssessment, old: float, growth: float) -> float:
+def allowed(result: Balanced, figure: FigureAssessment, old: float, growth: float) -> float:
     """What a figure may become: a little more, or half of what is saved more where it stays small,
     both over what is large of their kinds.
     """
-    assert found.advice is not None
+    assert result.advice is not None
     outputs = [
         name
-        for objective in found.plan.objectives
+        for objective in result.plan.objectives
         for name in (objective.output, f"rows.{objective.output}")
     ]
-    aims = [one.excess for one in found.advice.before if one.output in outputs]
-    saved = found.gain * max(aims, default=0.0)
+    aims = [item.excess for item in result.advice.before if item.output in outputs]
+    saved = result.gain * max(aims, default=0.0)
     large = figure.yardstick * figure.ratio / figure.excess
-    beside = old + 0.1 * min(found.gain * old, saved * large)
+    beside = old + 0.1 * min(result.gain * old, saved * large)
     small = min(STAYS_SMALL * large, old + 0.5 * saved * large)
     return max(growth * old, 1.0001 * beside, 1.0001 * small, TRIFLE * figure.yardstick)
 
 
-def no_headline_is_worse(found: Balanced) -> None:
-    assert found.advice is not None
-    entries = {one.family: one for one in found.advice.before}
-    before, after = headlines(found.original), headlines(found.machine)
+def no_headline_is_worse(result: Balanced) -> None:
+    assert result.advice is not None
+    entries = {item.family: item for item in result.advice.before}
+    before, after = headlines(result.original), headlines(result.machine)
     for key, old in before.items():
         if key in entries and not key[0].startswith("transmission"):
-            most = allowed(found, entries[key], old, GROWTH)
+            most = allowed(result, entries[key], old, GROWTH)
             assert after[key] <= most, (key, old, after[key])
 
 
-def no_couple_is_made(found: Balanced) -> None:
+def no_couple_is_made(result: Balanced) -> None:
     """None between rows or planes that was not there, and that is larger than the moment that is
     gone, RMS.
     """
     old, new = (
-        eq.analyze(one, acceleration=0.0).summary for one in (found.original, found.machine)
+        eq.analyze(item, acceleration=0.0).summary for item in (result.original, result.machine)
     )
     gone = [
         before - after
-        for objective in found.plan.objectives
+        for objective in result.plan.objectives
         if objective.output.endswith("_moment")
-        for before, after in [found.objectives[objective.name]]
+        for before, after in [result.objectives[objective.name]]
     ]
     for name in ("rows.roll_moment", "rows.yaw_moment", "rocking_moment"):
         if gone and name in new and old[name].rms < 0.1 * new[name].rms:
@@ -231,49 +231,49 @@ def parts(machine: eq.Machine) -> dict[tuple[str, str], float]:
     axis, beside what it is a part of.
     """
     analysis = eq.analyze(machine, acceleration=0.0)
-    found = {}
+    actual = {}
     for output in analysis.outputs:
         if output.declared.yardstick == "acting":
-            found[output.declared.name, output.name] = output.figures.peak
+            actual[output.declared.name, output.name] = output.figures.peak
     whole = analysis.whole("shaking_force")
     for axis in "xy":
-        found[whole, f"{whole}.{axis}"] = analysis.outputs[f"{whole}.{axis}"].figures.peak
-    return found
+        actual[whole, f"{whole}.{axis}"] = analysis.outputs[f"{whole}.{axis}"].figures.peak
+    return actual
 
 
-def no_part_is_worse(found: Balanced) -> None:
+def no_part_is_worse(result: Balanced) -> None:
     """No bearing that has to be a larger one for what makes the largest of them smaller."""
-    assert found.advice is not None
-    entries = {one.family[0]: one for one in found.advice.before}
-    before, after = parts(found.original), parts(found.machine)
+    assert result.advice is not None
+    entries = {item.family[0]: item for item in result.advice.before}
+    before, after = parts(result.original), parts(result.machine)
     for (family, name), old in before.items():
         if family in entries:
-            most = allowed(found, entries[family], old, GROWTH_OF_PART)
+            most = allowed(result, entries[family], old, GROWTH_OF_PART)
             assert after[family, name] <= most, (name, old, after[family, name])
 
 
-def check(found: Balanced) -> None:
+def check(result: Balanced) -> None:
     """What is offered can be built, is worth its mass, and leaves no headline figure worse."""
-    if found.helps:
-        is_clear(found)
-        can_be_drawn(found)
-        no_headline_is_worse(found)
-        no_part_is_worse(found)
-        no_couple_is_made(found)
-        share = max(found.added_mass, 0.0) / found.original.mass
+    if result.helps:
+        is_clear(result)
+        can_be_drawn(result)
+        no_headline_is_worse(result)
+        no_part_is_worse(result)
+        no_couple_is_made(result)
+        share = max(result.added_mass, 0.0) / result.original.mass
         assert share <= SHARE * (1 + 1e-9)
-        assert found.gain >= max(GAIN, share)
-        pairs = [found.objectives[objective.name] for objective in found.plan.objectives]
-        assert found.gain == pytest.approx(1 - np.mean([new / old for old, new in pairs]))
+        assert result.gain >= max(GAIN, share)
+        pairs = [result.objectives[objective.name] for objective in result.plan.objectives]
+        assert result.gain == pytest.approx(1 - np.mean([new / old for old, new in pairs]))
     else:
-        assert not any(one.helps for one in found.tried)
+        assert not any(item.helps for item in result.tried)
 
 
-def grown_is_told(found: Balanced) -> None:
+def growth_is_reported(result: Balanced) -> None:
     """Every output that grew by more than 1 % stands in the sentences on what gets worse."""
-    told, rows = " ".join(deterioration_sentences(found)), len(found.original.rows)
-    for one in found.worse:
-        assert output_named(one.objective.output, rows if rows > 1 else 1) in told
+    text, rows = " ".join(deterioration_sentences(result)), len(result.original.rows)
+    for item in result.worse:
+        assert output_named(item.objective.output, rows if rows > 1 else 1) in text
 
 
 CHOSEN = {("crank_rocker", 0), ("scotch_yoke", 1), ("watt", 2)}
@@ -340,9 +340,9 @@ def test_every_advised_machine_has_its_answer() -> None:
     assert ANSWERS.keys() == {file.stem for file in ADVISED.glob("*.toml")}
 
 
-def answer_of(found: Balanced) -> str:
+def answer_of(result: Balanced) -> str:
     """What stands first, in a line."""
-    blocks = found.headline(alone=True)
+    blocks = result.headline(alone=True)
     lines = [block.text if isinstance(block, Text) else " ".join(block.items)
              for block in blocks if isinstance(block, Text | Facts)]  # fmt: skip
     return " ".join(lines)
@@ -352,9 +352,9 @@ def answer_of(found: Balanced) -> str:
 @pytest.mark.parametrize("name", few(ANSWERS, TRIED))
 def test_machines_of_other_trades(name: str) -> None:
     """A digger, engines, a press, pumps, sieves and conveyors, which nobody here had modelled."""
-    found = advice_for(name)
-    check(found)
-    assert re.search(ANSWERS[name], answer_of(found)), answer_of(found)
+    advice = advice_for(name)
+    check(advice)
+    assert re.search(ANSWERS[name], answer_of(advice)), answer_of(advice)
 
 
 ALIKE = {"scotch-yoke", "riding-transplanter", "balance-spring", "geared-counterweight"}
@@ -364,8 +364,8 @@ ALIKE = {"scotch-yoke", "riding-transplanter", "balance-spring", "geared-counter
 @pytest.mark.exhaustive(but=["slider-crank-engine", "hydraulic-loader"])
 @pytest.mark.parametrize("name", OF_BUNDLED)
 def test_what_a_designer_would_say_of_bundled_machines(name: str) -> None:
-    found = advice_for(name)
-    assert re.search(OF_BUNDLED[name], answer_of(found)), answer_of(found)
+    advice = advice_for(name)
+    assert re.search(OF_BUNDLED[name], answer_of(advice)), answer_of(advice)
 
 
 @pytest.mark.exhaustive(but=["flap-folder", "kim-chung-b", "straw-walker", "slider-crank-engine"])
@@ -374,6 +374,6 @@ def test_bundled_machines(name: str) -> None:
     """As if they had no plan."""
     if any(link.mass is None for link in eq.load(name).links.values()):
         pytest.skip("without masses")
-    found = advice_for(name)
-    check(found)
-    grown_is_told(found)
+    advice = advice_for(name)
+    check(advice)
+    growth_is_reported(advice)

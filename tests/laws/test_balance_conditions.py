@@ -39,21 +39,21 @@ every_kind = pytest.mark.parametrize("kind", KINDS)
 every_machine = pytest.mark.parametrize("seed", [0, 1, 2])
 
 
-def balanced(machine: eq.Machine, found: Conditions, values: Array) -> Array:
+def balanced(machine: eq.Machine, result: Conditions, values: Array) -> Array:
     """The parameters nearest to some (P,) that meet conditions."""
-    if not found.count:
+    if not result.count:
         return values
     scale = parameter_scales(machine)
-    rows = found.coefficients * scale
-    step = np.linalg.lstsq(rows, found.coefficients @ values, rcond=None)[0]
+    rows = result.coefficients * scale
+    step = np.linalg.lstsq(rows, result.coefficients @ values, rcond=None)[0]
     return np.asarray(values - step * scale)
 
 
 def effects(machine: eq.Machine, output: str) -> tuple[Array, Array, int]:
     """Parameters (P,), effects (P, N) at 1 rad/s and turns of the cycle."""
     motion = eq.move(machine, SAMPLES, 1.0, 0.0)
-    found = eq.mechanism.regressor(motion)
-    return found.values, getattr(found, output), motion.turns
+    regressor = eq.mechanism.regressor(motion)
+    return regressor.values, getattr(regressor, output), motion.turns
 
 
 def left(values: Array, columns: Array, kind: ConditionKind, turns: int) -> float:
@@ -72,9 +72,9 @@ def left(values: Array, columns: Array, kind: ConditionKind, turns: int) -> floa
 @pytest.mark.parametrize("wanted", ["zero", "sine"])
 def test_conditions_suffice(kind: str, seed: int, output: str, wanted: ConditionKind) -> None:
     machine = make(kind, seed).machine
-    found = conditions(machine, wanted, [output])
+    result = conditions(machine, wanted, [output])
     values, columns, turns = effects(machine, output)
-    assert left(balanced(machine, found, values), columns, wanted, turns) < EXACT
+    assert left(balanced(machine, result, values), columns, wanted, turns) < EXACT
 
 
 @every_kind
@@ -82,12 +82,12 @@ def test_conditions_suffice(kind: str, seed: int, output: str, wanted: Condition
 def test_each_condition_is_needed(kind: str, seed: int) -> None:
     """Where one is violated alone, the shaking force is not zero."""
     machine = make(kind, seed).machine
-    found = conditions(machine)
+    result = conditions(machine)
     _, columns, turns = effects(machine, "shaking_force")
     scale = parameter_scales(machine)
-    rows = found.coefficients * scale
-    for one in np.eye(found.count):
-        values = scale * np.linalg.lstsq(rows, one * np.linalg.norm(rows, axis=1), rcond=None)[0]
+    rows = result.coefficients * scale
+    for item in np.eye(result.count):
+        values = scale * np.linalg.lstsq(rows, item * np.linalg.norm(rows, axis=1), rcond=None)[0]
         assert left(values, columns, "zero", turns) > 1e-6
 
 
@@ -112,13 +112,13 @@ def test_least_moments_balance_what_can_be_balanced(kind: str, seed: int) -> Non
     if not feasibility(machine).force.masses_kept:
         return
     links = [name for name, link in machine.links.items() if link.mass]
-    found = least_moments(machine, links)
-    values, columns, _ = effects(found.machine, "shaking_force")
+    moments = least_moments(machine, links)
+    values, columns, _ = effects(moments.machine, "shaking_force")
     assert left(values, columns, "zero", 1) < EXACT
     kept = [(link.mass, link.inertia) for link in machine.links.values()]
-    assert [(link.mass, link.inertia) for link in found.machine.links.values()] == kept
+    assert [(link.mass, link.inertia) for link in moments.machine.links.values()] == kept
     freed = least_moments(machine, links[1:], links[:1])
-    assert freed.cost <= found.cost * (1 + 1e-9)
+    assert freed.cost <= moments.cost * (1 + 1e-9)
 
 
 # -- verdicts --------------------------------------------------------------------------------------
@@ -151,8 +151,8 @@ def approached(machine: eq.Machine, what: str) -> bool:
     """
     least = []
     for mass in (1e-2, 1e-4):
-        found = feasibility(heavy(machine, mass))
-        (proof,) = (answer.proof for answer in found.answers if answer.what == what)
+        result = feasibility(heavy(machine, mass))
+        (proof,) = (answer.proof for answer in result.answers if answer.what == what)
         assert proof is not None
         size = np.linalg.norm(proof.coefficients * parameter_scales(machine))
         least.append(proof.least / float(size))
@@ -185,16 +185,16 @@ MOMENT_ALWAYS = {"slider_crank", "slider_beside_pin", "scotch_yoke", "planetary_
 @every_machine
 def test_verdicts_by_kind(kind: str, seed: int) -> None:
     machine = heavy(make(kind, seed).machine)
-    found: Feasibility = feasibility(machine)
-    assert found.force.possible == (kind not in FORCE_NEVER)
+    result: Feasibility = feasibility(machine)
+    assert result.force.possible == (kind not in FORCE_NEVER)
     if kind in MOMENT_NEVER:
-        assert not found.moment.possible
-        assert not found.both.possible
+        assert not result.moment.possible
+        assert not result.both.possible
     if kind in MOMENT_ALWAYS:
-        assert found.moment.possible
-    if found.both.possible:
-        assert found.force.possible
-        assert found.moment.possible
+        assert result.moment.possible
+    if result.both.possible:
+        assert result.force.possible
+        assert result.moment.possible
 
 
 def heavy(machine: eq.Machine, mass: float = 0.5) -> eq.Machine:
@@ -228,12 +228,12 @@ def test_physical_pendulum_with_geared_counterweight() -> None:
 def outputs_of(machine: eq.Machine, angles: Any) -> dict[str, Array]:
     """Every output that sensitivities are known of."""
     forces = eq.analyze(machine, angles, acceleration=0.0).forces
-    found = {}
+    actual = {}
     for output in known_outputs(machine):
         name, _, part = output.partition(".")
         whole = getattr(forces.across if "rocking" in name else forces, name)
-        found[output] = np.asarray(getattr(whole, part) if part else whole)
-    return found
+        actual[output] = np.asarray(getattr(whole, part) if part else whole)
+    return actual
 
 
 def changed(machine: eq.Machine, link: str, change: str, by: float) -> eq.Machine:
@@ -258,10 +258,10 @@ def derivatives(machine: eq.Machine, link: str, change: str, angles: Any) -> dic
     return {output: (values - less[output]) / (step or 1.0) for output, values in more.items()}
 
 
-def each_parameter(found: dict[str, Sensitivities]) -> Iterator[dict[str, Sensitivity]]:
+def each_parameter(result: dict[str, Sensitivities]) -> Iterator[dict[str, Sensitivity]]:
     """What each parameter does, by output."""
-    for name in next(iter(found.values())).by_name:
-        yield {output: part.by_name[name] for output, part in found.items()}
+    for name in next(iter(result.values())).by_name:
+        yield {output: part.by_name[name] for output, part in result.items()}
 
 
 @pytest.mark.exhaustive(but=["belted_counterweight", "scotch_yoke"])
@@ -273,21 +273,21 @@ def test_sensitivities_are_differences_and_vanish_where_they_say(kind: str) -> N
     size = {output: np.max(np.abs(v)) for output, v in outputs_of(machine, angles).items()}
     scale = parameter_scales(machine)[1]
     for effects in each_parameter(known):
-        one = effects["drive_torque"]
-        body = machine.links[one.link]
-        step = {"mass": body.mass, "inertia": body.inertia}.get(one.change, scale) or 0.0
+        first = effects["drive_torque"]
+        body = machine.links[first.link]
+        step = {"mass": body.mass, "inertia": body.inertia}.get(first.change, scale) or 0.0
         places = {output: effect.no_effect_at for output, effect in effects.items()}
         assert all(effects[output].has_effect or not at.size for output, at in places.items())
         assert all(at.size % 2 == 0 for at in places.values())
         every = np.concatenate([angles, *places.values()])
-        found = derivatives(machine, one.link, one.change, every)
+        result = derivatives(machine, first.link, first.change, every)
         ends = np.cumsum([angles.size, *(at.size for at in places.values())])
         for (output, effect), begin, end in zip(effects.items(), ends, ends[1:], strict=False):
-            apart = np.max(np.abs(effect.values - found[output][: angles.size]))
-            assert apart * step < 1e-9 * size[output], (output, one)
+            apart = np.max(np.abs(effect.values - result[output][: angles.size]))
+            assert apart * step < 1e-9 * size[output], (output, first)
             slope = np.max(np.abs(np.gradient(effect.values, angles)))
-            left = np.max(np.abs(found[output][begin:end]), initial=0.0)
-            assert left <= 1e-9 * slope, (output, one)
+            left = np.max(np.abs(result[output][begin:end]), initial=0.0)
+            assert left <= 1e-9 * slope, (output, first)
 
 
 def test_sensitivities_of_rocking_moments_are_differences() -> None:
@@ -298,10 +298,10 @@ def test_sensitivities_of_rocking_moments_are_differences() -> None:
     size = {output: np.max(np.abs(v)) for output, v in outputs_of(machine, 24).items()}
     known = sensitivities(machine, "frame_rocking_moment.y", 24)
     assert len(known.by_name) == 5 * len(machine.links)
-    for one in known.by_name.values():
-        body = machine.links[one.link]
+    for value in known.by_name.values():
+        body = machine.links[value.link]
         step = {"mass": body.mass, "inertia": body.inertia}.get(
-            one.change, parameter_scales(machine)[1]
+            value.change, parameter_scales(machine)[1]
         )
-        want = derivatives(machine, one.link, one.change, 24)[known.output]
-        assert np.max(np.abs(one.values - want)) * step < 1e-9 * size[known.output], one.name
+        want = derivatives(machine, value.link, value.change, 24)[known.output]
+        assert np.max(np.abs(value.values - want)) * step < 1e-9 * size[known.output], value.name

@@ -33,11 +33,11 @@ every_dyad = pytest.mark.parametrize("name", DYADS)
 def exact_state(linkage: eq.mechanism.Linkage, theta: Any) -> dict[str, Any]:
     """Run every step on mpmath numbers at one crank angle."""
     machine, drive = linkage.machine, linkage.machine.drive.link
-    zero, one = mpmath.mpf(0), mpmath.mpc(1)
+    zero, first = mpmath.mpf(0), mpmath.mpc(1)
     state: dict[str, Any] = {}
     for name, place in machine.frame.items():
-        state.update(zip(p(name), (mpmath.mpc(*place), 0 * one, 0 * one), strict=True))
-    state.update(zip(u(FRAME), (one, zero, zero), strict=True))
+        state.update(zip(p(name), (mpmath.mpc(*place), 0 * first, 0 * first), strict=True))
+    state.update(zip(u(FRAME), (first, zero, zero), strict=True))
     state.update(zip(u(drive), (mpmath.expj(theta), zero + 1, zero), strict=True))
     for step in linkage.motion:
         assert isinstance(step, KernelCall)

@@ -280,12 +280,12 @@ def test_equations_5_2_with_a1_for_the_misprinted_theta1(name: str) -> None:
     loop, angles = loop_of(name), angles_of(name)
     _, a3, a4, a1 = loop.lengths
     _, t23, t234, _ = np.cumsum(angles, axis=0)
-    zero, one = np.zeros_like(t23), np.ones_like(t23)
+    zero, single = np.zeros_like(t23), np.ones_like(t23)
     x4, y4 = a4 * np.cos(t234) + a1, a4 * np.sin(t234)
     rows = [
         [-a3 * np.sin(t23) - y4, -y4, zero],
-        [a3 * np.cos(t23) + x4, x4, a1 * one],
-        [one, one, one],
+        [a3 * np.cos(t23) + x4, x4, a1 * single],
+        [single, single, single],
     ]
     matrix = unknowns(loop, angles)
     same(matrix, np.moveaxis(np.array(rows), -1, 0), TOLERANCE)
@@ -297,13 +297,13 @@ def test_equations_5_2_with_a1_for_the_misprinted_theta1(name: str) -> None:
 @every_linkage
 def test_derivatives_of_the_product_vanish(name: str) -> None:
     """[4] and its derivative, all nine elements, measured against the terms of the sums."""
-    found = driven_route(name)
-    lengths, angles, rates = found.loop.lengths, found.angles, found.rates
+    result = driven_route(name)
+    lengths, angles, rates = result.loop.lengths, result.angles, result.rates
     nothing = np.zeros((len(THETA2), 3, 3))
     same(first(lengths, angles, rates), nothing, TOLERANCE, float(np.max(abs(rates))))
     bend = second(lengths, angles, rates)
-    total = first(lengths, angles, found.seconds) + bend
-    same(total, nothing, TOLERANCE, float(np.max(abs(found.seconds))))
+    total = first(lengths, angles, result.seconds) + bend
+    same(total, nothing, TOLERANCE, float(np.max(abs(result.seconds))))
 
 
 @every_linkage
@@ -320,19 +320,19 @@ def test_angles(name: str) -> None:
 @every_linkage
 def test_derivatives_by_crank_angle(name: str) -> None:
     """Rates are derivatives by crank angle where the crank has the speed 1 and keeps it."""
-    found, links = route(name, 1.0, 0.0), motion_of(name).links
+    actual, links = route(name, 1.0, 0.0), motion_of(name).links
     for k, link in ((2, "coupler"), (3, "rocker")):
-        same(links[link].angle_1, np.sum(found.rates[:k], axis=0), TOLERANCE)
-        same(links[link].angle_2, np.sum(found.seconds[:k], axis=0), TOLERANCE)
+        same(links[link].angle_1, np.sum(actual.rates[:k], axis=0), TOLERANCE)
+        same(links[link].angle_2, np.sum(actual.seconds[:k], axis=0), TOLERANCE)
 
 
 @every_linkage
 def test_angular_velocities_and_accelerations(name: str) -> None:
     """[6-1], [6-2] and their derivatives, with the crank speeding up or slowing down."""
-    found, links = driven_route(name), motion_of(name).links
+    actual, links = driven_route(name), motion_of(name).links
     for k, link in ((1, "crank"), (2, "coupler"), (3, "rocker")):
-        same(links[link].angular_velocity, np.sum(found.rates[:k], axis=0), TOLERANCE)
-        same(links[link].angular_acceleration, np.sum(found.seconds[:k], axis=0), TOLERANCE)
+        same(links[link].angular_velocity, np.sum(actual.rates[:k], axis=0), TOLERANCE)
+        same(links[link].angular_acceleration, np.sum(actual.seconds[:k], axis=0), TOLERANCE)
 
 
 @every_linkage

@@ -51,8 +51,8 @@ def test_a_weighted_sine_is_the_factor_times_its_rms_at_any_sampling_rate(
     """Not of whole periods: 4 seconds, to a thousandth."""
     time = np.arange(int(4 * rate)) / rate
     values = np.sqrt(2) * rms * np.sin(2 * np.pi * frequency * time + phase)
-    found = weigh_signal(time, values)
-    assert found.a_hw[0] == pytest.approx(rms * float(factor(frequency)), rel=1e-3)
+    weighted = weigh_signal(time, values)
+    assert weighted.a_hw[0] == pytest.approx(rms * float(factor(frequency)), rel=1e-3)
 
 
 def test_scale_sense_axes_and_time_do_not_matter() -> None:
@@ -75,11 +75,11 @@ def test_the_same_vibration_sampled_twice_as_fast_weighs_the_same() -> None:
     rng = np.random.default_rng(5)
     waves, phases = np.arange(10, 700, 7), rng.uniform(0, 6, 99)
     rms = rng.uniform(0, 1, 99)
-    found = [
+    actual = [
         weigh_signal(*periods(rate, int(rate), waves, rms, phases)[:2]).a_hv
         for rate in (3000.0, 6000.0, 48000.0)
     ]
-    assert found[1:] == pytest.approx([found[0]] * 2, rel=1e-6)
+    assert actual[1:] == pytest.approx([actual[0]] * 2, rel=1e-6)
 
 
 @given(TASKS)
@@ -105,10 +105,10 @@ def test_a_task_may_be_split_and_tasks_may_change_places(tasks: list[Task], part
 def test_twice_the_vibration_is_a_quarter_of_the_time(
     acceleration: float, duration: float, ratio: float
 ) -> None:
-    one = Task("", acceleration, duration)
+    first = Task("", acceleration, duration)
     other = Task("", acceleration * ratio, duration / ratio**2)
-    assert other.partial == pytest.approx(one.partial)
-    assert other.times.to_limit == pytest.approx(one.times.to_limit / ratio**2)
+    assert other.partial == pytest.approx(first.partial)
+    assert other.times.to_limit == pytest.approx(first.times.to_limit / ratio**2)
 
 
 @given(ACCELERATIONS)

@@ -47,8 +47,8 @@ def with_flywheel(machine: eq.Machine, added: float) -> eq.Machine:
 def test_scipy_goes_through_a_cycle_alike(name: str) -> None:
     """The equation of motion in time, under the constant torque of the drive."""
     machine = subject_of(name).machine
-    found = size_flywheel(machine, 0.05)
-    equation = CrankEquation(with_flywheel(machine, found.inertia))
+    flywheel = size_flywheel(machine, 0.05)
+    equation = CrankEquation(with_flywheel(machine, flywheel.inertia))
     steady = SteadyCycle(equation)
     assert steady.speed is not None
     turns, sense = np.linspace(0.0, equation.period, 4001), np.sign(machine.drive.speed)
@@ -88,9 +88,9 @@ LAST = collocation.NODES - 1
 def test_with_a_motor_the_run_itself_is_as_even(name: str) -> None:
     machine = subject_of(name).machine
     wanted = 0.4 * size_flywheel(machine, 0.9).present
-    found = size_flywheel(machine, wanted)
-    cycle = eq.run(with_flywheel(machine, found.inertia), fluctuation=wanted).last_cycle
-    assert found.inertia > 0
+    flywheel = size_flywheel(machine, wanted)
+    cycle = eq.run(with_flywheel(machine, flywheel.inertia), fluctuation=wanted).last_cycle
+    assert flywheel.inertia > 0
     assert cycle is not None
     assert cycle.fluctuation == pytest.approx(wanted, rel=2e-3)  # at the nodes of a run
 
@@ -108,18 +108,18 @@ def test_a_heavy_flywheel_is_sized_in_few_pieces(
 
     machine = subject_of(name).machine
     monkeypatch.setattr(Integration, "_piece", piece)
-    found = size_flywheel(machine, 1e-4)
+    flywheel = size_flywheel(machine, 1e-4)
     turns = len(pieces) / len(CrankEquation(machine).table.lows)
     assert turns < 100
-    assert found.inertia > 10 * found.present * 1e-4 * found.work / found.speed**2
-    shooting = Shooting(CrankEquation(with_flywheel(machine, found.inertia)), found.speed)
+    assert flywheel.inertia > 10 * flywheel.present * 1e-4 * flywheel.work / flywheel.speed**2
+    shooting = Shooting(CrankEquation(with_flywheel(machine, flywheel.inertia)), flywheel.speed)
     steady = shooting.steady()
     assert steady is not None
     state, _ = steady
     limits = Limits(turns=shooting.equation.period / np.pi, steady=False)  # two cycles
     run = Integration(shooting.equation, Driver.of(shooting.equation.machine), limits)
-    run.follow(0.0, float(state[0]) * found.speed)
-    assert run.events[-1].speed == pytest.approx(float(state[0]) * found.speed, rel=1e-9)
+    run.follow(0.0, float(state[0]) * flywheel.speed)
+    assert run.events[-1].speed == pytest.approx(float(state[0]) * flywheel.speed, rel=1e-9)
 
 
 def test_a_steady_state_far_from_the_usual_speed_is_met_on_the_way(
@@ -135,8 +135,8 @@ def test_a_steady_state_far_from_the_usual_speed_is_met_on_the_way(
 
     directly = size_flywheel(machine, 0.5).present
     monkeypatch.setattr(Shooting, "steady", steady)
-    found = size_flywheel(machine, 0.5, lambda done, most: turns.append(done))
-    assert found.present == pytest.approx(directly, rel=1e-6)
+    flywheel = size_flywheel(machine, 0.5, lambda done, most: turns.append(done))
+    assert flywheel.present == pytest.approx(directly, rel=1e-6)
     assert max(turns) == 4
     assert len(tries) == 2
 
@@ -209,10 +209,10 @@ def test_the_mean_speed_is_that_of_the_drive() -> None:
 
 def test_none_is_needed_where_there_is_enough() -> None:
     machine = with_flywheel(subject_of("transplanter").machine, 10.0)
-    found = size_flywheel(machine, 0.05)
-    assert found.inertia == 0.0
-    assert found.estimate == 0.0
-    assert 0 < found.present < 0.05
+    flywheel = size_flywheel(machine, 0.05)
+    assert flywheel.inertia == 0.0
+    assert flywheel.estimate == 0.0
+    assert 0 < flywheel.present < 0.05
 
 
 def test_a_crank_that_nearly_stands_still_at_its_heaviest_place() -> None:
@@ -221,10 +221,10 @@ def test_a_crank_that_nearly_stands_still_at_its_heaviest_place() -> None:
     link = eq.Link({"A": (0.0, 0.0), "B": (1.0, 0.0)}, 10.0, (0.8, 0.0), 0.1)
     drive = eq.Drive("crank", mean)
     machine = eq.Machine("crank", drive, {"A": (0.0, 0.0)}, {"crank": link}, gravity=(0.0, -9.81))
-    found = size_flywheel(machine, 0.1)
-    assert found.present == inf
-    assert found.to_dict()["present"] is None
-    inertia, weight = 0.1 + 10 * 0.64 + found.inertia, 10 * 9.81 * 0.8
+    flywheel = size_flywheel(machine, 0.1)
+    assert flywheel.present == inf
+    assert flywheel.to_dict()["present"] is None
+    inertia, weight = 0.1 + 10 * 0.64 + flywheel.inertia, 10 * 9.81 * 0.8
     # by hand: highest less lowest speed of an energy that is E + weight * cos, to its third order
     assert 2 * weight / (inertia * mean**2) == pytest.approx(0.1, rel=2e-3)
     run = eq.run(machine, "1 s", speed=mean, fluctuation="10 %")

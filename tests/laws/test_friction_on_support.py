@@ -22,9 +22,9 @@ RUBBING = replace(RIG, joints=JOINTS)
 @pytest.mark.parametrize("model", ["linear", "torque", "moment", "exact"])
 def test_friction_between_links_and_frame_shakes_no_support(model: str) -> None:
     """What joints exert on the frame as a whole follows from what the links move alone."""
-    wanted, found = (eq.respond(machine, model=model) for machine in (RIG, RUBBING))
+    wanted, actual = (eq.respond(machine, model=model) for machine in (RIG, RUBBING))
     for name, signals in wanted.gauges.items():
-        read = found.gauges[name].displacement.figures
+        read = actual.gauges[name].displacement.figures
         assert read.rms == pytest.approx(signals.displacement.figures.rms, rel=1e-7)
         assert read.peak_to_peak == pytest.approx(
             signals.displacement.figures.peak_to_peak, rel=1e-7

@@ -36,13 +36,13 @@ every_subject = pytest.mark.parametrize("name", names())
 
 
 def scaled(
-    found: eq.mechanism.Forces, force: complex = 1, moment: float = 1, flip: bool = False
+    result: eq.mechanism.Forces, force: complex = 1, moment: float = 1, flip: bool = False
 ) -> Any:
     """Outputs as another description must give them."""
-    ahead = (r.name for r in found.motion.machine.racks if r.drives == "pinion")
+    ahead = (r.name for r in result.motion.machine.racks if r.drives == "pinion")
     straight = ["cams/", *(f"racks/{rack}/" for rack in ahead)]
-    straight += [f"joints/{slot.name}/" for slot in found.motion.machine.circular_slots]
-    for name, value in outputs(found):
+    straight += [f"joints/{slot.name}/" for slot in result.motion.machine.circular_slots]
+    for name, value in outputs(result):
         if np.iscomplexobj(value):
             yield name, (np.conj(value) if flip else value) * force
         else:
@@ -57,9 +57,9 @@ def scaled(
 def agree(got: eq.mechanism.Forces, want: dict[str, Any], tolerance: float = TOLERANCE) -> None:
     """Compare all outputs with what they must be, measured against the largest of each sort."""
     force, moment = sizes(got)
-    found = dict(outputs(got))
-    assert found.keys() == want.keys()
-    for name, value in found.items():
+    values = dict(outputs(got))
+    assert values.keys() == want.keys()
+    for name, value in values.items():
         same(value, want[name], tolerance, force if is_force(name) else moment)
 
 
@@ -82,11 +82,11 @@ def speed(name: str) -> float:
 @pytest.mark.parametrize("angle", [0.4, -2.3])
 def test_turning_the_frame_with_gravity(name: str, angle: float) -> None:
     """Without soil, which stays level whichever way the machine is turned."""
-    found = forces(without_soil(machine_of(name)))
+    result = forces(without_soil(machine_of(name)))
     moved = forces(transforms.turned(machine_of(name), angle), ANGLES + angle)
     turn = np.exp(1j * angle)
-    agree(moved, dict(scaled(found, turn)))
-    for link, motion in found.motion.links.items():
+    agree(moved, dict(scaled(result, turn)))
+    for link, motion in result.motion.links.items():
         apart = moved.motion.links[link].angle - motion.angle - angle
         same(np.exp(1j * apart), np.ones(len(ANGLES)), TOLERANCE)
 
@@ -117,8 +117,8 @@ def test_other_axes_of_the_links(name: str) -> None:
             shift = complex(*rng.normal(size=2)) * 0.1
             machine = transforms.with_axes(machine, link, float(rng.uniform(-3, 3)), shift)
     want = dict(outputs(forces_of(name)))
-    found, (force, moment) = forces(machine), sizes(forces_of(name))
-    for key, value in outputs(found):
+    actual, (force, moment) = forces(machine), sizes(forces_of(name))
+    for key, value in outputs(actual):
         same(value, want[key], TOLERANCE, force if is_force(key) else moment)
 
 
@@ -128,11 +128,11 @@ def test_reversing_the_speed(name: str) -> None:
 
     Without soil, which pushes against the motion, so that its force changes sign; see below.
     """
-    found = forces(without_soil(machine_of(name)))
-    reverse = found.at(-found.motion.speed)
-    agree(reverse, dict(scaled(found)))
-    np.testing.assert_allclose(reverse.power, -found.power)
-    for point, motion in found.motion.points.items():
+    result = forces(without_soil(machine_of(name)))
+    reverse = result.at(-result.motion.speed)
+    agree(reverse, dict(scaled(result)))
+    np.testing.assert_allclose(reverse.power, -result.power)
+    for point, motion in result.motion.points.items():
         np.testing.assert_array_equal(reverse.motion.points[point].velocity, -motion.velocity)
 
 
@@ -162,16 +162,16 @@ def test_other_names(name: str) -> None:
         return "".join(chr(0x17E - min(ord(c), 0x7E)) for c in old)
 
     moved = forces(transforms.renamed(machine_of(name), other))
-    found = forces_of(name)
+    result = forces_of(name)
     for key in ("shaking_force", "shaking_moment", "drive_torque", "frame_force", "frame_moment"):
-        got, want = dict(outputs(moved))[key], dict(outputs(found))[key]
-        same(got, want, 1e-14, max(sizes(found)))
+        got, want = dict(outputs(moved))[key], dict(outputs(result))[key]
+        same(got, want, 1e-14, max(sizes(result)))
     assert [j.value.tolist() for j in moved.joints.values()] == [
-        j.value.tolist() for j in found.joints.values()
+        j.value.tolist() for j in result.joints.values()
     ]
     for family in ("joints", "gears"):
         bodies = [{other(j.on), other(j.by)} - {other(FRAME)}
-                  for j in getattr(found, family).values()]  # fmt: skip
+                  for j in getattr(result, family).values()]  # fmt: skip
         assert bodies == [{j.on, j.by} - {FRAME} for j in getattr(moved, family).values()]
 
 
@@ -192,28 +192,28 @@ def test_other_names_of_joints_with_properties() -> None:
 
 @every_subject
 def test_other_order_in_the_file(name: str) -> None:
-    moved, found = forces(transforms.reordered(machine_of(name))), forces_of(name)
-    force, moment = sizes(found)
-    want = dict(outputs(found))
+    moved, actual = forces(transforms.reordered(machine_of(name))), forces_of(name)
+    force, moment = sizes(actual)
+    want = dict(outputs(actual))
     for key, value in outputs(moved):
         if "/" not in key:
             same(value, want[key], TOLERANCE, force if is_force(key) else moment)
     for key, joint in moved.joints.items():
-        before = found.joints.get(key)
+        before = actual.joints.get(key)
         if before is not None and {before.on, before.by} == {joint.on, joint.by}:
             sign = 1 if before.on == joint.on else -1
             same(sign * joint.value, before.value, TOLERANCE, force)
     for key, mesh in moved.gears.items():
-        same(mesh.value, found.gears[key].value, TOLERANCE, force)
+        same(mesh.value, actual.gears[key].value, TOLERANCE, force)
 
 
 @every_subject
 def test_joint_forces_act_on_the_later_body(name: str) -> None:
     """A joint of two bodies gives the force on the later one, and the frame comes first."""
-    for found in (forces_of(name), forces(transforms.reordered(machine_of(name)))):
-        order = [FRAME, *found.motion.machine.links]
-        pins = found.motion.linkage.joints.pins
-        for key, joint in found.joints.items():
+    for result in (forces_of(name), forces(transforms.reordered(machine_of(name)))):
+        order = [FRAME, *result.motion.machine.links]
+        pins = result.motion.linkage.joints.pins
+        for key, joint in result.joints.items():
             if "/" not in key and len(pins.get(key, "ab")) == 2:
                 assert order.index(joint.by) < order.index(joint.on)
 
@@ -229,19 +229,19 @@ SLIDING = [name for name in names() if slides(name)]
 
 
 @pytest.mark.parametrize("name", SLIDING)
-def test_sliders_told_from_the_other_link(name: str) -> None:
+def test_sliders_given_from_the_other_link(name: str) -> None:
     """Which of two links is said to slide on which changes words, but no joint force."""
     machine = machine_of(name)
     swapped = transforms.swapped_sliders(machine)
     key_of = {old.name: new.name for old, new in zip(machine.sliders, swapped.sliders, strict=True)}
     moved = best(swapped, machine)
-    found = forces_of(name)
-    force, _ = sizes(found)
-    for key, joint in found.joints.items():
+    result = forces_of(name)
+    force, _ = sizes(result)
+    for key, joint in result.joints.items():
         got = moved.joints[key_of.get(key, key)]
         assert {got.on, got.by} == {joint.on, joint.by}
         same(got.value * (1 if got.on == joint.on else -1), joint.value, TOLERANCE, force)
-    same(moved.drive_torque, found.drive_torque, TOLERANCE, sizes(found)[1])
+    same(moved.drive_torque, result.drive_torque, TOLERANCE, sizes(result)[1])
 
 
 def best(swapped: eq.Machine, machine: eq.Machine) -> eq.mechanism.Forces:
@@ -252,12 +252,12 @@ def best(swapped: eq.Machine, machine: eq.Machine) -> eq.mechanism.Forces:
     wanted = eq.move(machine, ANGLES).points
     for sides in other_sides(swapped, machine):
         try:
-            found = forces(replace(swapped, assembly=sides))
+            result = forces(replace(swapped, assembly=sides))
         except eq.EquipoiseError:
             continue
-        points = found.motion.points
+        points = result.motion.points
         if all(np.allclose(points[p].place, wanted[p].place, atol=1e-9) for p in wanted):
-            return found
+            return result
     raise AssertionError("no assembly gives the same motion")
 
 
@@ -283,15 +283,15 @@ def test_loads_add_up(name: str) -> None:
     """Two loads act as each by itself; a window of a whole turn acts always."""
     machine = machine_of(name)
     link, point = [(k, q) for k, v in machine.links.items() for q in v.points][-1]
-    one, two = eq.Load(link, point, force=(30.0, -10.0)), eq.Load(link, torque=2.0)
+    single, two = eq.Load(link, point, force=(30.0, -10.0)), eq.Load(link, torque=2.0)
     plain, first, second, both = (
         forces(replace(machine, loads=loads), speed=0.0, acceleration=0.0)
-        for loads in ((), (one,), (two,), (one, two))
+        for loads in ((), (single,), (two,), (single, two))
     )
     same(both.drive_torque - plain.drive_torque,
          first.drive_torque + second.drive_torque - 2 * plain.drive_torque,
          TOLERANCE, sizes(both)[1])  # fmt: skip
-    always = replace(one, start=0.3, stop=0.3 + 2 * np.pi)
+    always = replace(single, start=0.3, stop=0.3 + 2 * np.pi)
     table = eq.mechanism.LoadTable((0.0, 1.0), ((30.0, 30.0), (-10.0, -10.0)))
     tabulated = eq.Load(link, point, table=table, outside="wrap")
     for same_load in (always, tabulated):
@@ -303,9 +303,9 @@ def test_loads_add_up(name: str) -> None:
 def test_moments_about_another_pole(name: str) -> None:
     machine = machine_of(name)
     pole = (0.4, -0.1)
-    found, other = forces_of(name), forces(machine, about=pole)
-    arm = found.about - complex(*pole)
+    actual, other = forces_of(name), forces(machine, about=pole)
+    arm = actual.about - complex(*pole)
     for moment, force in (("shaking_moment", "shaking_force"), ("frame_moment", "frame_force")):
-        lever = np.conj(arm) * getattr(found, force).value
-        same(getattr(other, moment), getattr(found, moment) + lever.imag, TOLERANCE)
-    same(found.shaking_moment_about(pole), other.shaking_moment, 1e-13)
+        lever = np.conj(arm) * getattr(actual, force).value
+        same(getattr(other, moment), getattr(actual, moment) + lever.imag, TOLERANCE)
+    same(actual.shaking_moment_about(pole), other.shaking_moment, 1e-13)

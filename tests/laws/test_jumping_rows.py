@@ -52,7 +52,7 @@ def test_extremes_of_rows_at_any_phases(measure: Statistic) -> None:
     theta = np.arange(36_000) * (2 * pi / 36_000)
     for phases in np.random.default_rng(0).uniform(0, 2 * pi, (3, 4)):
         each = [forces(move(machine, theta + phase, acceleration=0.0)) for phase in phases]
-        total = sum(one.drive_torque for one in each)
+        total = sum(item.drive_torque for item in each)
         dense = np.ptp(total) if measure == "peak_to_peak" else np.max(np.abs(total))
         # between 0.01 deg and the jump, torque rises by up to that share of its slope
         assert dense * (1 - 1e-9) <= term.values(phases) <= dense * (1 + 5e-4)
@@ -104,9 +104,9 @@ def test_rows_of_tables_between_crank_angles(seed: int) -> None:
     }
     for measure, value in wanted.items():
         objective = Objective("drive_torque", measure)
-        found = PhaseObjective(objective, rows.signals(objective)).value_at(phases)
+        result = PhaseObjective(objective, rows.signals(objective)).value_at(phases)
         # sides of jumps are taken 2e-8 rad away, over which the torque changes by 1e-7 of itself
-        assert found == pytest.approx(value, rel=2e-6), measure
+        assert result == pytest.approx(value, rel=2e-6), measure
 
 
 def test_slopes_at_tops_and_sides_of_jumps() -> None:
@@ -130,11 +130,11 @@ def test_phases_for_the_least_peak() -> None:
 
     A last digit of rounding decides in which of several valleys, 1e-4 apart, the search ends.
     """
-    found = choose_phases(four_rows(eq.load("transplanter")), [Objective("drive_torque", "peak")])
-    assert found.after["peak of drive_torque"] < 1.001 * 4.1501
-    assert found.bound * found.before["peak of drive_torque"] < 4.1501
-    told = eq.analyze(found.machine, 720).summary["rows.drive_torque"]
-    assert told.peak == pytest.approx(found.after["peak of drive_torque"], rel=1e-4)
+    phasing = choose_phases(four_rows(eq.load("transplanter")), [Objective("drive_torque", "peak")])
+    assert phasing.after["peak of drive_torque"] < 1.001 * 4.1501
+    assert phasing.bound * phasing.before["peak of drive_torque"] < 4.1501
+    reported = eq.analyze(phasing.machine, 720).summary["rows.drive_torque"]
+    assert reported.peak == pytest.approx(phasing.after["peak of drive_torque"], rel=1e-4)
 
 
 # Phases that are no optimum fail in `test_two_rows_that_jump_end_in_a_proof` too.
@@ -180,13 +180,13 @@ def test_no_phases_in_a_box_are_below_its_bound(measure: Statistic) -> None:
     middles = chance.uniform(0, 2 * pi, (12, 4)) * [0, 1, 1, 1]
     here = rows.jumping.values(middles, measure)
     for half in (0.5, 0.05, 1e-3, 1e-5):
-        found = bounds.over(middles, np.full(middles.shape, half))
+        result = bounds.over(middles, np.full(middles.shape, half))
         inside = middles + chance.uniform(-half, half, (40, 12, 4)) * [0, 1, 1, 1]
-        assert np.all(found.bounds <= rows.jumping.values(inside, measure) * (1 + 1e-9))
-        assert np.all(found.values <= here * (1 + 1e-9))
+        assert np.all(result.bounds <= rows.jumping.values(inside, measure) * (1 + 1e-9))
+        assert np.all(result.values <= here * (1 + 1e-9))
     # over 1e-5 rad torques of 20 N m change by 1e-4 of them at most; tops by parabolas miss as much
-    assert found.bounds == pytest.approx(here, rel=5e-4)
-    assert np.all(found.losses[:, 0] == 0.0)
+    assert result.bounds == pytest.approx(here, rel=5e-4)
+    assert np.all(result.losses[:, 0] == 0.0)
 
 
 def test_pieces_lie_between_their_extremes() -> None:
@@ -210,16 +210,16 @@ def test_pieces_lie_between_their_extremes() -> None:
 def test_two_rows_that_jump_end_in_a_proof() -> None:
     """Against all phases of a fine grid; without the jumps the bound stayed 4 to 14 % below."""
     machine = eq.load("transplanter").with_rows([Row(), Row(lateral=0.3)])
-    found = choose_phases(machine, [Objective("drive_torque", "peak")])
-    assert found.bound <= found.combined[1] <= found.bound + 1.01 * CLOSE
-    assert not any("before the optimum was proved" in str(note) for note in found.notes)
+    phasing = choose_phases(machine, [Objective("drive_torque", "peak")])
+    assert phasing.bound <= phasing.combined[1] <= phasing.bound + 1.01 * CLOSE
+    assert not any("before the optimum was proved" in str(note) for note in phasing.notes)
     term = PhaseObjective(
         Objective("drive_torque", "peak"),
         PhasedRows(machine).signals(Objective("drive_torque", "peak")),
     )
     grid = np.linspace(0.0, 2 * pi, 721)
     least = np.min(term.values(np.stack([0 * grid, grid], axis=1)))
-    assert found.bound * found.before["peak of drive_torque"] <= least
+    assert phasing.bound * phasing.before["peak of drive_torque"] <= least
 
 
 # Bounds of boxes with jumps: the tests above.
@@ -230,13 +230,13 @@ def test_a_force_that_jumps_ends_in_a_proof() -> None:
     At 180 deg jumps of both rows coincide and cancel, of which rounding made a force of 366 N.
     """
     machine = replace(eq.load("knife-drive"), balance=None).with_rows([Row(), Row(lateral=0.3)])
-    found = choose_phases(machine, [Objective("frame_force", "peak")])
-    assert found.bound <= found.combined[1] <= found.bound + 1.01 * CLOSE
-    assert not any("before the optimum was proved" in str(note) for note in found.notes)
+    phasing = choose_phases(machine, [Objective("frame_force", "peak")])
+    assert phasing.bound <= phasing.combined[1] <= phasing.bound + 1.01 * CLOSE
+    assert not any("before the optimum was proved" in str(note) for note in phasing.notes)
     theta = (np.arange(7200) + 0.5) * (2 * pi / 7200)
-    each = [forces(move(machine, theta + row.phase)).frame_force for row in found.machine.rows]
-    peak = np.max(np.hypot(sum(one.x for one in each), sum(one.y for one in each)))
-    assert found.after["peak of frame_force"] == pytest.approx(peak, rel=1e-4)
+    each = [forces(move(machine, theta + row.phase)).frame_force for row in phasing.machine.rows]
+    peak = np.max(np.hypot(sum(item.x for item in each), sum(item.y for item in each)))
+    assert phasing.after["peak of frame_force"] == pytest.approx(peak, rel=1e-4)
 
 
 # -- with masses -----------------------------------------------------------------------------------
@@ -269,17 +269,17 @@ def test_no_phases_and_numbers_in_a_box_are_below_its_readings(
     )
     for half in (1.0, 0.1, 1e-3, 1e-5):
         low, high = numbers - half, numbers + half
-        found = reads.readings(middles, np.full(middles.shape, half), numbers, low, high)
-        assert np.all(found.values <= here * (1 + 1e-9))
+        readings = reads.readings(middles, np.full(middles.shape, half), numbers, low, high)
+        assert np.all(readings.values <= here * (1 + 1e-9))
         for _ in range(6):
             phases = middles + chance.uniform(-half, half, (6, 4)) * [0, 1, 1, 1]
             inside = numbers + chance.uniform(-half, half, numbers.shape)
-            read = sum(np.max(forms.at(inside), axis=1) for forms in found.groups)
+            read = sum(np.max(forms.at(inside), axis=1) for forms in readings.groups)
             for bound, x, phi in zip(read, inside, phases, strict=True):
                 assert bound <= designs.at(x).values(phi, measure) * (1 + 1e-9)
-    read = sum(np.max(forms.at(numbers), axis=1) for forms in found.groups)
+    read = sum(np.max(forms.at(numbers), axis=1) for forms in readings.groups)
     assert read == pytest.approx(here, rel=2e-3)
-    assert np.all(found.losses[:, 0] == 0.0)
+    assert np.all(readings.losses[:, 0] == 0.0)
 
 
 def test_designs_that_jump_are_those_of_their_machines() -> None:
@@ -289,7 +289,7 @@ def test_designs_that_jump_are_those_of_their_machines() -> None:
         machine, Balance(masses=(DISC,), objectives=(Objective("shaking_force"),))
     )
     (change,) = solution.changes
-    mass, center, inertia = (change.values[one] for one in ("mass", "pieces", "inertia"))
+    mass, center, inertia = (change.values[name] for name in ("mass", "pieces", "inertia"))
     (piece,) = center
     x, y = piece["place"]
     effects = Effects(machine, [LinkParameters("crank")])
@@ -328,8 +328,8 @@ def test_masses_with_phases_end_in_a_proof(most: float | None) -> None:
         changed = machine.with_link("crank", mass=mass, center_of_mass=(center.real, center.imag))
         near = phases + share * chance.normal(size=(50, 2))
         torque, force = (
-            PhaseObjective(one, PhasedRows(changed).signals(one)).values(near)
-            for one in (TORQUE, FORCE)
+            PhaseObjective(item, PhasedRows(changed).signals(item)).values(near)
+            for item in (TORQUE, FORCE)
         )
         at_most = np.inf if most is None else solution.prices[FORCE.name].at_most
         allowed = force <= at_most

@@ -86,20 +86,20 @@ def test_work_of_a_force_is_its_way() -> None:
 
 def test_figures_of_a_pulse() -> None:
     """A torque on the crank itself is borne by the drive: mean, RMS and extremes are known."""
-    found = eq.analyze(PULSE).summary["drive_torque"]
+    summary = eq.analyze(PULSE).summary["drive_torque"]
     share = (END - BEGIN) / (2 * pi)
-    assert found.mean == pytest.approx(-TORQUE * share, rel=1e-13)
-    assert found.rms == pytest.approx(TORQUE * np.sqrt(share), rel=1e-13)
-    assert (found.min, found.max) == pytest.approx((-TORQUE, 0.0), abs=1e-12)
+    assert summary.mean == pytest.approx(-TORQUE * share, rel=1e-13)
+    assert summary.rms == pytest.approx(TORQUE * np.sqrt(share), rel=1e-13)
+    assert (summary.min, summary.max) == pytest.approx((-TORQUE, 0.0), abs=1e-12)
 
 
 def test_orders_of_a_pulse() -> None:
     """Coefficients of a rectangle: c_n = (T / pi n) (sin n b - sin n a), and likewise for sines."""
-    found = eq.analyze(PULSE).by_order["drive_torque"]
+    by_order = eq.analyze(PULSE).by_order["drive_torque"]
     for n in (1, 2, 5, 8, 13, 40):
         a = -TORQUE / (pi * n) * (sin(n * END) - sin(n * BEGIN))
         b = -TORQUE / (pi * n) * (cos(n * BEGIN) - cos(n * END))
-        assert found.amplitudes[n] == pytest.approx(a - 1j * b, abs=1e-12 * TORQUE)
+        assert by_order.amplitudes[n] == pytest.approx(a - 1j * b, abs=1e-12 * TORQUE)
 
 
 @pytest.mark.parametrize("name", few([*WORKING, "transplanter"], {*WORKING[:2], "knife-drive"}))
@@ -149,8 +149,8 @@ def test_rows_of_a_table_that_are_a_step() -> None:
     table = LoadTable(angles, ((0.0, TORQUE, TORQUE, 0.0, 0.0),))
     machine = pulsed(Load("crank", table=table))
     assert len(jumps_of(assemble(machine))) == 4
-    found = eq.analyze(machine).summary["drive_torque"]
-    assert found.mean == pytest.approx(-TORQUE * (END - BEGIN) / (2 * pi), rel=1e-12)
+    summary = eq.analyze(machine).summary["drive_torque"]
+    assert summary.mean == pytest.approx(-TORQUE * (END - BEGIN) / (2 * pi), rel=1e-12)
 
 
 @pytest.mark.exhaustive(but=["360"])
@@ -163,8 +163,8 @@ def test_a_table_that_ends_is_integrated_from_row_to_row(angles: int) -> None:
     begin, end, widths = values[:-1], values[1:], np.diff(rows) / (2 * pi)
     mean = -np.sum(widths * (begin + end) / 2)
     rms = np.sqrt(np.sum(widths * (begin**2 + begin * end + end**2) / 3))
-    found = eq.analyze(machine, angles).summary["drive_torque"]
-    assert (found.mean, found.rms) == pytest.approx((mean, rms), rel=1e-12)
+    summary = eq.analyze(machine, angles).summary["drive_torque"]
+    assert (summary.mean, summary.rms) == pytest.approx((mean, rms), rel=1e-12)
     wanted = [Figure("drive_torque", "mean"), Figure("drive_torque", "rms")]
     figures, _ = Batch(machine, ["links.piston.mass"], wanted, angles)(np.array([[0.0]]))
     assert figures[0] == pytest.approx((mean, rms), rel=1e-12)
@@ -222,13 +222,13 @@ def test_rows_are_computed_at_their_own_angles() -> None:
     """Shifted by its orders, a pulse would ring: 4 % beyond its height."""
     rows = Row(), Row(phase=radians(-77.4), lateral=0.1)
     analysis = eq.analyze(pulsed(PULSE.loads[0], *rows))
-    found = analysis.summary["rows.drive_torque"]
-    assert found.min == pytest.approx(-2 * TORQUE, rel=1e-12)
-    assert found.max == pytest.approx(0.0, abs=1e-12)
+    summary = analysis.summary["rows.drive_torque"]
+    assert summary.min == pytest.approx(-2 * TORQUE, rel=1e-12)
+    assert summary.max == pytest.approx(0.0, abs=1e-12)
     # ahead by a phase, a row is where the first will be; they overlap for so long
     both, width = END - BEGIN - radians(77.4), END - BEGIN
     square = TORQUE**2 * (2 * width + 2 * both) / (2 * pi)
-    assert found.rms == pytest.approx(np.sqrt(square), rel=1e-12)
+    assert summary.rms == pytest.approx(np.sqrt(square), rel=1e-12)
     own = analysis.rows_total["drive_torque"]
     theta = analysis.crank_angle
     alone = [forces(move(PULSE, theta + row.phase)).drive_torque for row in rows]
@@ -270,10 +270,10 @@ def test_orders_that_excite_a_support(step: str, rows: tuple[Row, ...]) -> None:
     orders = np.arange(1, 9)
     waves = np.exp(-1j * np.outer(theta, orders))
     dense = 2 / len(theta) * excitation.samples(theta, speed) @ waves
-    found = excitation.at(speed).amplitudes[:, orders]
+    amplitudes = excitation.at(speed).amplitudes[:, orders]
     size = np.maximum(np.max(np.abs(dense), axis=1, keepdims=True), 1e-6)
     # a rule of middles misses order n of what jumps by (n half)^2 / 6
-    assert np.max(np.abs(found - dense) / size) < 2e-5
+    assert np.max(np.abs(amplitudes - dense) / size) < 2e-5
 
 
 # -- many designs ----------------------------------------------------------------------------------
@@ -306,14 +306,14 @@ def test_loops_answer_as_analyses_do(
     lengths = np.array([[length], [0.97 * length]])
     with nullcontext() if compiled else by_numpy(tmp_path):
         batch = Batch(base, [path], FIGURES, angles)
-        found, reasons = batch(lengths)
+        actual, reasons = batch(lengths)
     assert not reasons.any()
-    for row, (value,) in zip(found, lengths.tolist(), strict=True):
+    for row, (value,) in zip(actual, lengths.tolist(), strict=True):
         points = {**base.links[link].points, tip: (value, base.links[link].points[tip][1])}
         links = {**base.links, link: replace(base.links[link], points=points)}
         analysis = eq.analyze(replace(base, links=links), angles or 8192)
-        wanted = [getattr(analysis.summary[one.signal], one.name) for one in FIGURES]
-        scale = [analysis.summary[one.signal].rms for one in FIGURES]
+        wanted = [getattr(analysis.summary[figure.signal], figure.name) for figure in FIGURES]
+        scale = [analysis.summary[figure.signal].rms for figure in FIGURES]
         if angles is None:
             close = [1e-9, 1e-9, *[2e-4] * 3, 0.05, 1e-9, 2e-4]
             assert np.all(np.abs(row - wanted) <= np.multiply(close, scale))
@@ -325,9 +325,9 @@ def test_loops_answer_as_analyses_do(
 def test_masses_alone_answer_as_analyses_do(angles: int | None) -> None:
     base = eq.load("slider-crank-engine")
     wanted = [Figure("drive_torque", "mean"), Figure("drive_torque", "rms")]
-    found, reasons = MassBatch(base, ["links.rod.mass"], wanted, angles)(np.array([[0.13], [0.2]]))
+    actual, reasons = MassBatch(base, ["links.rod.mass"], wanted, angles)(np.array([[0.13], [0.2]]))
     assert not reasons.any()
-    for row, mass in zip(found, (0.13, 0.2), strict=True):
+    for row, mass in zip(actual, (0.13, 0.2), strict=True):
         links = {**base.links, "rod": replace(base.links["rod"], mass=mass)}
         torque = eq.analyze(replace(base, links=links), angles or 360).summary["drive_torque"]
         assert row == pytest.approx([torque.mean, torque.rms], rel=1e-9)
@@ -349,13 +349,13 @@ def test_exact_orders_are_those_of_a_fine_grid(sense: float, drive: bool) -> Non
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(exact, "SAMPLES", 720 * 32)
         fine = dense.response(brief=True)
-    found = solution.response(brief=True)
-    for one, other in (
-        (found.drive.torque, fine.drive.torque),
-        (found.gauges["gauge"].acceleration, fine.gauges["gauge"].acceleration),
+    response = solution.response(brief=True)
+    for first, other in (
+        (response.drive.torque, fine.drive.torque),
+        (response.gauges["gauge"].acceleration, fine.gauges["gauge"].acceleration),
     ):
         size = np.max(np.abs(other.amplitudes))
-        apart = np.abs(one.amplitudes[:60] - other.amplitudes[:60]) / size
+        apart = np.abs(first.amplitudes[:60] - other.amplitudes[:60]) / size
         assert np.max(apart) < 1.5e-4  # 7e-4 from 720 samples; the fine grid itself misses a 32nd
     # no piece of the mesh has a jump in it, so that none has to be cut again and again
     assert np.all(
@@ -371,12 +371,14 @@ def test_effects_of_masses_are_integrated_between_jumps() -> None:
     machine = eq.load("cam-pusher")
     (cam,) = machine.cams
     jumping = replace(machine, cams=(replace(cam, lift=replace(trapezoid(), phase=0.3)),), loads=())
-    found, fine = (sensitivities(jumping, "drive_torque", count) for count in (24, 40_000))
-    largest = max(one.rms for one in fine.by_name.values())
-    for name, one in found.by_name.items():
-        assert one.rms == pytest.approx(fine[name].rms, rel=1e-5, abs=1e-8 * largest), name
-        assert one.values.shape == (24 * found.turns,)
-    fine_by_samples = {name: np.sqrt(np.mean(one.values**2)) for name, one in fine.by_name.items()}
-    for name, one in found.by_name.items():
+    actual, fine = (sensitivities(jumping, "drive_torque", count) for count in (24, 40_000))
+    largest = max(value.rms for value in fine.by_name.values())
+    for name, item in actual.by_name.items():
+        assert item.rms == pytest.approx(fine[name].rms, rel=1e-5, abs=1e-8 * largest), name
+        assert item.values.shape == (24 * actual.turns,)
+    fine_by_samples = {
+        name: np.sqrt(np.mean(value.values**2)) for name, value in fine.by_name.items()
+    }
+    for name, item in actual.by_name.items():
         # a sample beside a jump stands for half a step too much
-        assert one.rms == pytest.approx(fine_by_samples[name], rel=1e-3, abs=1e-8 * largest), name
+        assert item.rms == pytest.approx(fine_by_samples[name], rel=1e-3, abs=1e-8 * largest), name

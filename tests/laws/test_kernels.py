@@ -160,10 +160,10 @@ def test_derivatives_against_differences(name: str, t: float) -> None:
             def value(at: Any, place: int = place) -> Any:
                 return evaluate(formula, kernels, at, mpmath.exp)[place]
 
-            found = differences(value, theta)
+            result = differences(value, theta)
             if kind == "link":
-                found = from_rotation(values[place], *found)
-            for got, want in zip(values[place + 1 : place + 3], found, strict=True):
+                result = from_rotation(values[place], *result)
+            for got, want in zip(values[place + 1 : place + 3], result, strict=True):
                 assert abs(got - want) < DIGITS * (1 + abs(want)), (kind, k)
 
 
@@ -203,8 +203,8 @@ def test_rrr_closes_on_its_side(name: str, sign: int) -> None:
 
 @pytest.mark.parametrize(("name", "sign"), [("rrp forward", 1), ("rrp backward", -1)])
 def test_rrp_closes_on_its_side(name: str, sign: int) -> None:
-    (p, _, _, g, _, _, u, *_), (arm, along, shift, turn, _), found = moved(name)
-    u_p, _, _, u_s, _, _, c, _, _, number = found
+    (p, _, _, g, _, _, u, *_), (arm, along, shift, turn, _), actual = moved(name)
+    u_p, _, _, u_s, _, _, c, _, _, number = actual
     n = u * along
     zero(p + u_p * arm - c)
     zero(u_s - n * turn)
@@ -228,9 +228,9 @@ def test_rpr_closes_on_its_side(name: str, sign: int) -> None:
 
 
 def test_prp_meets_on_both_lines() -> None:
-    (g, _, _, u, _, _, h, _, _, v, *_), parameters, found = moved("prp")
+    (g, _, _, u, _, _, h, _, _, v, *_), parameters, actual = moved("prp")
     along_g, shift_g, turn_g, along_h, shift_h, turn_h = parameters
-    u_g, _, _, u_h, _, _, c, *_ = found
+    u_g, _, _, u_h, _, _, c, *_ = actual
     n, m = u * along_g, v * along_h
     zero(((c - n * shift_g - g) / n).imag)
     zero(((c - m * shift_h - h) / m).imag)
@@ -239,8 +239,8 @@ def test_prp_meets_on_both_lines() -> None:
 
 
 def test_rpp_slides_on_both_lines() -> None:
-    (p, _, _, g, _, _, u, *_), (along, turn, inner, inner_turn, shift), found = moved("rpp")
-    u_first, _, _, u_second, _, _, s, *_ = found
+    (p, _, _, g, _, _, u, *_), (along, turn, inner, inner_turn, shift), actual = moved("rpp")
+    u_first, _, _, u_second, _, _, s, *_ = actual
     n = u * along
     zero(((s - g) / n).imag)
     zero(((p + n * shift - s) / (n * inner)).imag)
@@ -248,7 +248,7 @@ def test_rpp_slides_on_both_lines() -> None:
     zero(u_second - n * turn)
 
 
-def test_a_dyad_out_of_reach_tells_so_by_its_number() -> None:
+def test_a_dyad_out_of_reach_reports_so_by_its_number() -> None:
     with np.errstate(all="ignore"):
         q = np.array([1.0 + 0j, 5.0 + 0j])
         *_, number = kernels.rrr(0j, 0j, 0j, q, 1j, 0j, 1 + 0j, 1 + 0j, 1.0)

@@ -42,25 +42,25 @@ def lone_crank(mass: float, radius: float, inertia: float = 2e-3) -> eq.Machine:
 
 
 def test_balanced_crank_does_not_shake() -> None:
-    found = forces(lone_crank(3.0, 0.0))
-    assert not np.any(found.shaking_force.size)
-    near(found.shaking_moment, -2e-3 * ACCELERATION)
-    near(found.drive_torque, 2e-3 * ACCELERATION)
-    near(found.joints["A"].value, 3j * G)
+    result = forces(lone_crank(3.0, 0.0))
+    assert not np.any(result.shaking_force.size)
+    near(result.shaking_moment, -2e-3 * ACCELERATION)
+    near(result.drive_torque, 2e-3 * ACCELERATION)
+    near(result.joints["A"].value, 3j * G)
 
 
 @compared(CLOSED_FORMS, "forces, moment and torque: m r w^2, m r E", 1e-12, "unbalanced crank")
 def test_unbalanced_crank() -> None:
     """Centrifugal force m r w^2 outwards, m r E against the acceleration."""
-    found = forces(lone_crank(3.0, 0.05))
+    result = forces(lone_crank(3.0, 0.05))
     outwards = np.exp(1j * THETA)
     shaking = 3 * 0.05 * (SPEED**2 - 1j * ACCELERATION) * outwards
-    near(found.shaking_force.value, shaking)
-    near(found.joints["A"].value, 3j * G - shaking)
-    near(found.frame_force.value, shaking - 3j * G)
+    near(result.shaking_force.value, shaking)
+    near(result.joints["A"].value, 3j * G - shaking)
+    near(result.frame_force.value, shaking - 3j * G)
     inertia = 2e-3 + 3 * 0.05**2
-    near(found.drive_torque, inertia * ACCELERATION + 3 * G * 0.05 * np.cos(THETA))
-    near(found.shaking_moment, -inertia * ACCELERATION)
+    near(result.drive_torque, inertia * ACCELERATION + 3 * G * 0.05 * np.cos(THETA))
+    near(result.shaking_moment, -inertia * ACCELERATION)
 
 
 def test_torque_against_a_hanging_load() -> None:
@@ -89,10 +89,10 @@ def slider_crank(rod: float, piston: float = 2.0, radius: float = 0.03) -> eq.Ma
 
 @compared(CLOSED_FORMS, "shaking force: a cosine", 2e-06, "slider-crank, endless rod")
 def test_endless_rod_gives_a_cosine() -> None:
-    found = forces(slider_crank(3e4)).at(acceleration=0.0)
+    values = forces(slider_crank(3e4)).at(acceleration=0.0)
     first = 2.0 * 0.03 * SPEED**2
-    near(found.shaking_force.x, first * np.cos(THETA), first, 2e-6)
-    near(found.shaking_force.y, 0.0)
+    near(values.shaking_force.x, first * np.cos(THETA), first, 2e-6)
+    near(values.shaking_force.y, 0.0)
 
 
 @compared(
@@ -104,8 +104,8 @@ def test_endless_rod_gives_a_cosine() -> None:
 def test_finite_rod_gives_even_harmonics() -> None:
     """Series of the crank mechanism in powers of crank over rod."""
     s = 0.2
-    found = forces(slider_crank(0.03 / s), 64).at(acceleration=0.0)
-    amplitudes = eq.signals.harmonics(found.shaking_force.x) / (2.0 * 0.03 * SPEED**2)
+    values = forces(slider_crank(0.03 / s), 64).at(acceleration=0.0)
+    amplitudes = eq.signals.harmonics(values.shaking_force.x) / (2.0 * 0.03 * SPEED**2)
     series = {1: 1.0, 2: s + s**3 / 4 + 15 * s**5 / 128, 4: -(s**3) / 4 - 3 * s**5 / 16,
               6: 9 * s**5 / 128}  # fmt: skip
     for order in range(7):
@@ -128,17 +128,17 @@ def test_gas_force_on_the_crank() -> None:
     """Torque from the piston force by the triangle of crank and rod."""
     r, rod, gas = 0.03, 0.11, -500.0
     load = eq.Load("piston", "C", force=(gas, 0.0))
-    found = forces(replace(slider_crank(rod, 0.0), loads=(load,)))
+    result = forces(replace(slider_crank(rod, 0.0), loads=(load,)))
     sine = r * np.sin(THETA) / rod
     cosine = np.sqrt(1 - sine**2)
     slope = -r * np.sin(THETA) * (1 + r * np.cos(THETA) / (rod * cosine))
-    near(found.drive_torque, -gas * slope, 15.0)
-    near(found.joints["piston on frame"].normal, -gas * sine / cosine, 500.0)
-    near(found.frame_force.value, gas, 500.0)
-    near(found.split.frame_force.sum(axis=(0, 1)), gas, 500.0)
+    near(result.drive_torque, -gas * slope, 15.0)
+    near(result.joints["piston on frame"].normal, -gas * sine / cosine, 500.0)
+    near(result.frame_force.value, gas, 500.0)
+    near(result.split.frame_force.sum(axis=(0, 1)), gas, 500.0)
     inner = forces(replace(slider_crank(rod, 0.0), loads=(replace(load, reaction="frame"),)))
-    near(inner.drive_torque, found.drive_torque, 15.0)
-    near(inner.joints["piston on frame"].value, found.joints["piston on frame"].value, 500.0)
+    near(inner.drive_torque, result.drive_torque, 15.0)
+    near(inner.joints["piston on frame"].value, result.joints["piston on frame"].value, 500.0)
     near(inner.frame_force.value, 0.0, 500.0)
     near(inner.split.frame_force.sum(axis=(0, 1)), 0.0, 500.0)
     near(inner.frame_moment, 0.0, 15.0)
@@ -150,10 +150,10 @@ def test_gas_force_on_the_crank() -> None:
 @compared(CLOSED_FORMS, "shaking force: a sine", 1e-14, "scotch-yoke")
 def test_scotch_yoke_is_an_exact_sine() -> None:
     machine = eq.load("scotch-yoke")
-    found = forces(machine).at(acceleration=0.0)
-    near(found.motion.points["Y"].place, 0.03 * np.cos(THETA), tolerance=1e-16)
-    near(found.motion.points["Y"].place_2, -0.03 * np.cos(THETA), tolerance=1e-16)
-    amplitudes = np.abs(eq.signals.harmonics(found.shaking_force.value.real))
+    values = forces(machine).at(acceleration=0.0)
+    near(values.motion.points["Y"].place, 0.03 * np.cos(THETA), tolerance=1e-16)
+    near(values.motion.points["Y"].place_2, -0.03 * np.cos(THETA), tolerance=1e-16)
+    amplitudes = np.abs(eq.signals.harmonics(values.shaking_force.value.real))
     assert np.argmax(amplitudes) == 1
     near(np.delete(amplitudes, 1), 0.0, amplitudes[1], 1e-14)
 
@@ -175,14 +175,14 @@ def test_planet_that_keeps_its_direction_moves_in_a_circle() -> None:
         eq.Gear("idler", "planet", teeth=(20, 40), carrier="carrier", start=0.3),
     )
     planet = link(2.0, (0.03, 0.04), 5e-3, C=ORIGIN, P=(0.2, -0.1))
-    found = forces(carrier_with(planet, *gears))
-    motion = found.motion
+    result = forces(carrier_with(planet, *gears))
+    motion = result.motion
     near(motion.links["planet"].angle, 0.3)
     near(motion.links["planet"].angular_velocity, 0.0)
     circle = motion.points["P"].place - (0.2 - 0.1j) * np.exp(0.3j)
     near(circle, 0.1 * np.exp(1j * THETA))
     outwards = 2.0 * 0.1 * (SPEED**2 - 1j * ACCELERATION) * np.exp(1j * THETA)
-    near(found.shaking_force.value, outwards, 20.0)
+    near(result.shaking_force.value, outwards, 20.0)
 
 
 @compared(CLOSED_FORMS, "path: a straight line, an ellipse", 1e-12, "Cardan circles")
@@ -288,8 +288,8 @@ def test_light_links_transmit_torque_by_power() -> None:
     machine = four_bar(*LENGTHS)
     for name in machine.links:
         machine = machine.with_link(name, mass=0.0, inertia=0.0)
-    found = forces(replace(machine, loads=(eq.Load("rocker", torque=-5.0),)))
-    near(found.drive_torque, 5.0 * found.motion.links["rocker"].angle_1, 5.0)
+    result = forces(replace(machine, loads=(eq.Load("rocker", torque=-5.0),)))
+    near(result.drive_torque, 5.0 * result.motion.links["rocker"].angle_1, 5.0)
 
 
 @compared(CLOSED_FORMS, "swing of the lever: 2 asin(80 / 200)", 1e-05, "quick-return")

@@ -145,8 +145,8 @@ def test_they_are_read_printed_and_written(tmp_path: Any) -> None:
         kinds = ("direct current, ", "induction, 1500 rpm without slip", "servo, 382.0 rpm, 6")
         assert any(kind in out for kind in kinds)
     run = eq.run(driven(), "2 s")
-    told = json.loads(json_text(run.to_dict()))["electric"]
-    assert told["current"][-1] == run.electric.current[-1]
+    content = json.loads(json_text(run.to_dict()))["electric"]
+    assert content["current"][-1] == run.electric.current[-1]
     names = [f"{name} [{unit}]" for name, unit, _ in run.columns()]
     assert names[-3:] == ["electric.current [A]", "electric.supply [J]", "electric.heat [J]"]
     shown = " ".join(map(str, run.blocks()))
@@ -188,7 +188,7 @@ def test_a_brake_stops_a_crank_and_takes_its_energy(sense: float) -> None:
 def test_a_brake_does_nothing_while_a_motor_is_on() -> None:
     driven_on = braked(crank(gravity=0.0), 3.0, Motor(torque=4.0))
     with_it, without = (
-        eq.run(one, turns=3) for one in (driven_on, driven_on.with_drive(brake=0.0))
+        eq.run(item, turns=3) for item in (driven_on, driven_on.with_drive(brake=0.0))
     )
     assert with_it.end.time == pytest.approx(without.end.time, rel=1e-12)
     assert np.all(with_it.work["brake"] == 0) and "brake" not in without.work

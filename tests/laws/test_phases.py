@@ -52,7 +52,7 @@ class Dumb:
 
     def values(self, phases: Sequence[float]) -> list[float]:
         turning = np.exp(1j * np.outer(phases, self.waves))
-        found = []
+        actual = []
         for share, wish, scale in zip(self.shares, self.wishes, self.scales, strict=True):
             short = np.sum(share * turning, axis=0)
             if wish.output == "shaking_force":
@@ -61,12 +61,12 @@ class Dumb:
                 signal = np.fft.ifft(fine)
             else:
                 signal = np.fft.irfft(short[:360], self.COUNT)
-            found.append(measured(signal * (self.COUNT / 720), wish.measure) / scale)
-        return found
+            actual.append(measured(signal * (self.COUNT / 720), wish.measure) / scale)
+        return actual
 
     def __call__(self, free: Array) -> float:
-        found = self.values([0.0, *free])
-        return sum(found) if self.combine == "sum" else float(np.linalg.norm(found))
+        result = self.values([0.0, *free])
+        return sum(result) if self.combine == "sum" else float(np.linalg.norm(result))
 
 
 CASES: dict[str, tuple[int, list[Objective], Combine]] = {
@@ -107,15 +107,15 @@ def chosen(case: str) -> tuple[eq.Machine, Phasing]:
 def test_nothing_better_is_found_by_evolution(case: str) -> None:
     """1e-6 of the value: sampled peaks are too low by up to 1e-7 times the square of the order."""
     count, wishes, combine = CASES[case]
-    machine, found = chosen(case)
+    machine, actual = chosen(case)
     dumb = Dumb(machine, wishes, combine)
     rms_only = all(wish.measure in {"rms", "ripple"} for wish in wishes)
-    here = dumb(np.array(found.phases[1:]))
-    assert found.combined[1] == pytest.approx(here, rel=1e-9 if rms_only else 3e-6)
+    here = dumb(np.array(actual.phases[1:]))
+    assert actual.combined[1] == pytest.approx(here, rel=1e-9 if rms_only else 3e-6)
     other = differential_evolution(
         dumb, [(0, 2 * pi)] * (count - 1), popsize=10, maxiter=60, tol=1e-9, seed=3
     )
-    assert found.combined[1] <= other.fun * (1 + (1e-9 if rms_only else 3e-6))
+    assert actual.combined[1] <= other.fun * (1 + (1e-9 if rms_only else 3e-6))
 
 
 @pytest.mark.parametrize(
@@ -131,9 +131,9 @@ def test_nothing_better_on_a_coarse_grid_in_time(output: str) -> None:
         ]
         for row in machine.rows
     )
-    best = min(measured(first[0] + one + other, "rms") for one, other in product(*others))
-    found = choose_phases(machine, [Objective(output)])
-    (after,) = found.after.values()
+    best = min(measured(first[0] + item + other, "rms") for item, other in product(*others))
+    phasing = choose_phases(machine, [Objective(output)])
+    (after,) = phasing.after.values()
     assert after <= best * (1 + 1e-12)
 
 
@@ -142,10 +142,10 @@ def test_nothing_better_on_a_coarse_grid_in_time(output: str) -> None:
 def test_polished_to_ten_digits(case: str) -> None:
     """A simplex search from the phases found, small and large, gains nothing."""
     count, wishes, combine = CASES[case]
-    machine, found = chosen(case)
+    machine, actual = chosen(case)
     cost = PhaseSearch(machine, tuple(wishes), Phases(), combine).cost
-    start = np.array(found.phases)
-    assert cost.values(start) == pytest.approx(found.combined[1], rel=1e-12)
+    start = np.array(actual.phases)
+    assert cost.values(start) == pytest.approx(actual.combined[1], rel=1e-12)
     for size in (1e-3, 1e-6):
         simplex = start[1:] + size * np.vstack([np.zeros(count - 1), np.eye(count - 1)])
         other = minimize(
@@ -154,7 +154,7 @@ def test_polished_to_ten_digits(case: str) -> None:
             method="Nelder-Mead",
             options={"initial_simplex": simplex, "xatol": 1e-11, "fatol": 1e-14},
         )
-        assert other.fun >= found.combined[1] * (1 - 1e-10)
+        assert other.fun >= actual.combined[1] * (1 - 1e-10)
 
 
 # -- laws of the search ----------------------------------------------------------------------------
@@ -166,33 +166,33 @@ def test_a_common_shift_changes_nothing() -> None:
     machine = side_by_side(TYPE_II, (0.0, 1.0, 2.5, 4.0))
     shifted = side_by_side(TYPE_II, (0.7, 1.7, 3.2, 4.7))
     wishes = [Objective("shaking_force"), Objective("yaw_moment")]
-    one, other = choose_phases(machine, wishes), choose_phases(shifted, wishes)
-    assert one.combined == pytest.approx(other.combined, rel=1e-9)
+    first, other = choose_phases(machine, wishes), choose_phases(shifted, wishes)
+    assert first.combined == pytest.approx(other.combined, rel=1e-9)
     assert other.phases[0] == 0.7
-    apart = (np.array(other.phases) - 0.7 - one.phases) % (2 * pi)
+    apart = (np.array(other.phases) - 0.7 - first.phases) % (2 * pi)
     assert np.minimum(apart, 2 * pi - apart) == pytest.approx(np.zeros(4), abs=1e-6)
 
 
 # Phases found are the best: the tests above and below.
 @pytest.mark.exhaustive
 def test_the_result_is_its_own_result() -> None:
-    _, found = chosen("peak")
-    again = choose_phases(found.machine, CASES["peak"][1])
-    assert again.phases == found.phases
-    assert again.machine is found.machine
+    _, actual = chosen("peak")
+    again = choose_phases(actual.machine, CASES["peak"][1])
+    assert again.phases == actual.phases
+    assert again.machine is actual.machine
     assert "no phases were found that are better" in str(again.notes[0])
 
 
 def test_equal_rows_are_laid_out_with_the_least_twist() -> None:
     """Shaking force alone does not see which row has which phase: all orders of rows are tried."""
-    found = choose_phases(side_by_side(TYPE_II, [0.0] * 4), [Objective("shaking_force")])
+    phasing = choose_phases(side_by_side(TYPE_II, [0.0] * 4), [Objective("shaking_force")])
     twists = []
-    for phases in permutations(found.phases):
+    for phases in permutations(phasing.phases):
         rows = side_by_side(TYPE_II, phases)
         twists.append(
             np.hypot(*(value_of(rows, Objective(o)) for o in ("roll_moment", "yaw_moment")))
         )
-    mine = np.hypot(*(after for _, after in found.lateral.values()))
+    mine = np.hypot(*(after for _, after in phasing.lateral.values()))
     assert mine == pytest.approx(min(twists), rel=1e-9)
     assert max(twists) > 1.5 * mine
 
@@ -219,16 +219,16 @@ def least_on_grid(machine: eq.Machine, wish: Objective) -> float:
     each = [in_time(machine.with_rows([row]), wish.output) for row in at_zero]
     whole = len(each[0])
     places = np.arange(0, whole, SHORT)
-    rolled = [one[(np.arange(whole) + places[:, None]) % whole] for one in each[1:]]
+    rolled = [item[(np.arange(whole) + places[:, None]) % whole] for item in each[1:]]
     least = np.inf
     for steps in product(range(len(places)), repeat=len(each) - 2):
-        partly = each[0] + sum(one[k] for one, k in zip(rolled, steps, strict=False))
+        partly = each[0] + sum(item[k] for item, k in zip(rolled, steps, strict=False))
         values = partly + rolled[-1]
         if wish.measure == "rms":
-            found = np.sqrt(np.mean(np.abs(values) ** 2, axis=1))
+            result = np.sqrt(np.mean(np.abs(values) ** 2, axis=1))
         else:
-            found = np.max(np.abs(values), axis=1)
-        least = min(least, float(np.min(found)))
+            result = np.max(np.abs(values), axis=1)
+        least = min(least, float(np.min(result)))
     return least
 
 
@@ -243,18 +243,18 @@ def test_no_phases_on_a_grid_of_5_degrees_are_better(kind: str, seed: int) -> No
     output = rng.choice(outputs)
     wish = Objective(str(output), "peak" if rng.random() < 0.25 else "rms")
     try:
-        found = choose_phases(machine, [wish])
+        phasing = choose_phases(machine, [wish])
     except UsageError:  # links without masses, on springs
         wish = Objective("drive_torque")
-        found = choose_phases(machine, [wish])
+        phasing = choose_phases(machine, [wish])
     least = least_on_grid(machine, wish)
-    ((before, after),) = zip(found.before.values(), found.after.values(), strict=True)
+    ((before, after),) = zip(phasing.before.values(), phasing.after.values(), strict=True)
     # samples miss a peak of order n by (n pi / 720)^2 / 2, which flatters the grid
     short = 1e-9 if wish.measure == "rms" else (10 * pi / 720) ** 2 / 2
     assert after <= least * (1 + short)
-    assert found.bound * before <= least * (1 + 1e-9)
+    assert phasing.bound * before <= least * (1 + 1e-9)
     # peaks are read at samples in the proof too, 720 in a turn
-    assert after - found.bound * before <= (1.01 * CLOSE + short) * before
+    assert after - phasing.bound * before <= (1.01 * CLOSE + short) * before
 
 
 # On random machines: `test_no_phases_on_a_grid_of_5_degrees_are_better`.
@@ -266,16 +266,16 @@ def test_no_phases_of_bundled_machines_are_better_on_a_grid(name: str) -> None:
     """Four rows, whose shaking force and vertical force depend on the phases alone."""
     machine = eq.load(name).with_balance(None)
     for output in ("shaking_force", "shaking_force.y"):
-        found = choose_phases(machine, [Objective(output)])
-        one = in_time(machine.with_rows([replace(machine.rows[0], phase=0.0)]), output)
-        sizes = np.abs(np.fft.fft(one)) ** 2 / len(one) ** 2
-        waves = np.fft.fftfreq(len(one), 1 / len(one))
+        phasing = choose_phases(machine, [Objective(output)])
+        first = in_time(machine.with_rows([replace(machine.rows[0], phase=0.0)]), output)
+        sizes = np.abs(np.fft.fft(first)) ** 2 / len(first) ** 2
+        waves = np.fft.fftfreq(len(first), 1 / len(first))
         turns = np.exp(1j * np.outer(np.arange(STEPS) * (2 * pi / STEPS), waves))
         least = np.inf
         for j in range(STEPS):
             for k in range(j, STEPS):
                 sums = 1 + turns[j] + turns[k] + turns[k:]
                 least = min(least, float(np.min(np.abs(sums) ** 2 @ sizes)))
-        (after,) = found.after.values()
+        (after,) = phasing.after.values()
         assert after <= np.sqrt(least) * (1 + 1e-9)
-        assert after - found.bound * found.before[f"rms of {output}"] <= CLOSE * after * 10
+        assert after - phasing.bound * phasing.before[f"rms of {output}"] <= CLOSE * after * 10

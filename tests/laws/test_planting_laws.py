@@ -55,18 +55,18 @@ def subject(name: str) -> eq.Machine:
 @pytest.mark.parametrize("name", SUBJECTS)
 def test_power_fed_in_is_gained_or_left_in_the_soil(name: str, acceleration: float) -> None:
     """The soil's share is its force times the tip's velocity relative to the machine's frame."""
-    found = eq.analyze(subject(name), 180, acceleration=acceleration).forces
-    assert found.motion.machine.planting is not None
-    tip = found.motion.points[found.motion.machine.planting.tip]
-    *loads, soil = load_power(found)
+    forces = eq.analyze(subject(name), 180, acceleration=acceleration).forces
+    assert forces.motion.machine.planting is not None
+    tip = forces.motion.points[forces.motion.machine.planting.tip]
+    *loads, soil = load_power(forces)
     peak_of_soil = np.max(np.abs(soil))
     assert peak_of_soil > 0
-    again = along(tip.velocity, soil_force(found.motion))
+    again = along(tip.velocity, soil_force(forces.motion))
     np.testing.assert_allclose(again, soil, rtol=0, atol=1e-12 * peak_of_soil)
-    rows = [*kinetic_power(found), *-gravity_power(found), *(-load for load in loads), -soil]
-    rows = [*rows, *-spring_power(found)]
-    peak = np.max(np.sum(np.abs(rows), axis=0) + np.abs(found.power))
-    np.testing.assert_allclose(found.power, np.sum(rows, axis=0), rtol=0, atol=1e-12 * peak)
+    rows = [*kinetic_power(forces), *-gravity_power(forces), *(-load for load in loads), -soil]
+    rows = [*rows, *-spring_power(forces)]
+    peak = np.max(np.sum(np.abs(rows), axis=0) + np.abs(forces.power))
+    np.testing.assert_allclose(forces.power, np.sum(rows, axis=0), rtol=0, atol=1e-12 * peak)
 
 
 @pytest.mark.parametrize("name", SUBJECTS)
@@ -117,17 +117,17 @@ def read_off(name: str, travel: Any = "forward") -> PlantingFigures:
 
 def agree(got: PlantingFigures, want: dict[str, float], within: float = 1e-9) -> None:
     """Compare all figures, and all those of the loops, to a part of each vector or value."""
-    found = all_figures(got)
-    assert found.keys() == want.keys()
+    figures = all_figures(got)
+    assert figures.keys() == want.keys()
     for name, value in want.items():
         last = name.split(".")[-1]
         if last in TURNING:
-            apart = turned_apart(name, found[name], value)
+            apart = turned_apart(name, figures[name], value)
             assert apart < max(within, 1e-7 if name.startswith("soil.max") else 0), name
             continue
         scale = abs(want.get(".".join([*name.split(".")[:-1], "size"]), value)) + 1e-4
         kind = "tray" if name.startswith("clearance.tray") else name
-        assert abs(found[name] - value) < SLACK.get(kind, within) * scale, name
+        assert abs(figures[name] - value) < SLACK.get(kind, within) * scale, name
 
 
 def turned_apart(name: str, a: float, b: float) -> float:
@@ -193,11 +193,11 @@ def test_time_reversed(name: str, travel: str) -> None:
         ):
             value = -value  # noqa: PLW2901
         want[".".join(filter(None, (swap.get(first, first), rest)))] = value
-    found = all_figures(back)
+    figures = all_figures(back)
     for key in [key for key in want if key.startswith("pick_up")]:
-        del want[key], found[key]  # the tip may pass the tray another time before it enters
-    assert found.keys() == want.keys()
-    agree(replace_figures(back, found), want)
+        del want[key], figures[key]  # the tip may pass the tray another time before it enters
+    assert figures.keys() == want.keys()
+    agree(replace_figures(back, figures), want)
 
 
 def replace_figures(figures: PlantingFigures, kept: dict[str, float]) -> PlantingFigures:
@@ -219,15 +219,15 @@ def test_every_figure_scales_as_its_kind_says(name: str, lengths: float, times: 
         "speed": lengths / times,
         "acceleration": lengths / times**2,
     }
-    found = plant(scaled).figures
-    assert found.keys() == read_off(name).figures.keys()
+    figures = plant(scaled).figures
+    assert figures.keys() == read_off(name).figures.keys()
     for key, value in read_off(name).figures.items():
         factor = by_kind[dimension_of(key)]
         size = read_off(name).figures.get(".".join([*key.split(".")[:-1], "size"]), value)
         zoomed = key == "soil.max_acceleration.crank_angle" or key.startswith("clearance.")
         within = 1e-7 if zoomed else 1e-10
-        off = abs(found[key] / factor - value)
-        off = turned_apart(key, found[key], value) if key == "transmission.min_at" else off
+        off = abs(figures[key] / factor - value)
+        off = turned_apart(key, figures[key], value) if key == "transmission.min_at" else off
         assert off < within * (abs(size) + 1e-3), key
 
 

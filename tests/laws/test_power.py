@@ -49,70 +49,70 @@ every_subject = pytest.mark.parametrize("name", names())
 def test_power_fed_in_is_the_rate_of_change_of_energy(
     name: str, speed: float | None, acceleration: float | None
 ) -> None:
-    found = forces_of(name, speed, acceleration)
-    rows = [*kinetic_power(found), *-gravity_power(found), *-load_power(found)]
-    rows = [*rows, *-spring_power(found)]
-    size = np.max(np.sum(np.abs(rows), axis=0) + np.abs(found.power))
-    same(found.power, np.sum(rows, axis=0), TOLERANCE, float(size))
+    result = forces_of(name, speed, acceleration)
+    rows = [*kinetic_power(result), *-gravity_power(result), *-load_power(result)]
+    rows = [*rows, *-spring_power(result)]
+    size = np.max(np.sum(np.abs(rows), axis=0) + np.abs(result.power))
+    same(result.power, np.sum(rows, axis=0), TOLERANCE, float(size))
 
 
 @pytest.mark.parametrize("name", sorted(eq.examples("linkage")))
 def test_no_work_is_left_after_a_cycle(name: str) -> None:
     machine = replace(without_loads(machine_of(name)), springs=machine_of(name).springs)
-    found = forces(machine, 720, acceleration=0.0)
-    size = np.max(np.abs([*kinetic_power(found), found.power]))  # equal cranks keep their energy
-    assert abs(np.mean(found.power)) < 1e-9 * size
+    result = forces(machine, 720, acceleration=0.0)
+    size = np.max(np.abs([*kinetic_power(result), result.power]))  # equal cranks keep their energy
+    assert abs(np.mean(result.power)) < 1e-9 * size
 
 
 @every_subject
 def test_frame_bears_shaking_force_weight_and_loads(name: str) -> None:
-    found = forces_of(name)
-    loads = load_resultant(found)[0]
-    parts = [found.shaking_force.value, found.weight.value, loads]
-    same(found.frame_force.value, sum(parts), TOLERANCE, sizes(found)[0])
+    result = forces_of(name)
+    loads = load_resultant(result)[0]
+    parts = [result.shaking_force.value, result.weight.value, loads]
+    same(result.frame_force.value, sum(parts), TOLERANCE, sizes(result)[0])
 
 
 @every_subject
 @pytest.mark.parametrize("about", [None, (0.3, -0.2)])
 def test_moment_on_the_frame_closes(name: str, about: Any) -> None:
     machine = machine_of(name)
-    found = forces_of(name) if about is None else forces(machine, about=about)
-    loads = load_resultant(found)[1]
-    parts = [found.shaking_moment, found.weight_moment, loads]
-    same(found.frame_moment, sum(parts), TOLERANCE, moment_scale(found))
+    actual = forces_of(name) if about is None else forces(machine, about=about)
+    loads = load_resultant(actual)[1]
+    parts = [actual.shaking_moment, actual.weight_moment, loads]
+    same(actual.frame_moment, sum(parts), TOLERANCE, moment_scale(actual))
 
 
-def load_resultant(found: eq.mechanism.Forces) -> tuple[Any, Any]:
+def load_resultant(result: eq.mechanism.Forces) -> tuple[Any, Any]:
     """Force and moment about the pole of all loads whose opposite the frame does not bear."""
-    motion = found.motion
+    motion = result.motion
     total, turning = np.zeros(len(ANGLES), complex), np.zeros(len(ANGLES))
     outer = chain((load.reaction is None for load in loads_by_end(motion.machine)), repeat(True))
-    for _, point, force, torque in compress(acting(found), outer):
-        arm = 0.0 if point is None else motion.points[point].place - found.about
+    for _, point, force, torque in compress(acting(result), outer):
+        arm = 0.0 if point is None else motion.points[point].place - result.about
         total, turning = total + force, turning + torque + along(1j * arm, force)
     return total, turning
 
 
-def moment_scale(found: eq.mechanism.Forces) -> float:
+def moment_scale(result: eq.mechanism.Forces) -> float:
     """Largest moment: of any output, or of any joint's force about the pole."""
-    centers = found.motion.mass_centers.values()
-    reach = max(float(np.max(np.abs(center.place - found.about))) for center in centers)
-    force, moment = sizes(found)
+    centers = result.motion.mass_centers.values()
+    reach = max(float(np.max(np.abs(center.place - result.about))) for center in centers)
+    force, moment = sizes(result)
     return max(moment, force * reach)
 
 
 @every_subject
 def test_shaking_is_the_loss_of_momentum(name: str) -> None:
-    found = forces_of(name)
-    links, centers = found.motion.links, found.motion.mass_centers
+    result = forces_of(name)
+    links, centers = result.motion.links, result.motion.mass_centers
     force, moment = np.zeros(len(ANGLES), complex), np.zeros(len(ANGLES))
-    for key, link in found.motion.machine.links.items():
+    for key, link in result.motion.machine.links.items():
         change = (link.mass or 0.0) * centers[key].acceleration_vector
         force = force - change
-        moment = moment - along(1j * (centers[key].place - found.about), change)
+        moment = moment - along(1j * (centers[key].place - result.about), change)
         moment = moment - (link.inertia or 0.0) * links[key].angular_acceleration
-    same(found.shaking_force.value, force, TOLERANCE, sizes(found)[0])
-    same(found.shaking_moment, moment, TOLERANCE, moment_scale(found))
+    same(result.shaking_force.value, force, TOLERANCE, sizes(result)[0])
+    same(result.shaking_moment, moment, TOLERANCE, moment_scale(result))
 
 
 # -- parts -----------------------------------------------------------------------------------------
@@ -120,12 +120,12 @@ def test_shaking_is_the_loss_of_momentum(name: str) -> None:
 
 @every_subject
 def test_causes_and_links_add_up_to_every_output(name: str) -> None:
-    found = forces_of(name)
-    split = found.split
-    shape = (len(split.causes), len(found.motion.machine.links), len(ANGLES))
+    result = forces_of(name)
+    split = result.split
+    shape = (len(split.causes), len(result.motion.machine.links), len(ANGLES))
     parts = dict(split_outputs(split))
     scale = split_scales(parts)
-    for key, value in outputs(found):
+    for key, value in outputs(result):
         assert parts[key].shape == shape, key
         same(parts[key].sum(axis=(0, 1)), value, TOLERANCE, scale[is_force(key)])
 
@@ -148,14 +148,14 @@ def split_scales(parts: dict[str, Any]) -> dict[bool, float]:
 
 @pytest.mark.parametrize("name", ["geared-counterweight", "quick-return", "class-three"])
 def test_split_by_cause_and_by_link_has_names(name: str) -> None:
-    found = forces_of(name)
-    joints = [f"joints.{name}" for name in found.joints]
-    keys = ["drive_torque", "shaking_force", *joints, *(f"gears.{name}" for name in found.gears)]
+    result = forces_of(name)
+    joints = [f"joints.{name}" for name in result.joints]
+    keys = ["drive_torque", "shaking_force", *joints, *(f"gears.{name}" for name in result.gears)]
     for key in keys:
-        causes, links = found.split.by_cause(key), found.split.by_link(key)
+        causes, links = result.split.by_cause(key), result.split.by_link(key)
         assert tuple(causes) == EVERYWHERE
-        assert tuple(links) == tuple(found.motion.machine.links)
-        same(sum(causes.values()), sum(links.values()), TOLERANCE, sizes(found)[0])
+        assert tuple(links) == tuple(result.motion.machine.links)
+        same(sum(causes.values()), sum(links.values()), TOLERANCE, sizes(result)[0])
 
 
 def test_each_kind_of_force_element_has_its_own_cause() -> None:
@@ -173,16 +173,16 @@ def test_each_kind_of_force_element_has_its_own_cause() -> None:
         },
     }
     whole = replace(machine, **{key: given for own in lists.values() for key, given in own.items()})
-    found = forces(whole)
-    assert found.split.causes == (*EVERYWHERE, "damper", "stop", "resistance")
+    result = forces(whole)
+    assert result.split.causes == (*EVERYWHERE, "damper", "stop", "resistance")
     for cause, own in lists.items():
         bare = forces(replace(whole, **dict.fromkeys(own, ())))
-        share = found.split.by_cause("drive_torque")[cause]
+        share = result.split.by_cause("drive_torque")[cause]
         assert np.max(np.abs(share)) > 1e-3
-        same(share, found.drive_torque - bare.drive_torque, TOLERANCE, sizes(found)[1])
-        joint = found.split.by_cause("joints.C")[cause]
-        lost = found.joints["C"].value - bare.joints["C"].value
-        same(joint, lost, TOLERANCE, sizes(found)[0])
+        same(share, result.drive_torque - bare.drive_torque, TOLERANCE, sizes(result)[1])
+        joint = result.split.by_cause("joints.C")[cause]
+        lost = result.joints["C"].value - bare.joints["C"].value
+        same(joint, lost, TOLERANCE, sizes(result)[0])
 
 
 @every_subject
@@ -213,21 +213,21 @@ def test_rotation_turns_without_force(name: str) -> None:
 
 @every_subject
 def test_outputs_are_linear_in_the_parameters(name: str) -> None:
-    found = forces_of(name)
-    regressor = eq.mechanism.regressor(found.motion)
-    loads = dict(split_outputs(found.split))
+    result = forces_of(name)
+    regressor = eq.mechanism.regressor(result.motion)
+    loads = dict(split_outputs(result.split))
     scale = split_scales({
         key: regressor.values[:, None] * value for key, value in split_outputs(regressor)
     })  # fmt: skip
     rows = dict(split_outputs(regressor))
-    for key, value in outputs(found):
+    for key, value in outputs(result):
         of_loads = loads[key][EVERYWHERE.index("load") :].sum(axis=(0, 1))
-        bound = max(scale[is_force(key)], sizes(found)[not is_force(key)])
+        bound = max(scale[is_force(key)], sizes(result)[not is_force(key)])
         same(regressor.values @ rows[key] + of_loads, value, TOLERANCE, bound)
 
 
 @pytest.mark.parametrize("name", ["yamashita-1", "class-three", "watt:0", "slider_on_rocker:1"])
-def test_regressor_tells_other_masses(name: str) -> None:
+def test_regressor_reports_other_masses(name: str) -> None:
     """Each column is the difference that one parameter makes."""
     machine = without_loads(machine_of(name))
     regressor = eq.mechanism.regressor(forces(machine).motion)

@@ -46,8 +46,8 @@ def test_rows_together_as_in_time(kind: str, seed: int) -> None:
     for output in (*SCALARS, "shaking_force", "frame_force"):
         values = in_time(machine, output, count=2880)
         for measure in MEASURES if output in SCALARS else ("rms", "peak"):
-            found = value_of(machine, Objective(output, measure))
-            assert found == pytest.approx(measured(values, measure), rel=TOLERANCES[measure])
+            value = value_of(machine, Objective(output, measure))
+            assert value == pytest.approx(measured(values, measure), rel=TOLERANCES[measure])
 
 
 @pytest.mark.parametrize(("seed", "turns"), few_together([(4, 2), (3, 3)], {(4, 2)}))
@@ -62,19 +62,19 @@ def test_cycle_of_several_turns(seed: int, turns: int) -> None:
         values.append(value_of(rows, wish))
         assert values[-1] == pytest.approx(measured(in_time(rows, wish.output), "rms"), rel=1e-9)
     assert values[0] != pytest.approx(values[1], rel=1e-3)
-    found = choose_phases(side_by_side(machine, (0.0, 0.0)), [wish])
+    phasing = choose_phases(side_by_side(machine, (0.0, 0.0)), [wish])
     scan = [
         value_of(side_by_side(machine, (0.0, phase)), wish)
         for phase in np.linspace(0, 2 * pi * turns, 400)
     ]
-    assert min(scan) * (1 - 1e-3) <= found.after[wish.name] <= min(scan)
+    assert min(scan) * (1 - 1e-3) <= phasing.after[wish.name] <= min(scan)
 
 
 def test_moment_about_a_point_of_the_frame() -> None:
     machine = anyhow(TYPE_II, 3)
-    found = value_of(machine, Objective("shaking_moment", about="D"))
+    value = value_of(machine, Objective("shaking_moment", about="D"))
     expected = measured(in_time(machine, "shaking_moment", "D"), "rms")
-    assert found == pytest.approx(expected, rel=1e-11)
+    assert value == pytest.approx(expected, rel=1e-11)
 
 
 @pytest.mark.parametrize(
@@ -96,8 +96,8 @@ def test_gauges_as_respond_has_them(machine: eq.Machine, gauge: str) -> None:
         response = respond(machine, speed)
         expected = float(response.gauges[gauge].displacement.vibration_rms)
         speeds = () if speed is None else (speed,)
-        found = value_of(machine, Objective(f"gauges.{gauge}", speeds=speeds))
-        assert found == pytest.approx(expected, rel=1e-10)
+        result = value_of(machine, Objective(f"gauges.{gauge}", speeds=speeds))
+        assert result == pytest.approx(expected, rel=1e-10)
 
 
 def test_loudest_of_several_speeds_counts() -> None:
@@ -124,9 +124,9 @@ def test_grid_by_pairs_of_rows(wishes: list[Objective]) -> None:
     cost = PhaseSearch(machine, tuple(wishes), Phases(), "sum").cost
     grid = PhaseGrid(cost, 12)
     assert grid.count == 12 * 13 // 2
-    told: list[int] = []
-    cells = grid.best(told.append)
-    assert told[-1] == grid.count == len(cells)
+    texts: list[int] = []
+    cells = grid.best(texts.append)
+    assert texts[-1] == grid.count == len(cells)
     values = cost.values(cells)
     assert np.all(np.diff(values) > -1e-9 * values[-1])
     everything = np.array(list(product([0.0], *[np.arange(12) * pi / 6] * 2)))

@@ -132,10 +132,10 @@ def test_near_a_steady_state_a_piece_takes_few_rounds(monkeypatch: pytest.Monkey
     assert run.end.speed == pytest.approx(anew.end.speed, rel=1e-11)
 
 
-def speed_by_scipy(machine: eq.Machine, found: Run) -> float:
+def speed_by_scipy(machine: eq.Machine, result: Run) -> float:
     """Crank speed at the end of a run, rad/s, integrated in time from its second cycle on."""
     equation, driver = CrankEquation(machine), Driver.of(machine)
-    begin = found.begins[-2]
+    begin = result.begins[-2]
 
     def rates(_: float, state: np.ndarray) -> list[float]:
         inertia, slope, torques = equation.at(state[0], state[1])
@@ -144,7 +144,7 @@ def speed_by_scipy(machine: eq.Machine, found: Run) -> float:
         return [state[1], change]
 
     solution = solve_ivp(
-        rates, (begin.time, found.end.time), [begin.angle, begin.speed], "DOP853",
+        rates, (begin.time, result.end.time), [begin.angle, begin.speed], "DOP853",
         rtol=1e-10, atol=1e-10,
     )  # fmt: skip
     return float(solution.y[1, -1])
@@ -240,9 +240,9 @@ def test_energy_and_time_integration(name: str) -> None:
 def test_a_drive_with_nothing_to_do_is_said_to_do_nothing() -> None:
     """Where weight and springs alone act, the microjoules of a last cycle say nothing."""
     machine = eq.load("walking-transplanter")
-    told = str([*run_blocks(eq.run(machine))])
-    assert "drive: zero mean power, as the file has neither friction nor load" in told
-    assert " J in a turn" not in told
+    text = str([*run_blocks(eq.run(machine))])
+    assert "drive: zero mean power, as the file has neither friction nor load" in text
+    assert " J in a turn" not in text
     loaded = replace(machine, loads=(eq.Load("coupler", "P", (1e-3, 0.0)),))
     assert "drive: zero mean power" not in str([*run_blocks(eq.run(loaded))])
 

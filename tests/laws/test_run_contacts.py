@@ -60,15 +60,15 @@ def test_a_run_that_ends_on_a_stop_does_not_leave_it() -> None:
     assert later.crank_speed[-1] == pytest.approx(-0.6 * SPEED, rel=1e-2)
 
 
-def beside_another(one: Machine) -> Machine:
+def beside_another(item: Machine) -> Machine:
     """The wheel, with another that turns on its own."""
     other = eq.Link({"Z": (0.0, 0.0)}, 1.0, (0.0, 0.0), 1.0)
     return replace(
-        one,
-        frame={**one.frame, "Z": (1.0, 0.0)},
-        links={**one.links, "other": other},
+        item,
+        frame={**item.frame, "Z": (1.0, 0.0)},
+        links={**item.links, "other": other},
         drives=(FurtherDrive("other", 5.0),),
-        drive=replace(one.drive, free=True),
+        drive=replace(item.drive, free=True),
     )
 
 
@@ -87,10 +87,10 @@ def test_a_contact_is_that_of_the_row_that_meets_its_stop(several: bool) -> None
 
 
 def test_a_run_of_several_drives_has_them() -> None:
-    one = wheel()
-    run = eq.run(beside_another(one), "0.4 s", speed=SPEED)
+    first = wheel()
+    run = eq.run(beside_another(first), "0.4 s", speed=SPEED)
     (contact,) = run.contacts
-    alone = eq.run(one, "0.4 s", speed=SPEED).contacts[0]
+    alone = eq.run(first, "0.4 s", speed=SPEED).contacts[0]
     assert contact.begin == pytest.approx(alone.begin, rel=1e-7)
     assert contact.end == pytest.approx(alone.end, rel=1e-6)
     assert contact.force == pytest.approx(alone.force, rel=1e-3)

@@ -366,13 +366,13 @@ def test_a_crank_beside_another_runs_as_it_does_alone(name: str) -> None:
     speed = abs(drive.speed)
     run = eq.run(machine, 2.0 / speed, speed=speed)
     both = beside(replace(machine, drive=replace(drive, free=True)))
-    found = eq.run(both, 2.0 / speed, speed=speed)
-    course = found.drives[machine.drive.link]
-    assert found.energy_error < 1e-9
+    result = eq.run(both, 2.0 / speed, speed=speed)
+    course = result.drives[machine.drive.link]
+    assert result.energy_error < 1e-9
     assert course.angle[-1] == pytest.approx(run.crank_angle[-1], rel=close)
     assert course.speed[-1] == pytest.approx(run.crank_speed[-1], rel=10 * close)
-    assert {*found.losses} == {*run.losses}
-    for joint, lost in found.losses.items():
+    assert {*result.losses} == {*run.losses}
+    for joint, lost in result.losses.items():
         assert lost[-1] == pytest.approx(run.losses[joint][-1], rel=1e-4)
 
 

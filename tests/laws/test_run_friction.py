@@ -248,9 +248,9 @@ def test_friction_is_refused_where_teeth_share_their_force_with_what_is_redundan
 def test_joints_lose_what_an_analysis_says_at_constant_speed() -> None:
     """A flywheel keeps the speed; an analysis has the friction of inverse dynamics."""
     machine = WORN.with_drive(flywheel=1e4, speed=50.0, motor=None, acceleration=0.0)
-    found, losses = eq.run(machine, turns=1, speed=50.0), eq.analyze(machine, 720).losses
-    assert losses is not None and len(losses.joints) == len(found.losses) > 1
+    actual, losses = eq.run(machine, turns=1, speed=50.0), eq.analyze(machine, 720).losses
+    assert losses is not None and len(losses.joints) == len(actual.losses) > 1
     time = 2 * pi / 50.0
     for name, joint in losses.joints.items():
         # the mean over 720 crank angles misses corners of the losses, where forces pass 0
-        assert found.losses[name][-1] == pytest.approx(joint.loss * time, rel=1e-3)
+        assert actual.losses[name][-1] == pytest.approx(joint.loss * time, rel=1e-3)

@@ -106,7 +106,7 @@ def test_a_support_falls_onto_its_feet_and_bounces() -> None:
     assert max(item.force for item in left) == np.max(run.support.mounts["left"])
 
 
-def test_a_run_on_its_support_tells_gauges_and_mounts() -> None:
+def test_a_run_on_its_support_reports_gauges_and_mounts() -> None:
     machine = eq.load("balance-rig")
     run = on_support(machine, "0.3 s")
     names = [name for name, _, _ in run.columns()]

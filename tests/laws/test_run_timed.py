@@ -154,7 +154,7 @@ def test_between_links_it_is_a_load_on_each(rows: Any, joints: Any) -> None:
 def test_analyses_leave_it_out_and_files_keep_it() -> None:
     machine = replace(ENGINE, timed_loads=BETWEEN)
     survives(machine)
-    bare, loaded = (eq.analyze(one, 12).forces.drive_torque for one in (ENGINE, machine))
+    bare, loaded = (eq.analyze(item, 12).forces.drive_torque for item in (ENGINE, machine))
     np.testing.assert_array_equal(bare, loaded)
 
 

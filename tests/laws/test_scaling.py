@@ -56,25 +56,25 @@ def words(text: Any) -> str:
     return UNIT.sub("#", NUMBER.sub("#", named))
 
 
-def same_blocks(found: Any, want: Any, tolerance: float) -> None:
+def same_blocks(result: Any, want: Any, tolerance: float) -> None:
     """Compare what two results show: the same words, and numbers by their dimension."""
-    left, right = list(found.blocks()), list(want.blocks())
-    assert [type(one) for one in left] == [type(one) for one in right]
-    for one, other in zip(left, right, strict=True):
-        if not isinstance(one, Table):
-            assert words(one) == words(other)
+    left, right = list(result.blocks()), list(want.blocks())
+    assert [type(item) for item in left] == [type(item) for item in right]
+    for entry, other in zip(left, right, strict=True):
+        if not isinstance(entry, Table):
+            assert words(entry) == words(other)
             continue
-        assert words(one.title) == words(other.title)
-        for cells, others in zip(one.rows, other.rows, strict=True):
-            for column, cell, wanted in zip(one.columns, cells, others, strict=True):
+        assert words(entry.title) == words(other.title)
+        for cells, others in zip(entry.rows, other.rows, strict=True):
+            for column, cell, wanted in zip(entry.columns, cells, others, strict=True):
                 same_cell(cell, wanted, column, tolerance)
 
 
 def same_cell(cell: Any, want: Any, column: Column, tolerance: float) -> None:
     assert type(cell) is type(want)
     if isinstance(cell, Many):
-        for one, other in zip(cell.values, want.values, strict=True):
-            same_cell(one, other, column, tolerance)
+        for value, other in zip(cell.values, want.values, strict=True):
+            same_cell(value, other, column, tolerance)
     elif isinstance(cell, Value):
         dimension = cell.dimension or column.dimension
         unit = SI[dimension] if dimension else column.label  # which may be one
@@ -133,7 +133,7 @@ SLOW = {"rotary-transplanter"}
 def test_balancing_by_a_plan(name: str) -> None:
     """With a plan of its own where it has one; the same change is told."""
     kept = eq.load(name) if name in EXAMPLES else machine_of(name)
-    small, large = both(kept, lambda one: eq.balance(one, plan_of(one)))
+    small, large = both(kept, lambda item: eq.balance(item, plan_of(item)))
     # Steps towards limits of gauges end where numbers stand still to 1e-8 of their room.
     exact = not any(limit.objective.output.startswith("gauges.") for limit in large.plan.limits)
     same_blocks(small, large, 1e-7 if exact else 1e-4)
@@ -166,14 +166,16 @@ def test_every_objective(name: str, measure: Any) -> None:
         wish = (Objective(output, measure),)
         for plan in (Balance(masses=(counterweight,), objectives=wish),
                      Balance(moves=moves, objectives=wish)):  # fmt: skip
-            told = []
+            texts = []
             small = in_units(machine, MICRO)
-            for one, own in ((machine, plan), (small, in_units(plan, MICRO, machine))):
+            for first, own in ((machine, plan), (small, in_units(plan, MICRO, machine))):
                 try:
-                    told.append(eq.balance(one, own).cost)
+                    texts.append(eq.balance(first, own).cost)
                 except eq.EquipoiseError as error:
-                    told.append(words(error))
-            assert told[0] == (pytest.approx(told[1]) if isinstance(told[1], float) else told[1])
+                    texts.append(words(error))
+            assert texts[0] == (
+                pytest.approx(texts[1]) if isinstance(texts[1], float) else texts[1]
+            )
 
 
 @pytest.mark.parametrize(
@@ -182,18 +184,18 @@ def test_every_objective(name: str, measure: Any) -> None:
 )
 def test_vibration(name: str, model: Any) -> None:
     machine = eq.load(name)
-    same_blocks(*both(machine, lambda one: eq.respond(one, model=model)), 1e-6)
+    same_blocks(*both(machine, lambda item: eq.respond(item, model=model)), 1e-6)
     small, large = both(machine, eq.modes)
-    for one, other in zip(small.modes, large.modes, strict=True):
-        assert one.eigenvalue * MICRO.time == pytest.approx(other.eigenvalue, rel=1e-8)
+    for mode, other in zip(small.modes, large.modes, strict=True):
+        assert mode.eigenvalue * MICRO.time == pytest.approx(other.eigenvalue, rel=1e-8)
     shapes, wanted = map(shapes_of, (small, large))
     assert np.count_nonzero(shapes) == np.count_nonzero(wanted) > 0
 
 
-def shapes_of(found: Any) -> list[float]:
+def shapes_of(result: Any) -> list[float]:
     """What is shown of the shapes of modes."""
     tables = [
-        block for block in found.blocks() if isinstance(block, Table) and "hapes" in block.title
+        block for block in result.blocks() if isinstance(block, Table) and "hapes" in block.title
     ]
     return [cell.value for table in tables for row in table.rows for cell in row[1:]]
 
@@ -214,12 +216,12 @@ def test_vibration_in_time() -> None:
 @pytest.mark.parametrize("name", FAST)
 def test_drawing(name: str) -> None:
     """Every line at the same place; the ruler differs, and how many lines the texts below take."""
-    small, large = both(machine_of(name), lambda one: laid_out(Scene.of(eq.move(one, 24))))
+    small, large = both(machine_of(name), lambda item: laid_out(Scene.of(eq.move(item, 24))))
     lower = small.stage.origin - large.stage.origin
     assert lower.real == pytest.approx(0, abs=1e-6)
-    for one, other in zip(small.parts, large.parts, strict=True):
-        for stroke, wanted in zip(one.strokes, other.strokes, strict=True):
+    for part, other in zip(small.parts, large.parts, strict=True):
+        for stroke, wanted in zip(part.strokes, other.strokes, strict=True):
             assert stroke.role == wanted.role
             if stroke.role != "scale":
-                points = stroke.points - (lower if one.moves is None else 0)
+                points = stroke.points - (lower if part.moves is None else 0)
                 np.testing.assert_allclose(points, wanted.points, atol=1e-6)

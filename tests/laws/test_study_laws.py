@@ -45,10 +45,10 @@ def ishigami(x: Array, y: Array, z: Array) -> Array:
     return np.sin(x) + 7 * np.sin(y) ** 2 + 0.1 * z**4 * np.sin(x)
 
 
-def effects_of(found: Tolerances, output: str = "f") -> list[Any]:
+def effects_of(result: Tolerances, output: str = "f") -> list[Any]:
     """By the number that varies, in the order of the study."""
-    by_cause = {cause.numbers[0]: cause.effects[output] for cause in found.causes}
-    return [by_cause[path] for path in found.study.paths if path in by_cause]
+    by_cause = {cause.numbers[0]: cause.effects[output] for cause in result.causes}
+    return [by_cause[path] for path in result.study.paths if path in by_cause]
 
 
 # -- shares of variance ----------------------------------------------------------------------------
@@ -64,10 +64,10 @@ def test_shares_of_a_sum(uniforms: int) -> None:
         for k, width in enumerate(widths)
     ]
     variances = (slopes * widths) ** 2 / np.where(np.arange(4) < uniforms, 3, 1)
-    found = tolerance(of(*spreads), compute=formula(lambda *x: slopes @ np.array(x)))
-    assert found.scatters["f"].deviation == pytest.approx(np.sqrt(np.sum(variances)), rel=2e-3)
-    assert found.scatters["f"].mean == pytest.approx(np.sum(slopes), abs=1e-3)
-    for effect, share in zip(effects_of(found), variances / np.sum(variances), strict=True):
+    result = tolerance(of(*spreads), compute=formula(lambda *x: slopes @ np.array(x)))
+    assert result.scatters["f"].deviation == pytest.approx(np.sqrt(np.sum(variances)), rel=2e-3)
+    assert result.scatters["f"].mean == pytest.approx(np.sum(slopes), abs=1e-3)
+    for effect, share in zip(effects_of(result), variances / np.sum(variances), strict=True):
         assert effect.first.value == pytest.approx(share, abs=0.02)
         assert effect.total.value == pytest.approx(share, abs=0.02)
         assert effect.halved == pytest.approx(np.sqrt(1 - 0.75 * share), abs=0.01)
@@ -75,12 +75,12 @@ def test_shares_of_a_sum(uniforms: int) -> None:
 
 
 def test_shares_of_a_known_function() -> None:
-    found = tolerance(of(*[Uniform(0.0, np.pi)] * 3), compute=formula(ishigami))
-    for effect, (first, total) in zip(effects_of(found), ISHIGAMI, strict=True):
+    result = tolerance(of(*[Uniform(0.0, np.pi)] * 3), compute=formula(ishigami))
+    for effect, (first, total) in zip(effects_of(result), ISHIGAMI, strict=True):
         assert effect.first.value == pytest.approx(first, abs=0.03)
         assert effect.total.value == pytest.approx(total, abs=0.03)
     variance = 49 / 8 + 0.1 * np.pi**4 / 5 + 0.01 * np.pi**8 / 18 + 0.5
-    assert found.scatters["f"].deviation == pytest.approx(np.sqrt(variance), rel=1e-3)
+    assert result.scatters["f"].deviation == pytest.approx(np.sqrt(variance), rel=1e-3)
 
 
 def test_shares_against_scipy() -> None:
@@ -105,9 +105,11 @@ def test_intervals_cover_what_they_say() -> None:
     slopes, inside = np.array([1.0, 2.0]), []
     for seed in range(60):
         some = of(Normal(0.0, 1.0), Normal(0.0, 1.0), designs=1024, seed=seed)
-        found = tolerance(some, compute=formula(lambda x, y: slopes[0] * x + slopes[1] * y + x * y))
+        result = tolerance(
+            some, compute=formula(lambda x, y: slopes[0] * x + slopes[1] * y + x * y)
+        )
         first, total = (1 / 6, 4 / 6), (2 / 6, 5 / 6)
-        for k, effect in enumerate(effects_of(found)):
+        for k, effect in enumerate(effects_of(result)):
             inside += [effect.first.low <= first[k] <= effect.first.high]
             inside += [effect.total.low <= total[k] <= effect.total.high]
     assert np.mean(inside) > 0.9
@@ -118,11 +120,11 @@ def test_correlated_numbers(coefficient: float) -> None:
     """The variance of a sum has twice the covariance in it, and both numbers are one cause."""
     together = (Correlation(PATHS[0], PATHS[2], coefficient),)
     some = of(Normal(0.0, 2.0), Normal(0.0, 1.0), Normal(0.0, 3.0), correlations=together)
-    found = tolerance(some, compute=formula(lambda x, y, z: x + y + z))
+    result = tolerance(some, compute=formula(lambda x, y, z: x + y + z))
     pair = 4 + 9 + 2 * coefficient * 6
-    assert found.scatters["f"].deviation == pytest.approx(np.sqrt(pair + 1), rel=5e-3)
-    assert {cause.numbers for cause in found.causes} == {(PATHS[0], PATHS[2]), (PATHS[1],)}
-    both, alone = effects_of(found)
+    assert result.scatters["f"].deviation == pytest.approx(np.sqrt(pair + 1), rel=5e-3)
+    assert {cause.numbers for cause in result.causes} == {(PATHS[0], PATHS[2]), (PATHS[1],)}
+    both, alone = effects_of(result)
     assert both.first.value == pytest.approx(pair / (pair + 1), abs=0.03)
     assert alone.total.value == pytest.approx(1 / (pair + 1), abs=0.03)
     assert both.removed == pytest.approx(np.sqrt(1 / (pair + 1)), abs=0.01)
@@ -137,9 +139,9 @@ def test_failed_machines_do_not_bend_shares() -> None:
         figures[reason != 0] = np.nan
         return Outcome(figures, reason)
 
-    found = tolerance(of(Normal(0.0, 1.0), Normal(0.0, 1.0)), compute=failing)
-    assert 0.05 < found.failures["does not assemble"] / found.designs < 0.15
-    first, second = effects_of(found)
+    result = tolerance(of(Normal(0.0, 1.0), Normal(0.0, 1.0)), compute=failing)
+    assert 0.05 < result.failures["does not assemble"] / result.designs < 0.15
+    first, second = effects_of(result)
     assert first.first.value == pytest.approx(0.2, abs=0.03)
     assert second.total.value == pytest.approx(0.8, abs=0.03)
 
@@ -151,8 +153,8 @@ def test_scatter_of_a_normal_sum() -> None:
     """Its percentiles, and the share within limits, are those of the normal curve."""
     outputs = (Output("f", value="a.b", at_least=-2.0, at_most=1.0),)
     some = of(Normal(0.0, 0.6), Normal(0.0, 0.8), designs=2**16)
-    found = tolerance(replace(some, outputs=outputs), compute=formula(lambda x, y: x + y))
-    scatter = found.scatters["f"]
+    result = tolerance(replace(some, outputs=outputs), compute=formula(lambda x, y: x + y))
+    scatter = result.scatters["f"]
     assert len(scatter.percentiles) == 7
     for percentage, value in scatter.percentiles.items():
         assert value == pytest.approx(norm.ppf(percentage / 100), abs=0.03)
@@ -173,12 +175,12 @@ def test_a_linkage_within_its_worst_case() -> None:
     outputs = (Output("four_bar.swing"), Output("four_bar.transmission_min"))
     some = replace(of(*[Normal(0.0, 1.0)] * 3, designs=512), vary=vary, outputs=outputs, angles=8)
     compute = evaluator(some)
-    found = tolerance(some, compute=compute)
+    result = tolerance(some, compute=compute)
     signs = np.array(list(itertools.product((-1, 1), repeat=3)))
     corners = compute(np.array(own) + half * signs).figures
     slopes = signs.T @ corners / 8
     for k, output in enumerate(outputs):
-        scatter = found.scatters[output.name]
+        scatter = result.scatters[output.name]
         wide = np.ptp(corners[:, k])
         assert np.min(corners[:, k]) - 1e-3 * wide < scatter.least
         assert scatter.largest < np.max(corners[:, k]) + 1e-3 * wide
@@ -187,9 +189,9 @@ def test_a_linkage_within_its_worst_case() -> None:
         )
         assert scatter.mean == pytest.approx(scatter.base, abs=0.01 * wide)
         shares = slopes[:, k] ** 2 / np.sum(slopes[:, k] ** 2)
-        order = [cause.effects[output.name].total.value for cause in found.causes]
+        order = [cause.effects[output.name].total.value for cause in result.causes]
         wanted = dict(zip(paths, shares, strict=True))
-        assert order == pytest.approx([wanted[c.numbers[0]] for c in found.causes], abs=0.1)
+        assert order == pytest.approx([wanted[c.numbers[0]] for c in result.causes], abs=0.1)
 
 
 # -- fronts ----------------------------------------------------------------------------------------
@@ -206,13 +208,13 @@ def zdt1(*numbers: Array) -> Array:
 def test_the_front_of_a_known_problem() -> None:
     outputs = tuple(Output(name, value="a.b", make="smallest") for name in ("f", "g"))
     some = replace(of(*[Range(0.0, 1.0)] * 5), outputs=outputs)
-    found = search(some, compute=formula(zdt1), population=60, generations=120)
-    first, second = found.figures.T
+    searched = search(some, compute=formula(zdt1), population=60, generations=120)
+    first, second = searched.figures.T
     beyond = second - (1 - np.sqrt(first))
     assert np.all(beyond >= -1e-12)  # nothing is better than the front
     assert np.median(beyond) < 0.01
     assert np.min(first) < 0.01 and np.max(first) > 0.95
-    assert found.volumes[-1] > 0.99 * np.max(found.volumes)
+    assert searched.volumes[-1] > 0.99 * np.max(searched.volumes)
 
 
 @pytest.mark.parametrize("seed", [1, 2])
@@ -228,8 +230,8 @@ def test_the_front_within_a_limit(seed: int) -> None:
     def squares(x: Array, y: Array) -> Array:
         return np.stack([(x - 0.2) ** 2 + y**2, (x - 0.8) ** 2 + y**2, x], axis=1)
 
-    found = search(some, compute=formula(squares), population=40, generations=60, seed=seed)
-    x, y = found.values.T
+    searched = search(some, compute=formula(squares), population=40, generations=60, seed=seed)
+    x, y = searched.values.T
     assert np.max(np.abs(y)) < 0.02
     assert np.min(x) == pytest.approx(0.2, abs=0.02)
     assert np.max(x) == pytest.approx(0.6, abs=0.01)

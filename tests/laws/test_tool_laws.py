@@ -76,14 +76,14 @@ def of(pair: tuple[float, float]) -> Array:
 
 def shaking(response: ToolResponse) -> dict[str, Array]:
     """Force (2, K, S), N, that shakes at each station."""
-    found = {
+    actual = {
         station.name: np.zeros((2, *response.frequency.shape), complex)
         for station in response.tool.stations
     }
     for shake in response.shakes:
         order = int(np.flatnonzero(response.orders == shake.order)[0])
-        found[shake.station][:, order] += shake.at(response.speed)
-    return found
+        actual[shake.station][:, order] += shake.at(response.speed)
+    return actual
 
 
 def absorbed(response: ToolResponse, station: Station) -> Array:
@@ -106,8 +106,8 @@ def test_forces_and_moments_on_the_whole_tool(theory: Theory, seed: int) -> None
 
     Moments are about the left end; those of rotation are of slopes.
     """
-    found = respond_tool(made(theory, seed), SPEEDS)
-    w2 = found.frequency**2
+    response = respond_tool(made(theory, seed), SPEEDS)
+    w2 = response.frequency**2
 
     def pushed(line: ShaftDeflection, part: Array) -> Array:
         return column(part[:, 1]) * line.displacement
@@ -115,15 +115,17 @@ def test_forces_and_moments_on_the_whole_tool(theory: Theory, seed: int) -> None
     def turned(line: ShaftDeflection, part: Array) -> Array:
         return column(part[:, 4]) * pushed(line, part) + column(part[:, 3]) * line.slope
 
-    force, moment = integral(found, pushed) * w2, integral(found, turned) * w2
+    force, moment = integral(response, pushed) * w2, integral(response, turned) * w2
     size = 0.0
-    causes = shaking(found)
-    for station in found.tool.stations:
-        moved, x = found.displacement(station.name), station.position
-        slope = found.line([x]).slope[0]
-        held: Any = sum(found.forces(station.name).values(), np.zeros_like(moved))
-        across = causes[station.name] - held - absorbed(found, station) + station.mass * w2 * moved
-        s = 1j * found.frequency
+    causes = shaking(response)
+    for station in response.tool.stations:
+        moved, x = response.displacement(station.name), station.position
+        slope = response.line([x]).slope[0]
+        held: Any = sum(response.forces(station.name).values(), np.zeros_like(moved))
+        across = (
+            causes[station.name] - held - absorbed(response, station) + station.mass * w2 * moved
+        )
+        s = 1j * response.frequency
         twist = (
             of(station.rotational_stiffness)
             + of(station.rotational_damping) * s
@@ -133,61 +135,63 @@ def test_forces_and_moments_on_the_whole_tool(theory: Theory, seed: int) -> None
         moment = moment + x * across - twist * slope
         size = max(size, float(np.max(np.abs(held))), float(np.max(np.abs(causes[station.name]))))
     assert np.max(np.abs(force)) < 1e-9 * size
-    assert np.max(np.abs(moment)) < 1e-9 * size * found.tool.shaft.length
+    assert np.max(np.abs(moment)) < 1e-9 * size * response.tool.shaft.length
 
 
 @subjects
 def test_power_fed_in_is_taken(theory: Theory, seed: int) -> None:
     """By hands, harness, ground and absorber, and by the shaft's material."""
-    found = respond_tool(made(theory, seed), SPEEDS)
-    taken = found.lost_in_shaft
-    for station in found.tool.stations:
-        taken = taken + sum(found.power(station.name).values(), np.zeros_like(taken))
-    np.testing.assert_allclose(found.fed_in, taken, rtol=1e-9)
-    for station in found.tool.stations:
-        assert all(np.all(power >= 0) for power in found.power(station.name).values())
-    assert np.all(found.lost_in_shaft > 0)
+    response = respond_tool(made(theory, seed), SPEEDS)
+    taken = response.lost_in_shaft
+    for station in response.tool.stations:
+        taken = taken + sum(response.power(station.name).values(), np.zeros_like(taken))
+    np.testing.assert_allclose(response.fed_in, taken, rtol=1e-9)
+    for station in response.tool.stations:
+        assert all(np.all(power >= 0) for power in response.power(station.name).values())
+    assert np.all(response.lost_in_shaft > 0)
 
 
 @subjects
 def test_power_that_the_material_takes(theory: Theory, seed: int) -> None:
     """eta w / 2 times EI |theta'|^2 and kGA |w' - theta|^2, by moment and shear."""
-    found = respond_tool(made(theory, seed), SPEEDS)
-    loss = found.tool.shaft.loss_factor
+    response = respond_tool(made(theory, seed), SPEEDS)
+    loss = response.tool.shaft.loss_factor
 
     def strained(line: ShaftDeflection, part: Array) -> Array:
         bent = np.abs(line.moment) ** 2 / column(part[:, 0])
         return bent + np.abs(line.shear) ** 2 / column(part[:, 2])
 
-    wanted = loss / (1 + loss**2) * found.frequency / 2 * np.sum(integral(found, strained), axis=0)
-    np.testing.assert_allclose(found.lost_in_shaft, wanted, rtol=1e-8)
+    wanted = (
+        loss / (1 + loss**2) * response.frequency / 2 * np.sum(integral(response, strained), axis=0)
+    )
+    np.testing.assert_allclose(response.lost_in_shaft, wanted, rtol=1e-8)
 
 
 @subjects
 def test_power_of_each_damper(theory: Theory, seed: int) -> None:
     """c |v|^2 / 2 of its own velocity."""
-    found = respond_tool(made(theory, seed), SPEEDS)
-    for station in found.tool.stations:
-        velocity = np.abs(found.velocity(station.name)) ** 2 / 2
-        told = found.power(station.name)
+    response = respond_tool(made(theory, seed), SPEEDS)
+    for station in response.tool.stations:
+        velocity = np.abs(response.velocity(station.name)) ** 2 / 2
+        power = response.power(station.name)
         if station.hand is not None:
             wanted = station.hand.hands * np.sum(of(station.hand.damping) * velocity, axis=0)
-            np.testing.assert_allclose(told["hand"], wanted, rtol=1e-9)
+            np.testing.assert_allclose(power["hand"], wanted, rtol=1e-9)
         if station.harness is not None:
             wanted = np.sum(of(station.harness.damping) * velocity, axis=0)
-            np.testing.assert_allclose(told["harness"], wanted, rtol=1e-9)
+            np.testing.assert_allclose(power["harness"], wanted, rtol=1e-9)
         if station.absorber is not None:
-            own = 1j * found.frequency * absorbed(found, station)
-            link = of(station.absorber.stiffness) + 1j * found.frequency * of(
+            own = 1j * response.frequency * absorbed(response, station)
+            link = of(station.absorber.stiffness) + 1j * response.frequency * of(
                 station.absorber.damping
             )
             wanted = np.sum(of(station.absorber.damping) * np.abs(own / link) ** 2 / 2, axis=0)
-            np.testing.assert_allclose(told["absorber"], wanted, rtol=1e-9)
-        turning = np.abs(found.line([station.position]).slope[0] * found.frequency) ** 2 / 2
+            np.testing.assert_allclose(power["absorber"], wanted, rtol=1e-9)
+        turning = np.abs(response.line([station.position]).slope[0] * response.frequency) ** 2 / 2
         ground = np.sum(
             of(station.damping) * velocity + of(station.rotational_damping) * turning, axis=0
         )
-        np.testing.assert_allclose(told.get("ground", 0 * ground), ground, rtol=1e-9)
+        np.testing.assert_allclose(power.get("ground", 0 * ground), ground, rtol=1e-9)
 
 
 @subjects
@@ -200,16 +204,18 @@ def test_work_of_the_forces_is_twice_the_potential_less_the_kinetic_energy(
         Excitation("e", "rear", force=3.0),
         Excitation("f", "head", force=2.0, direction="lateral"),
     )
-    found = respond_tool(tool, SPEEDS)
-    potential, kinetic = energies(found)
-    work = sum(np.real(force * found.displacement(name)) for name, force in shaking(found).items())
+    response = respond_tool(tool, SPEEDS)
+    potential, kinetic = energies(response)
+    work = sum(
+        np.real(force * response.displacement(name)) for name, force in shaking(response).items()
+    )
     size = np.max(potential)
     assert np.max(np.abs(work - (potential - kinetic))) < 1e-10 * size
 
 
-def energies(found: ToolResponse) -> tuple[Array, Array]:
+def energies(result: ToolResponse) -> tuple[Array, Array]:
     """Twice the potential and the kinetic energy (2, K, S) of an undamped tool."""
-    w2 = found.frequency**2
+    w2 = result.frequency**2
 
     def strained(line: ShaftDeflection, part: Array) -> Array:
         bent = line.moment**2 / column(part[:, 0])
@@ -219,11 +225,11 @@ def energies(found: ToolResponse) -> tuple[Array, Array]:
         across = column(part[:, 1]) * line.displacement**2
         return across + column(part[:, 3]) * line.slope**2
 
-    potential = integral(found, strained).real
-    kinetic = integral(found, moving).real * w2
-    for station in found.tool.stations:
-        moved = found.displacement(station.name).real ** 2
-        slope = found.line([station.position]).slope[0].real ** 2
+    potential = integral(result, strained).real
+    kinetic = integral(result, moving).real * w2
+    for station in result.tool.stations:
+        moved = result.displacement(station.name).real ** 2
+        slope = result.line([station.position]).slope[0].real ** 2
         potential = (
             potential + of(station.stiffness) * moved + of(station.rotational_stiffness) * slope
         )
@@ -234,8 +240,8 @@ def energies(found: ToolResponse) -> tuple[Array, Array]:
         if station.harness is not None:
             potential = potential + of(station.harness.stiffness) * moved
         if station.absorber is not None:
-            stretch = (absorbed(found, station) / of(station.absorber.stiffness)).real
-            own = found.displacement(station.name).real - stretch
+            stretch = (absorbed(result, station) / of(station.absorber.stiffness)).real
+            own = result.displacement(station.name).real - stretch
             potential = potential + of(station.absorber.stiffness) * stretch**2
             kinetic = kinetic + station.absorber.mass * w2 * own**2
     return potential, kinetic
@@ -247,8 +253,8 @@ def test_at_a_mode_kinetic_and_potential_energy_are_the_same(theory: Theory, see
     plain = still(made(theory, seed))
     tool = shaken(plain, Excitation("e", "rear", force=1.0))
     natural = natural_frequencies(plain, 7)[0, 1:]
-    found = respond_tool(tool, natural * (1 + 1e-7))
-    potential, kinetic = energies(found)
+    response = respond_tool(tool, natural * (1 + 1e-7))
+    potential, kinetic = energies(response)
     np.testing.assert_allclose(potential[0, 0] / kinetic[0, 0], 1, atol=1e-6)
 
 
@@ -269,8 +275,8 @@ def test_reciprocity(theory: Theory, seed: int, direction: str) -> None:
     answer = []
     for name in names:
         cause = Excitation("e", name, force=1.0, direction=direction)  # type: ignore[arg-type]
-        found = respond_tool(shaken(tool, cause), SPEEDS)
-        answer.append([found.displacement(other)[plane, 0] for other in names])
+        response = respond_tool(shaken(tool, cause), SPEEDS)
+        answer.append([response.displacement(other)[plane, 0] for other in names])
     matrix = np.array(answer)
     size = np.max(np.abs(matrix), axis=(0, 1))
     assert np.max(np.abs(matrix - np.swapaxes(matrix, 0, 1)) / size) < 1e-11
@@ -333,7 +339,7 @@ def swapped(tool: Tool) -> Tool:
     def turn(part: Any) -> Any:
         if part is None:
             return None
-        kinds = {name: one.kind for name, one in keys_of(type(part)).items()}
+        kinds = {name: value.kind for name, value in keys_of(type(part)).items()}
         pairs = {
             name: getattr(part, name)[::-1]
             for name, kind in kinds.items()
@@ -357,16 +363,16 @@ def swapped(tool: Tool) -> Tool:
 def test_mirror_image(theory: Theory, seed: int) -> None:
     """It moves alike; slope and shear change their signs.  Where a station is, sides change too."""
     tool = made(theory, seed)
-    found, wanted = respond_tool(mirrored(tool), SPEEDS), respond_tool(tool, SPEEDS)
-    for one in tool.stations:
-        moved = wanted.displacement(one.name)
+    actual, wanted = respond_tool(mirrored(tool), SPEEDS), respond_tool(tool, SPEEDS)
+    for station in tool.stations:
+        moved = wanted.displacement(station.name)
         size = np.max(np.abs(moved))
-        np.testing.assert_allclose(found.displacement(one.name), moved, atol=1e-10 * size)
+        np.testing.assert_allclose(actual.displacement(station.name), moved, atol=1e-10 * size)
     x = np.linspace(0.013, 0.987, 25) * tool.shaft.length
-    here, there = wanted.line(x), found.line(tool.shaft.length - x)
+    here, there = wanted.line(x), actual.line(tool.shaft.length - x)
     for name, sign in (("displacement", 1), ("slope", -1), ("moment", 1), ("shear", -1)):
-        one, other = getattr(here, name), getattr(there, name)
-        np.testing.assert_allclose(sign * other, one, atol=1e-10 * np.max(np.abs(one)))
+        station, other = getattr(here, name), getattr(there, name)
+        np.testing.assert_allclose(sign * other, station, atol=1e-10 * np.max(np.abs(station)))
     np.testing.assert_allclose(
         natural_frequencies(mirrored(tool), 8), natural_frequencies(tool, 8), rtol=3e-9
     )
@@ -377,8 +383,8 @@ def test_planes_change_places(theory: Theory, seed: int) -> None:
     """What is vertical here is lateral there, frequencies, eigenvalues and motion."""
     up = shaken(made(theory, seed), Excitation("e", "rear", force=1.0))
     across = shaken(swapped(up), Excitation("e", "rear", force=1.0, direction="lateral"))
-    one, other = (respond_tool(tool, SPEEDS).displacement("head") for tool in (up, across))
-    np.testing.assert_allclose(one, other[::-1], atol=1e-12 * np.max(np.abs(one)))
+    single, other = (respond_tool(tool, SPEEDS).displacement("head") for tool in (up, across))
+    np.testing.assert_allclose(single, other[::-1], atol=1e-12 * np.max(np.abs(single)))
     np.testing.assert_allclose(
         natural_frequencies(up, 6), natural_frequencies(across, 6)[::-1], rtol=3e-9
     )
@@ -434,11 +440,11 @@ def test_scale(theory: Theory, seed: int) -> None:
     )
     for numbers in ((2.0, 1.0, 1.0), (1.0, 5.0, 1.0), (1.0, 1.0, 0.3), (0.37, 11.0, 2.3)):
         other, rate = scaled(tool, *numbers)
-        found, wanted = (
+        actual, wanted = (
             natural_frequencies(other, 7),
             rate * natural_frequencies(tool, 7),
         )
-        np.testing.assert_allclose(found, wanted, rtol=3e-9)
+        np.testing.assert_allclose(actual, wanted, rtol=3e-9)
         softer = numbers[0] ** 3 / numbers[1]
         here = respond_tool(tool, SPEEDS).displacement("front")
         there = respond_tool(other, rate * SPEEDS).displacement("front")
@@ -457,9 +463,9 @@ def test_stations_with_nothing_and_borders_between_equals_change_nothing(
         for k, x in enumerate(rng.uniform(0, tool.shaft.length, 4))
     )
     halves = []
-    for one in tool.shaft.segments:
-        middle = one.start + 0.3 * (one.stop - one.start)
-        halves += [replace(one, stop=middle), replace(one, start=middle)]
+    for item in tool.shaft.segments:
+        middle = item.start + 0.3 * (item.stop - item.start)
+        halves += [replace(item, stop=middle), replace(item, start=middle)]
     first = min(segment.start for segment in tool.shaft.segments)
     halves.append(Segment(0.2 * first, 0.7 * first, tool.shaft.profile))
     other = replace(
@@ -467,10 +473,10 @@ def test_stations_with_nothing_and_borders_between_equals_change_nothing(
         shaft=replace(tool.shaft, segments=tuple(halves)),
         stations=(*tool.stations, *nothing),
     )
-    found, wanted = respond_tool(other, SPEEDS), respond_tool(tool, SPEEDS)
+    actual, wanted = respond_tool(other, SPEEDS), respond_tool(tool, SPEEDS)
     x = np.linspace(0.01, 0.99, 12) * tool.shaft.length
-    for one, exact in zip(found.line(x), wanted.line(x), strict=True):
-        np.testing.assert_allclose(one, exact, atol=1e-11 * np.max(np.abs(exact)))
+    for item, exact in zip(actual.line(x), wanted.line(x), strict=True):
+        np.testing.assert_allclose(item, exact, atol=1e-11 * np.max(np.abs(exact)))
     np.testing.assert_allclose(
         natural_frequencies(other, 8), natural_frequencies(tool, 8), rtol=3e-9
     )
@@ -480,20 +486,20 @@ def test_order_of_the_stations_changes_nothing() -> None:
     tool = made("timoshenko", 22)
     other = replace(tool, stations=tool.stations[::-1])
     for name in ("engine", "front", "head"):
-        found, wanted = (respond_tool(one, SPEEDS).displacement(name) for one in (other, tool))
-        np.testing.assert_allclose(found, wanted, rtol=1e-12)
+        actual, wanted = (respond_tool(item, SPEEDS).displacement(name) for item in (other, tool))
+        np.testing.assert_allclose(actual, wanted, rtol=1e-12)
 
 
 def test_two_hands_are_twice_one() -> None:
     """Twice its mass, spring and damper."""
     tool = made("euler-bernoulli", 21)
     hand = Hand(0.2, (5e3, 7e3), (30.0, 40.0), hands=2)
-    one = tool.with_station("rear", hand=hand)
+    first = tool.with_station("rear", hand=hand)
     other = tool.with_station("rear", hand=Hand(0.4, (1e4, 1.4e4), (60.0, 80.0)))
-    found, wanted = (respond_tool(each, SPEEDS) for each in (one, other))
+    actual, wanted = (respond_tool(each, SPEEDS) for each in (first, other))
     for name in ("rear", "front"):
-        np.testing.assert_allclose(found.displacement(name), wanted.displacement(name), rtol=1e-12)
-    np.testing.assert_allclose(found.forces("rear")["hand"], wanted.forces("rear")["hand"])
+        np.testing.assert_allclose(actual.displacement(name), wanted.displacement(name), rtol=1e-12)
+    np.testing.assert_allclose(actual.forces("rear")["hand"], wanted.forces("rear")["hand"])
 
 
 # -- limits ----------------------------------------------------------------------------------------
@@ -504,8 +510,8 @@ def test_a_hard_absorber_is_a_mass_and_a_soft_one_is_nothing() -> None:
     tool = made("timoshenko", 21).with_station("middle", absorber=None)
     mass = tool.with_station("middle", mass=tool.station("middle").mass + 0.3)
 
-    def moved(one: Tool) -> Array:
-        return respond_tool(one, SPEEDS).displacement("head")
+    def moved(item: Tool) -> Array:
+        return respond_tool(item, SPEEDS).displacement("head")
 
     def away(stiffness: float, limit: Tool) -> float:
         absorber = Absorber(0.3, both(stiffness))
@@ -568,9 +574,9 @@ def test_frequencies_fall_with_mass_and_rise_with_stiffness(
     tool = made(theory, seed)
     before = natural_frequencies(tool, 9)
     for name in ("engine", "middle", "head"):
-        one = tool.station(name)
+        first = tool.station(name)
         by = 3 * {"mass": 1.0, "inertia": 0.05, "stiffness": 1e4}.get(what, 500.0)
-        value: Any = getattr(one, what)
+        value: Any = getattr(first, what)
         value = tuple(part + by for part in value) if isinstance(value, tuple) else value + by
         after = natural_frequencies(tool.with_station(name, **{what: value}), 9)
         low, high = (after, before) if what in ("mass", "inertia") else (before, after)
@@ -586,12 +592,12 @@ def test_modes_share_no_momentum() -> None:
         Station("b", 0.75, mass=0.4, hand=Hand(0.3, both(5e3))),
         Station("c", 1.5, mass=0.7),
     )
-    found = vibrate_tool(bare(*stations, section=Section(1000.0, 2.0)), 7)
-    shapes, places = found.planes[0].shapes, found.places
+    vibration = vibrate_tool(bare(*stations, section=Section(1000.0, 2.0)), 7)
+    shapes, places = vibration.planes[0].shapes, vibration.places
     simpson = np.array([1.0, *([4.0, 2.0] * 200)[:-1], 1.0]) * (places[1] / 3)
     momentum = 2.0 * (shapes * simpson) @ shapes.T
-    for one, mass in zip(stations, (1.2, 0.7, 0.7), strict=True):
-        here = shapes[:, int(np.argmin(np.abs(places - one.position)))]
+    for station, mass in zip(stations, (1.2, 0.7, 0.7), strict=True):
+        here = shapes[:, int(np.argmin(np.abs(places - station.position)))]
         momentum = momentum + mass * np.outer(here, here)
     own = np.sqrt(np.diag(momentum))
     np.testing.assert_allclose(momentum / np.outer(own, own), np.eye(7), atol=1e-6)
@@ -599,14 +605,14 @@ def test_modes_share_no_momentum() -> None:
 
 def modal(tool: Tool) -> tuple[Array, Array, Array]:
     """Frequency, displacement at each station and modal mass of the vertical modes of masses."""
-    found = vibrate_tool(tool, 6)
-    shapes, places = found.planes[0].shapes, found.places
+    vibration = vibrate_tool(tool, 6)
+    shapes, places = vibration.planes[0].shapes, vibration.places
     simpson = np.array([1.0, *([4.0, 2.0] * 200)[:-1], 1.0]) * (places[1] / 3)
     mass = 2.0 * shapes**2 @ simpson
     at = [int(np.argmin(np.abs(places - station.position))) for station in tool.stations]
-    for one, k in zip(tool.stations, at, strict=True):
-        mass = mass + one.mass * shapes[:, k] ** 2
-    return found.planes[0].frequency, shapes[:, at], mass
+    for item, k in zip(tool.stations, at, strict=True):
+        mass = mass + item.mass * shapes[:, k] ** 2
+    return vibration.planes[0].frequency, shapes[:, at], mass
 
 
 def masses_and_springs(damping: float = 0.0, loss: float = 0.0) -> Tool:
@@ -626,25 +632,25 @@ def test_near_a_resonance_the_answer_is_that_of_one_mode() -> None:
     cause = Excitation("e", "a", force=1.0)
     for k, natural in enumerate(frequency):
         beside = natural * np.array([1 - 1e-5, 1 + 1e-5])
-        found = respond_tool(shaken(tool, cause), beside)
-        for j, one in enumerate(tool.stations):
-            moved = found.displacement(one.name)[0, 0].real
+        response = respond_tool(shaken(tool, cause), beside)
+        for j, station in enumerate(tool.stations):
+            moved = response.displacement(station.name)[0, 0].real
             residue = np.mean(moved * (natural**2 - beside**2))
             wanted = shapes[k, 0] * shapes[k, j] / mass[k]
             largest = np.max(np.abs(shapes[k])) ** 2 / mass[k]
             assert residue == pytest.approx(wanted, abs=2e-5 * largest)
 
 
-def test_little_damping_takes_from_each_mode_what_its_shape_tells() -> None:
+def test_little_damping_takes_from_each_mode_what_its_shape_reports() -> None:
     """Re s = -sum c phi^2 / (2 m_k), but for the square of the damping."""
     frequency, shapes, mass = modal(masses_and_springs())
     away = []
     for damping in (1e-2, 1e-3):
-        told = vibrate_tool(masses_and_springs(damping), 6).planes[0].damped
-        found = np.array([mode.eigenvalue for mode in told])
+        reported = vibrate_tool(masses_and_springs(damping), 6).planes[0].damped
+        values = np.array([mode.eigenvalue for mode in reported])
         wanted = -damping * (shapes[:, 0] ** 2 + 2 * shapes[:, 2] ** 2) / (2 * mass)
-        np.testing.assert_allclose(found.real, wanted, rtol=1e-5)
-        away.append(np.max(np.abs(found.imag / frequency - 1)))
+        np.testing.assert_allclose(values.real, wanted, rtol=1e-5)
+        away.append(np.max(np.abs(values.imag / frequency - 1)))
     assert away[0] < 1e-6
 
 
@@ -657,6 +663,6 @@ def test_little_hysteresis_takes_from_each_mode_its_share_of_bending() -> None:
     near = respond_tool(tool, natural * (1 + 1e-8))
     whole = energies(near)[0][0, 0]
     bent = integral(near, lambda line, part: line.moment**2 / column(part[:, 0])).real[0, 0]
-    told = vibrate_tool(masses_and_springs(0.0, loss), 6).planes[0].damped
-    found = np.array([mode.eigenvalue.real for mode in told])
-    np.testing.assert_allclose(found, -loss * natural / 2 * bent / whole, rtol=1e-5)
+    reported = vibrate_tool(masses_and_springs(0.0, loss), 6).planes[0].damped
+    values = np.array([mode.eigenvalue.real for mode in reported])
+    np.testing.assert_allclose(values, -loss * natural / 2 * bent / whole, rtol=1e-5)

@@ -99,15 +99,15 @@ subjects = pytest.mark.parametrize(
 # -- energy ----------------------------------------------------------------------------------------
 
 
-def balanced(found: Response) -> None:
+def balanced(result: Response) -> None:
     """Work put in over a period is what mounts and nothing else take.
 
     1e-8 of it: the mesh is refined to a residual of 1e-11, and work at the crank may be a small
     difference of what goes in and out by turns.
     """
-    assert found.energy is not None
-    assert found.energy.lost > 0
-    assert found.energy.fed_in == pytest.approx(found.energy.lost, rel=1e-8)
+    assert result.energy is not None
+    assert result.energy.lost > 0
+    assert result.energy.fed_in == pytest.approx(result.energy.lost, rel=1e-8)
 
 
 @subjects
@@ -215,11 +215,11 @@ def test_multipliers_of_a_machine_of_next_to_no_mass(damping_ratio: float, speed
     root = natural * complex(-damping_ratio, np.sqrt(1 - damping_ratio**2))
     wanted = np.exp(2 * pi * root / abs(speed))
     for model in ("coupled", "exact"):
-        found = respond(machine, speed, model).multipliers  # type: ignore[arg-type]
-        assert found is not None
+        multipliers = respond(machine, speed, model).multipliers  # type: ignore[arg-type]
+        assert multipliers is not None
         # The links, 3e-6 of the support's inertia, slow it down by half as much over a few rad.
-        np.testing.assert_allclose(np.abs(found), abs(wanted), rtol=1e-4)
-        assert found[0].real == pytest.approx(wanted.real, abs=1e-4)
+        np.testing.assert_allclose(np.abs(multipliers), abs(wanted), rtol=1e-4)
+        assert multipliers[0].real == pytest.approx(wanted.real, abs=1e-4)
 
 
 def test_multipliers_of_damping_multiply_to_what_damping_takes() -> None:
@@ -227,26 +227,28 @@ def test_multipliers_of_damping_multiply_to_what_damping_takes() -> None:
     machine = supported(load_free(eq.load("yamashita-1")), 5, heavy=1e6)
     linear = Linear.of(machine)
     trace = float(np.trace(np.linalg.solve(linear.mass, linear.damping)))
-    found = respond(machine, model="exact").multipliers
-    assert found is not None
+    multipliers = respond(machine, model="exact").multipliers
+    assert multipliers is not None
     wanted = np.exp(-trace * 2 * pi / machine.drive.speed)
-    assert np.prod(found).real == pytest.approx(wanted, rel=1e-5)
+    assert np.prod(multipliers).real == pytest.approx(wanted, rel=1e-5)
 
 
 # -- phases ----------------------------------------------------------------------------------------
 
 
-def same_response(found: Response, wanted: Response, tolerance: float = 1e-9) -> None:
+def same_response(result: Response, wanted: Response, tolerance: float = 1e-9) -> None:
     """Compare gauges, mounts and torque, each beside its own size."""
     theta = np.linspace(0, wanted.turns * 2 * pi, 60)
-    assert found.turns == wanted.turns
+    assert result.turns == wanted.turns
     for name, gauge in wanted.gauges.items():
         for quantity in ("displacement", "velocity", "acceleration"):
-            one, other = (getattr(r, quantity).values(theta) for r in (found.gauges[name], gauge))
-            close(one, other, tolerance)
+            first, other = (
+                getattr(r, quantity).values(theta) for r in (result.gauges[name], gauge)
+            )
+            close(first, other, tolerance)
     for name, mount in wanted.mounts.items():
-        close(found.mounts[name].force.values(theta), mount.force.values(theta), tolerance)
-    close(found.drive.torque.values(theta), wanted.drive.torque.values(theta), tolerance)
+        close(result.mounts[name].force.values(theta), mount.force.values(theta), tolerance)
+    close(result.drive.torque.values(theta), wanted.drive.torque.values(theta), tolerance)
 
 
 @pytest.mark.exhaustive(but=["coupled"])
@@ -258,12 +260,12 @@ def test_a_phase_of_a_full_turn_changes_nothing(model: ExcitationModel) -> None:
 
 
 @every_model
-def test_a_phase_that_all_rows_share_is_only_told_from_elsewhere(model: ExcitationModel) -> None:
+def test_a_phase_that_all_rows_share_is_only_seen_from_elsewhere(model: ExcitationModel) -> None:
     machine = springs().with_rows([Row(), Row(phase=1.0)])
     ahead = springs().with_rows([Row(phase=0.8), Row(phase=1.8)])
-    wanted, found = (respond(m, model=model).gauges["seat"].displacement for m in (machine, ahead))
+    wanted, actual = (respond(m, model=model).gauges["seat"].displacement for m in (machine, ahead))
     theta = np.linspace(0, 6, 40)
-    close(found.values(theta), wanted.shifted(0.8).values(theta), 1e-9)
+    close(actual.values(theta), wanted.shifted(0.8).values(theta), 1e-9)
 
 
 @every_model
@@ -311,36 +313,36 @@ def test_rows_apart_exchange_heave_for_roll() -> None:
     mounts["yaw"] = Mount(axis="yaw", torsional_stiffness=4e3, torsional_damping=30.0)
     rows = [Row(lateral=-0.25), Row(phase=pi, lateral=0.25)]
     level = cart(mounts=mounts, gauges={}, products=(), center_of_mass=(0.0, 0.1, 0.0))
-    found = respond(level.with_rows(rows), 18.0).gauges
+    gauges = respond(level.with_rows(rows), 18.0).gauges
     for name in ("surge", "heave", "pitch"):
-        odd, even = odd_and_even(found[name].displacement)
+        odd, even = odd_and_even(gauges[name].displacement)
         assert odd < 1e-10 * even
     for name in ("sway", "roll", "yaw"):
-        odd, even = odd_and_even(found[name].displacement)
+        odd, even = odd_and_even(gauges[name].displacement)
         assert even < 1e-10 * odd
         assert odd > 1e-5
     # In phase they neither roll nor yaw at all.
-    found = respond(level.with_rows([Row(lateral=-0.25), Row(lateral=0.25)]), 18.0).gauges
-    assert found["roll"].displacement.peak_to_peak < 1e-12
-    assert found["heave"].displacement.peak_to_peak > 1e-4
+    gauges = respond(level.with_rows([Row(lateral=-0.25), Row(lateral=0.25)]), 18.0).gauges
+    assert gauges["roll"].displacement.peak_to_peak < 1e-12
+    assert gauges["heave"].displacement.peak_to_peak > 1e-4
 
 
 @pytest.mark.parametrize("aside", [0.0, 0.1])
 def test_masses_in_two_planes_are_two_rows_there(aside: float) -> None:
     """Half of the mass of each link on either side, or two linkages of half the mass there."""
     z, level = 0.23, cart()
-    one, half = {}, {}
+    first, half = {}, {}
     for name, link in level.links.items():
         part = {"mass": link.mass / 2, "inertia": link.inertia / 2}
         places = (z - aside, z + aside)
         parts = [Body("point", at=link.center_of_mass, plane=at, **part) for at in places]
-        one[name] = link.altered(bodies=tuple(parts), plane=z)
+        first[name] = link.altered(bodies=tuple(parts), plane=z)
         half[name] = link.altered(**part)
     rows = [Row(lateral=z - aside), Row(lateral=z + aside)]
-    found = respond(replace(level, links=one), 18.0, "moment").gauges
+    gauges = respond(replace(level, links=first), 18.0, "moment").gauges
     wanted = respond(replace(level, links=half).with_rows(rows), 18.0, "moment").gauges
     for name, want in wanted.items():
-        difference = found[name].displacement.amplitudes - want.displacement.amplitudes
+        difference = gauges[name].displacement.amplitudes - want.displacement.amplitudes
         assert np.max(np.abs(difference)) < 1e-10 * want.displacement.peak_to_peak
 
 
@@ -353,10 +355,12 @@ Map = Callable[[tuple[float, ...]], tuple[float, ...]]
 def mapped(support: Support, place: Map, along: Map = tuple) -> Support:
     """The support with all of its places and directions told otherwise."""
 
-    def item(one: Any) -> Any:
-        if one.point is None:
-            return one
-        return replace(one, point=place(one.point), direction=along(unit_vector(one.direction)))
+    def item(entry: Any) -> Any:
+        if entry.point is None:
+            return entry
+        return replace(
+            entry, point=place(entry.point), direction=along(unit_vector(entry.direction))
+        )
 
     return replace(
         support,
@@ -396,35 +400,35 @@ def image(signal: Periodic, rotation: bool) -> Array:
 )
 def test_mirror_image(kind: str, seed: int, pivoted: bool, model: ExcitationModel) -> None:
     machine = supported(random_machine(kind, seed), seed, pivoted, ROWS[1])
-    found, wanted = respond(mirrored(machine), model=model), respond(machine, model=model)
-    assert found.speed == -wanted.speed
+    actual, wanted = respond(mirrored(machine), model=model), respond(machine, model=model)
+    assert actual.speed == -wanted.speed
     theta = np.linspace(0, 6, 40)
     for name, gauge in wanted.gauges.items():
         for quantity, sign in (("displacement", 1), ("velocity", 1), ("acceleration", 1)):
-            one = getattr(found.gauges[name], quantity).values(theta)
+            first = getattr(actual.gauges[name], quantity).values(theta)
             other = getattr(gauge, quantity)
             other = Periodic(sign * image(other, gauge.rotation), wanted.turns).values(theta)
-            close(one, other, 1e-8)
+            close(first, other, 1e-8)
     for name, mount in wanted.mounts.items():
         other = Periodic(image(mount.force, mount.torsional), wanted.turns).values(theta)
-        close(found.mounts[name].force.values(theta), other, 1e-8)
+        close(actual.mounts[name].force.values(theta), other, 1e-8)
     torque = Periodic(image(wanted.drive.torque, True), wanted.turns).values(theta)
-    close(found.drive.torque.values(theta), torque, 1e-7)
+    close(actual.drive.torque.values(theta), torque, 1e-7)
 
 
 def test_mirror_image_with_a_motor() -> None:
     motor = Motor(60.0, 9.0, ratio=2.5, inertia=1e-3)
     machine = supported(load_free(eq.load("yamashita-1")), 2, rows=ROWS[1])
     machine = machine.with_drive(motor=motor, flywheel=0.03)
-    found, wanted = respond(mirrored(machine), drive=True), respond(machine, drive=True)
+    actual, wanted = respond(mirrored(machine), drive=True), respond(machine, drive=True)
     theta = np.linspace(0, 6, 40)
-    assert found.drive.shift == pytest.approx(wanted.drive.shift, rel=1e-8)
-    assert found.drive.speed is not None and wanted.drive.speed is not None
+    assert actual.drive.shift == pytest.approx(wanted.drive.shift, rel=1e-8)
+    assert actual.drive.speed is not None and wanted.drive.speed is not None
     speed = Periodic(image(wanted.drive.speed, True), 1).values(theta)
-    close(found.drive.speed.values(theta), speed, 1e-8)
+    close(actual.drive.speed.values(theta), speed, 1e-8)
     for name, gauge in wanted.gauges.items():
         other = Periodic(image(gauge.displacement, gauge.rotation), 1).values(theta)
-        close(found.gauges[name].displacement.values(theta), other, 1e-8)
+        close(actual.gauges[name].displacement.values(theta), other, 1e-8)
 
 
 def moved(machine: eq.Machine, shift: complex) -> eq.Machine:
@@ -483,15 +487,15 @@ def test_everything_faster(machine: eq.Machine, model: ExcitationModel) -> None:
     }
     gx, gy = machine.gravity
     fast = replace(machine.with_support(mounts=mounts), gravity=(4 * gx, 4 * gy))
-    found, wanted = (respond(m, speed, model) for m, speed in ((fast, 34.0), (machine, 17.0)))
+    actual, wanted = (respond(m, speed, model) for m, speed in ((fast, 34.0), (machine, 17.0)))
     theta = np.linspace(0, 6, 40)
     for name, gauge in wanted.gauges.items():
-        other = found.gauges[name]
+        other = actual.gauges[name]
         close(other.displacement.values(theta), gauge.displacement.values(theta), 1e-9)
         close(other.acceleration.values(theta), 4 * gauge.acceleration.values(theta), 1e-8)
     for name, mount in wanted.mounts.items():
-        close(found.mounts[name].force.values(theta), 4 * mount.force.values(theta), 1e-9)
-    close(found.drive.torque.values(theta), 4 * wanted.drive.torque.values(theta), 1e-8)
+        close(actual.mounts[name].force.values(theta), 4 * mount.force.values(theta), 1e-9)
+    close(actual.drive.torque.values(theta), 4 * wanted.drive.torque.values(theta), 1e-8)
 
 
 # -- what adds up ----------------------------------------------------------------------------------
@@ -505,7 +509,7 @@ def test_mounts_carry_what_momentum_asks_for(model: ExcitationModel) -> None:
     """
     machine = cart().with_rows(ROWS[2])
     linear = linear_of(machine, model)
-    found, speed = respond(machine, 17.0, model), 17.0
+    actual, speed = respond(machine, 17.0, model), 17.0
     theta = np.linspace(0, 6, 40)
     support = machine.support
     assert support is not None
@@ -514,7 +518,7 @@ def test_mounts_carry_what_momentum_asks_for(model: ExcitationModel) -> None:
     for name, mount in support.mounts.items():
         if mount.point is not None:
             along = np.array(unit_vector(mount.direction))
-            force = force + along[:, None] * found.mounts[name].force.values(theta)
+            force = force + along[:, None] * actual.mounts[name].force.values(theta)
     change = (linear.motion(speed).derivative(2) * speed**2).values(theta)
     close(force, (linear.mass @ change)[:3], 1e-10)
 
@@ -547,21 +551,23 @@ def test_twice_the_mass_of_everything(model: ExcitationModel) -> None:
     )
     for name, link in machine.links.items():
         double = double.with_link(name, mass=2 * (link.mass or 0), inertia=2 * (link.inertia or 0))
-    found, wanted = respond(double, model=model), respond(machine, model=model)
+    actual, wanted = respond(double, model=model), respond(machine, model=model)
     theta = np.linspace(0, 6, 40)
     for name, gauge in wanted.gauges.items():
-        close(found.gauges[name].displacement.values(theta), gauge.displacement.values(theta), 1e-9)
+        close(
+            actual.gauges[name].displacement.values(theta), gauge.displacement.values(theta), 1e-9
+        )
     for name, mount in wanted.mounts.items():
-        close(found.mounts[name].force.values(theta), 2 * mount.force.values(theta), 1e-9)
+        close(actual.mounts[name].force.values(theta), 2 * mount.force.values(theta), 1e-9)
 
 
 def test_without_gravity_a_level_rig_shakes_alike() -> None:
     """(59): weight only loads the springs, on a body level with its pivot."""
     weightless = replace(rig(), gravity=(0.0, 0.0))
-    found, wanted = (
+    actual, wanted = (
         respond(m, model="linear").gauges["gauge"].displacement for m in (weightless, rig())
     )
-    close(found.amplitudes, wanted.amplitudes, 1e-12)
+    close(actual.amplitudes, wanted.amplitudes, 1e-12)
     still = respond(weightless, model="linear").mounts["spring"].force.mean
     assert abs(still) < 1e-9 < float(respond(rig(), model="linear").mounts["spring"].force.mean)
 
@@ -590,5 +596,5 @@ def test_solution_does_not_depend_on_where_it_starts() -> None:
     machine = springs()
     wanted = solve_exact(machine, 17.0, False)
     other = solve_exact(machine, 21.0, False)
-    found = solve_exact(machine, 17.0, False, other.steady.orbit.at)
-    close(found.states, wanted.states, 1e-9)
+    solution = solve_exact(machine, 17.0, False, other.steady.orbit.at)
+    close(solution.states, wanted.states, 1e-9)

@@ -25,9 +25,9 @@ ANGLES = np.linspace(0.0, 2 * np.pi, 3601)[:-1]
 def four_bar(chance: np.random.Generator, apart: float) -> dict[str, float]:
     """Crank, coupler, rocker and ground, whose Grashof sums differ by a share of the crank."""
     if chance.random() < 0.5:
-        found = {"crank": 1.0, "coupler": 2.5, "rocker": 2.5}  # Chebyshev and Hoecken
-        found["ground"] = 4.0 * (1 - apart) if chance.random() < 0.3 else 2.0
-        return found
+        actual = {"crank": 1.0, "coupler": 2.5, "rocker": 2.5}  # Chebyshev and Hoecken
+        actual["ground"] = 4.0 * (1 - apart) if chance.random() < 0.3 else 2.0
+        return actual
     crank, second, third = 1.0, *chance.uniform(1.5, 4.0, 2)
     lengths = [second, third, second + third - crank * (1 + apart)]
     longest = chance.permutation(lengths)
@@ -101,20 +101,20 @@ def verdict(ask: object, machine: Machine) -> str:
 
 def disagreements(seeds: range) -> tuple[list[tuple[int, str, str]], int]:
     """Machines of which the two say something else; and how many turn."""
-    found, turning = [], 0
+    actual, turning = [], 0
     for seed in seeds:
         machine = walking_beam(seed)
-        checked = verdict(lambda one: [*machine_blocks(one)], machine)
-        analyzed = verdict(lambda one: eq.analyze(one).summary, machine)
+        checked = verdict(lambda item: [*machine_blocks(item)], machine)
+        analyzed = verdict(lambda item: eq.analyze(item).summary, machine)
         turning += not analyzed
         if checked != analyzed:
-            found.append((seed, checked, analyzed))
-    return found, turning
+            actual.append((seed, checked, analyzed))
+    return actual, turning
 
 
 def test_check_and_analyze_agree() -> None:
-    found, turning = disagreements(range(FEW))
-    assert not found
+    actual, turning = disagreements(range(FEW))
+    assert not actual
     assert FEW // 5 < turning < FEW - FEW // 5  # both sides of the limits are there
 
 
@@ -122,5 +122,5 @@ def test_check_and_analyze_agree() -> None:
 @pytest.mark.parametrize("part", range(10))
 def test_check_and_analyze_agree_on_many(part: int) -> None:
     size = MANY // 10
-    found, _ = disagreements(range(FEW + part * size, FEW + (part + 1) * size))
-    assert not found
+    actual, _ = disagreements(range(FEW + part * size, FEW + (part + 1) * size))
+    assert not actual

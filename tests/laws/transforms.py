@@ -59,8 +59,8 @@ def shifted(machine: eq.Machine, shift: complex) -> eq.Machine:
 def tray(planting: Planting, change: Map) -> tuple[Vector, Vector] | None:
     if planting.tray is None:
         return None
-    one, other = planting.tray
-    return vector(change, one), vector(change, other)
+    first, other = planting.tray
+    return vector(change, first), vector(change, other)
 
 
 def turned(machine: eq.Machine, angle: float) -> eq.Machine:
@@ -119,12 +119,12 @@ def later_drive(drive: Driven, angle: float, start: Any) -> Driven:
 
     start : the motion at the crank angle that is 0 then.
     """
-    found = swung(drive, lambda value: value + angle, lambda phase: phase + angle)
-    if found.pushes:
-        return replace(found, start=float(start.links[drive.link].angle[0]) + angle)
-    if isinstance(found, FurtherDrive) and found.motion is None:
-        return replace(found, start=found.start + angle * (1 - found.ratio))
-    return found
+    result = swung(drive, lambda value: value + angle, lambda phase: phase + angle)
+    if result.pushes:
+        return replace(result, start=float(start.links[drive.link].angle[0]) + angle)
+    if isinstance(result, FurtherDrive) and result.motion is None:
+        return replace(result, start=result.start + angle * (1 - result.ratio))
+    return result
 
 
 def put_off(gear: eq.Gear, later: float) -> eq.Gear:
@@ -150,7 +150,7 @@ def put_law(law: Any, change: Callable[[float], float], later: Callable[[float],
     if law.between is not None:
         low, high = map(change, law.between)
         return replace(law, between=(low, high), phase=later(law.phase))
-    values = [change(one) for one in (law.start, *(part.to for part in law.segments))]
+    values = [change(item) for item in (law.start, *(part.to for part in law.segments))]
     parts = list(law.segments)
     if later(1.0) < later(0.0):
         values, parts = values[::-1], parts[::-1]  # each law is its own image in its middle
@@ -240,7 +240,7 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
             mapped(position.points, np.conj),
             {link: -value for link, value in position.angles.items()},
         )
-    drive, *drives = (mirrored_drive(one) for one in machine.driven)
+    drive, *drives = (mirrored_drive(item) for item in machine.driven)
     assert isinstance(drive, eq.Drive)
     return replace(
         machine,
@@ -347,9 +347,9 @@ def mirrored_curve(slot: CurvedSlot) -> CurvedSlot:
 
 def turned_torsion(spring: TorsionSpring, angle: float) -> TorsionSpring:
     """A spring on a frame that is turned, or whose link is."""
-    rows, given = tuple(one + angle for one in spring.angles), spring.table
+    rows, given = tuple(item + angle for item in spring.angles), spring.table
     if given is not None:
-        given = replace(given, angle=tuple(one + angle for one in given.angle))
+        given = replace(given, angle=tuple(item + angle for item in given.angle))
     own = spring.angle + angle if spring.stiffness is not None else 0.0
     return replace(spring, angle=own, angles=rows, table=given)
 
@@ -396,8 +396,8 @@ class Units:
 @cache
 def _powers(unit: str) -> Mapping[str, float]:
     written = unit.replace(" ", "*").replace("turn", "radian")
-    found = pint.application_registry.Quantity(1, written).dimensionality
-    return {name: float(power) for name, power in found.items()}
+    dimensionality = pint.application_registry.Quantity(1, written).dimensionality
+    return {name: float(power) for name, power in dimensionality.items()}
 
 
 COLUMNS = {
@@ -437,9 +437,9 @@ def _in_units(value: Any, kind: Kind, units: Units, machine: eq.Machine | None) 
     if isinstance(kind, KeyTable):  # with one key, which the object has without it
         kind = innermost(declarations(kind.type)[0].kind)
     if isinstance(value, Mapping):
-        return {name: _in_units(one, kind, units, machine) for name, one in value.items()}
+        return {name: _in_units(item, kind, units, machine) for name, item in value.items()}
     if isinstance(value, tuple):
-        return tuple(_in_units(one, kind, units, machine) for one in value)
+        return tuple(_in_units(item, kind, units, machine) for item in value)
     dimension = "length" if isinstance(kind, Point) else getattr(kind, "dimension", None)
     unit = None if isinstance(value, str) or dimension is None else SI[dimension]
     return value if unit is None else grown(value, units.of(unit))
@@ -448,9 +448,9 @@ def _in_units(value: Any, kind: Kind, units: Units, machine: eq.Machine | None) 
 def grown(value: Any, factor: float) -> Any:
     """Numbers, wherever they stand, so many times as large."""
     if isinstance(value, Mapping):
-        return {name: grown(one, factor) for name, one in value.items()}
+        return {name: grown(item, factor) for name, item in value.items()}
     if isinstance(value, tuple):
-        return tuple(grown(one, factor) for one in value)
+        return tuple(grown(item, factor) for item in value)
     return None if value is None else factor * value
 
 
@@ -458,9 +458,9 @@ def rescaled(thing: Any, factors: Mapping[str, float]) -> Any:
     """With all that bears these names so many times as large, wherever it stands."""
 
     if isinstance(thing, Mapping):
-        return {name: rescaled(one, factors) for name, one in thing.items()}
+        return {name: rescaled(item, factors) for name, item in thing.items()}
     if isinstance(thing, tuple):
-        return tuple(rescaled(one, factors) for one in thing)
+        return tuple(rescaled(item, factors) for item in thing)
     if not is_dataclass(thing):
         return thing
     values = {field.name: getattr(thing, field.name) for field in fields(thing) if field.init}
@@ -586,7 +586,7 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             for name, link in machine.links.items()
         },
         bearings={
-            name: replace(one, link=body(one.link)) for name, one in machine.bearings.items()
+            name: replace(item, link=body(item.link)) for name, item in machine.bearings.items()
         },
         assembly={joint(name): side for name, side in machine.assembly.items()},
         sliders=tuple(map(slid, machine.sliders)),
@@ -623,8 +623,8 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             for slot in machine.curved_slots
         ),
         joints=tuple(
-            replace(one, joint=f"joints.{joint(one.joint.removeprefix('joints.'))}")
-            for one in machine.joints
+            replace(item, joint=f"joints.{joint(item.joint.removeprefix('joints.'))}")
+            for item in machine.joints
         ),
         torsion_springs=tuple(
             replace(spring, link=names(spring.link), on=body(spring.on))

@@ -122,7 +122,7 @@ def extent(planter: Planter, signal: Signal, lengths: bool = False) -> Cause:
     def gives() -> list[float]:
         least, most = _each(planter, signal, lengths)
         apart = [np.max(least) - np.min(most), np.max(most) - np.min(least)]
-        return [100 * float(one) for one in apart]
+        return [100 * float(item) for item in apart]
 
     return Cause(f"their readings{AND_LENGTHS if lengths else ''}", gives)
 

@@ -36,17 +36,17 @@ def andrews() -> Run:
 
 def test_the_linkage_at_the_start() -> None:
     links = eq.move(andrews().machine, [START]).links
-    found = {name: float(links[name].angle[0]) for name in ANGLES}
-    assert found == pytest.approx(ANGLES, abs=1e-14)
+    actual = {name: float(links[name].angle[0]) for name in ANGLES}
+    assert actual == pytest.approx(ANGLES, abs=1e-14)
 
 
 def test_the_state_at_the_end() -> None:
     """Integrated at tolerances of 1e-11, of which a hundredfold is left after 0.03 s."""
-    found = andrews()
-    assert found.end.kind == "time"
-    assert found.crank_angle[-1] == pytest.approx(15.81077119629904, rel=1e-9)
-    assert found.crank_speed[-1] == pytest.approx(1139.920302151208, rel=1e-9)
-    assert found.energy_error < 1e-9
+    result = andrews()
+    assert result.end.kind == "time"
+    assert result.crank_angle[-1] == pytest.approx(15.81077119629904, rel=1e-9)
+    assert result.crank_speed[-1] == pytest.approx(1139.920302151208, rel=1e-9)
+    assert result.energy_error < 1e-9
 
 
 def test_the_file_holds_its_own_run() -> None:
@@ -62,11 +62,11 @@ def test_the_file_holds_its_own_run() -> None:
 
 def test_forces_in_the_pins_at_the_end() -> None:
     """The drive's torque of an analysis in this state is the motor's."""
-    found = andrews()
-    angle, speed = float(found.crank_angle[-1]), float(found.crank_speed[-1])
-    inertia, slope, torques = found.equation.at(angle, speed)
+    result = andrews()
+    angle, speed = float(result.crank_angle[-1]), float(result.crank_speed[-1])
+    inertia, slope, torques = result.equation.at(angle, speed)
     acceleration = (float(np.sum(torques)) + 0.033 - slope * speed**2 / 2) / inertia
-    forces = eq.forces(eq.move(found.machine, [angle], speed, acceleration))
+    forces = eq.forces(eq.move(result.machine, [angle], speed, acceleration))
     assert forces.drive_torque[0] == pytest.approx(0.033, abs=1e-9)
     for name, wanted in AT_E.items():
         force = forces.solved.contacts[name]

@@ -39,11 +39,11 @@ def test_an_engine_at_180_rpm_within_one_percent() -> None:
     rounds the speed).
     """
     machine = crank(lambda t: 20000 + 9500 * np.sin(2 * t) - 5700 * np.cos(2 * t), 180)
-    found = size_flywheel(machine, 0.01)
-    assert found.work == pytest.approx(11078.8, rel=2e-5)
-    assert found.estimate == pytest.approx(3118, rel=2e-4)
+    flywheel = size_flywheel(machine, 0.01)
+    assert flywheel.work == pytest.approx(11078.8, rel=2e-5)
+    assert flywheel.estimate == pytest.approx(3118, rel=2e-4)
     # its formula takes the mean of the highest and the lowest speed for the mean speed
-    assert found.inertia == pytest.approx(found.estimate, rel=1e-4)
+    assert flywheel.inertia == pytest.approx(flywheel.estimate, rel=1e-4)
 
 
 def test_a_flywheel_of_500_kg_at_150_rpm() -> None:
@@ -53,7 +53,7 @@ def test_a_flywheel_of_500_kg_at_150_rpm() -> None:
     """
     flywheel = 500 * 0.4**2
     machine = crank(lambda t: 600 * np.sin(2 * t) - 500 * np.sin(t), 150, flywheel)
-    found = size_flywheel(machine, 0.05)
-    assert found.work == pytest.approx(1204, rel=2e-4)
-    assert found.work / (flywheel * machine.drive.speed**2) == pytest.approx(0.0610, abs=5e-5)
-    assert found.present == pytest.approx(0.0616, abs=5e-5)
+    result = size_flywheel(machine, 0.05)
+    assert result.work == pytest.approx(1204, rel=2e-4)
+    assert result.work / (flywheel * machine.drive.speed**2) == pytest.approx(0.0610, abs=5e-5)
+    assert result.present == pytest.approx(0.0616, abs=5e-5)

@@ -96,8 +96,8 @@ def test_weighted_value_from_bands_is_equation_a1() -> None:
     """a_hw = sqrt(sum (Whi a_hi)^2), here by the printed factors, to their three digits."""
     a_h = np.linspace(1.0, 5.0, 24)
     by_table = sqrt(sum((float(w) * a) ** 2 for w, a in zip(TABLE_A2.values(), a_h, strict=True)))
-    found = weigh_spectrum(list(TABLE_A2), a_h, bands=True)
-    assert found.a_hw[0] == pytest.approx(by_table, rel=2e-3)
+    weighted = weigh_spectrum(list(TABLE_A2), a_h, bands=True)
+    assert weighted.a_hw[0] == pytest.approx(by_table, rel=2e-3)
 
 
 # -- total value, daily exposure -------------------------------------------------------------------

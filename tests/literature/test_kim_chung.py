@@ -96,9 +96,9 @@ def pair_angles(planter: Planter, acceleration: float = 0.0) -> Angles:
     return Angles(THETA2, t3, t4, w3, w4, alpha3, alpha4)
 
 
-def close(found: Any, wanted: Any) -> None:
+def close(result: Any, wanted: Any) -> None:
     """Assert equality to EXACT of the largest value."""
-    np.testing.assert_allclose(found, wanted, rtol=0, atol=EXACT * float(np.max(np.abs(wanted))))
+    np.testing.assert_allclose(result, wanted, rtol=0, atol=EXACT * float(np.max(np.abs(wanted))))
 
 
 # -- equations -------------------------------------------------------------------------------------
@@ -421,9 +421,9 @@ def test_figures_of_table_2(row: Printed) -> list[float]:
     Crank angles are theta2, degrees: those of the figures less phi.
     """
     planter, name = row.of
-    told = read_off(planter)[name] / UNITS.get(row.unit, 1.0)
+    text = read_off(planter)[name] / UNITS.get(row.unit, 1.0)
     turned = planter.phi if name.endswith(("crank_angle", "min_at")) else 0.0
-    values = [(told - turned) if row.unit == "deg" else told]
+    values = [(text - turned) if row.unit == "deg" else text]
     return [*values, FIGURES[name].route(planter) / UNITS.get(row.unit, 1.0)]
 
 
@@ -474,13 +474,13 @@ CROSSINGS: list[tuple[Planter, str, str, str, Cause | None]] = [
     KIM_CHUNG,
     *(
         Printed(
-            planter.name, f"{place}.{key}.size", "Table 2", number, told, unit,
+            planter.name, f"{place}.{key}.size", "Table 2", number, text, unit,
             why=(key == "acceleration" and why)
             or read_there(planter, place, lambda reading, key=key: np.abs(getattr(reading, key))),
             of=(planter, f"{place}.{key}.size"),
         )
         for planter, place, printed, computed, why in CROSSINGS
-        for key, unit, number, told in zip(
+        for key, unit, number, text in zip(
             ("velocity", "acceleration"), ("m/s", "m/s2"), printed.split(), computed.split(),
             strict=True,
         )
@@ -544,11 +544,11 @@ class Vector:
         polar = self.instant.startswith(("max", "min"))
         unit = "m/s" if self.kind == "velocity" else "m/s2"
         keys = ("direction",) if polar else (f"{self.kind}.x", f"{self.kind}.y")
-        for key, one, told in zip(keys, self.printed.split(), self.computed.split(), strict=True):
+        for key, item, text in zip(keys, self.printed.split(), self.computed.split(), strict=True):
             name = f"{self.instant}.{key}"
             slip = key[-1] in self.slip[0]
             yield Printed(
-                self.planter.name, name, "Table 2", one, told, "deg" if polar else unit,
+                self.planter.name, name, "Table 2", item, text, "deg" if polar else unit,
                 why=self.why(key, slip), slip=slip, of=(self.planter, name),
             )  # fmt: skip
 
@@ -626,8 +626,8 @@ VECTORS = [
 @published(KIM_CHUNG, *(row for vector in VECTORS for row in vector.rows()))
 def test_printed_vectors(row: Printed) -> float:
     planter, name = row.of
-    told = read_off(planter)[name]
-    return float(np.degrees(told)) if row.unit == "deg" else told
+    reported = read_off(planter)[name]
+    return float(np.degrees(reported)) if row.unit == "deg" else reported
 
 
 # -- appendix I-1: columns -------------------------------------------------------------------------

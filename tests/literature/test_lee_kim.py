@@ -64,9 +64,9 @@ def solved(machine: eq.Machine, acceleration: float = ACCELERATION) -> eq.mechan
     return eq.forces(eq.move(machine, COUNT, acceleration=acceleration))
 
 
-def close(found: Any, wanted: Any) -> None:
+def close(result: Any, wanted: Any) -> None:
     """Assert equality to EXACT of the largest value."""
-    np.testing.assert_allclose(found, wanted, rtol=0, atol=EXACT * float(np.max(np.abs(wanted))))
+    np.testing.assert_allclose(result, wanted, rtol=0, atol=EXACT * float(np.max(np.abs(wanted))))
 
 
 # -- the paper's equations -------------------------------------------------------------------------
@@ -221,18 +221,18 @@ def test_example_holds_table_2(name: str) -> None:
 def test_motion_follows_equations_1_to_12(name: str, phi: float) -> None:
     motion = solved(mechanism(name, phi)).motion
     for link, turning in zip(LINKS, turnings(motion, name, phi), strict=True):
-        found = motion.links[link]
-        close(np.exp(1j * found.angle), np.exp(1j * turning.angle))
-        close(found.angular_velocity, turning.w)
-        close(found.angular_acceleration, turning.a)
+        links = motion.links[link]
+        close(np.exp(1j * links.angle), np.exp(1j * turning.angle))
+        close(links.angular_velocity, turning.w)
+        close(links.angular_acceleration, turning.a)
 
 
 @equation(LEE_KIM, "(17)", "shaking moment", EXACT)
 @DIRECTIONS
 @MECHANISMS
 def test_shaking_moment_follows_equation_17(name: str, phi: float) -> None:
-    found = solved(mechanism(name, phi))
-    close(found.shaking_moment, shaking_moment_17(found.motion, name, phi))
+    solution = solved(mechanism(name, phi))
+    close(solution.shaking_moment, shaking_moment_17(solution.motion, name, phi))
 
 
 @equation(LEE_KIM, "Table 1", "forces in all joints and drive torque by the nine equations", EXACT)
@@ -240,23 +240,23 @@ def test_shaking_moment_follows_equation_17(name: str, phi: float) -> None:
 @MECHANISMS
 def test_joint_forces_follow_the_nine_equations(name: str, phi: float) -> None:
     """Table 1; F32 and F43 act on the earlier link, Equipoise's joints on the later one."""
-    found = solved(mechanism(name, phi))
-    wanted = nine_equations(found.motion, name, phi)
+    solution = solved(mechanism(name, phi))
+    wanted = nine_equations(solution.motion, name, phi)
     joints = {"O2": wanted.f12, "A": -wanted.f32, "B": -wanted.f43, "O4": wanted.f14}
     for joint, force in joints.items():
-        close(found.joints[joint].value, force)
-    close(found.drive_torque, wanted.torque)
+        close(solution.joints[joint].value, force)
+    close(solution.drive_torque, wanted.torque)
 
 
 @equation(LEE_KIM, "(23)", "shaking moment from forces", EXACT)
 @DIRECTIONS
 @MECHANISMS
 def test_shaking_moment_from_forces_by_equation_23(name: str, phi: float) -> None:
-    found = solved(mechanism(name, phi))
-    at_pivot, r1 = found.joints["O4"], TABLE_2[name][0]
+    solution = solved(mechanism(name, phi))
+    at_pivot, r1 = solution.joints["O4"], TABLE_2[name][0]
     across = at_pivot.x * r1 * sin(radians(phi)) - at_pivot.y * r1 * cos(radians(phi))
-    close(found.shaking_moment, across - found.drive_torque)
-    close(found.frame_moment, across - found.drive_torque)
+    close(solution.shaking_moment, across - solution.drive_torque)
+    close(solution.frame_moment, across - solution.drive_torque)
 
 
 def best_start(built: Callable[[float], eq.Machine], count: int = 720) -> float:
@@ -481,21 +481,23 @@ def test_at_the_equivalent_speed_the_energy_is_that_at_300_rpm(name: str) -> Non
 @DIRECTIONS
 @MECHANISMS
 def test_shaking_moment_follows_equations_17_and_26(name: str, phi: float) -> None:
-    found = solved(geared(name, phi))
-    wanted = shaking_moment_17(found.motion, name, phi) + added_26(found, name, phi)
-    close(found.shaking_moment, wanted)
+    solution = solved(geared(name, phi))
+    wanted = shaking_moment_17(solution.motion, name, phi) + added_26(solution, name, phi)
+    close(solution.shaking_moment, wanted)
 
 
-def added_26(found: eq.mechanism.Forces, name: str, phi: float, gear_inertia: float = 0.0) -> Array:
-    rocker = turnings(found.motion, name, phi)[2]
-    return added_moment_26(rocker, theta_e(found, name, phi), name, gear_inertia)
+def added_26(
+    result: eq.mechanism.Forces, name: str, phi: float, gear_inertia: float = 0.0
+) -> Array:
+    rocker = turnings(result.motion, name, phi)[2]
+    return added_moment_26(rocker, theta_e(result, name, phi), name, gear_inertia)
 
 
-def theta_e(found: eq.mechanism.Forces, name: str, phi: float) -> Array:
+def theta_e(result: eq.mechanism.Forces, name: str, phi: float) -> Array:
     """theta_e0 - n (theta_4 - theta_4 at crank angle 0), from the line of pivots."""
     weight = TABLE_4[name]
-    angle = found.motion.links["rocker"].angle
-    at_zero = eq.move(found.motion.machine, [0.0]).links["rocker"].angle[0]
+    angle = result.motion.links["rocker"].angle
+    at_zero = eq.move(result.motion.machine, [0.0]).links["rocker"].angle[0]
     turned = (angle - at_zero + pi) % (2 * pi) - pi
     return np.asarray(radians(weight.start) - weight.ratio * turned)
 
@@ -510,9 +512,9 @@ def theta_e(found: eq.mechanism.Forces, name: str, phi: float) -> Array:
 @MECHANISMS
 def test_inertia_of_the_gears_in_equation_26(name: str) -> None:
     gear_inertia, phi = 3e-4, 35.0
-    found = solved(with_gears(geared(name, phi), name, gear_inertia))
-    wanted = shaking_moment_17(found.motion, name, phi)
-    close(found.shaking_moment, wanted + added_26(found, name, phi, gear_inertia))
+    solution = solved(with_gears(geared(name, phi), name, gear_inertia))
+    wanted = shaking_moment_17(solution.motion, name, phi)
+    close(solution.shaking_moment, wanted + added_26(solution, name, phi, gear_inertia))
 
 
 @dataclass(frozen=True)
@@ -527,10 +529,10 @@ class Device:
 
 
 def device(
-    found: eq.mechanism.Forces, name: str, phi: float, pressure: float, gear_inertia: float = 0.0
+    result: eq.mechanism.Forces, name: str, phi: float, pressure: float, gear_inertia: float = 0.0
 ) -> Device:
-    weight, rocker = TABLE_4[name], turnings(found.motion, name, phi)[2]
-    n, at = weight.ratio, theta_e(found, name, phi) + radians(phi)
+    weight, rocker = TABLE_4[name], turnings(result.motion, name, phi)[2]
+    n, at = weight.ratio, theta_e(result, name, phi) + radians(phi)
     along = np.exp(1j * at)
     f15_2 = weight.mass * weight.arm * along * (-1j * n * rocker.a - (n * rocker.w) ** 2)
     t_l2 = (
@@ -565,10 +567,10 @@ def test_teeth_follow_equation_31(name: str, phi: float, gear_inertia: float) ->
     Equipoise lets the other flank touch, which turns the radial part over.
     """
     machine = with_gears(geared(name, phi), name, gear_inertia)
-    found = solved(machine)
+    solution = solved(machine)
     pressure = machine.gears[0].pressure_angle
-    wanted = device(found, name, phi, pressure, gear_inertia)
-    mesh = found.gears["rocker to counterweight"]
+    wanted = device(solution, name, phi, pressure, gear_inertia)
+    mesh = solution.gears["rocker to counterweight"]
     assert (mesh.on, mesh.by) == ("counterweight", "rocker")
     assert np.min(wanted.f45) < 0 < np.max(wanted.f45)
     line = wanted.f45 * np.exp(1j * wanted.delta)
@@ -597,16 +599,16 @@ def test_bearings_follow_equations_28_to_40(name: str, phi: float, gear_inertia:
     The teeth are taken from Equipoise, since its line of action changes with the sign.
     """
     machine = with_gears(geared(name, phi), name, gear_inertia)
-    found = solved(machine)
+    solution = solved(machine)
     pressure = machine.gears[0].pressure_angle
-    wanted = device(found, name, phi, pressure, gear_inertia)
-    nine = nine_equations(found.motion, name, phi, wanted.t_l1)
-    teeth = found.gears["rocker to counterweight"].value
-    close(found.joints["E"].value, wanted.f15_2 - teeth)
-    close(found.joints["O4"].value, nine.f14 + teeth)
-    close(found.joints["O2"].value, nine.f12)
-    close(found.joints["B"].value, -nine.f43)
-    close(found.drive_torque, nine.torque)
+    wanted = device(solution, name, phi, pressure, gear_inertia)
+    nine = nine_equations(solution.motion, name, phi, wanted.t_l1)
+    teeth = solution.gears["rocker to counterweight"].value
+    close(solution.joints["E"].value, wanted.f15_2 - teeth)
+    close(solution.joints["O4"].value, nine.f14 + teeth)
+    close(solution.joints["O2"].value, nine.f12)
+    close(solution.joints["B"].value, -nine.f43)
+    close(solution.drive_torque, nine.torque)
 
 
 @equation(LEE_KIM, "(41)", "shaking moment from bearing forces", EXACT)
@@ -618,12 +620,14 @@ def test_total_moment_by_equation_41(name: str, phi: float, flank: str) -> None:
 
     The radial parts of the tooth force lie on the line of pivots and have no moment about O2.
     """
-    found = solved(geared(name, phi))
-    at_o4, at_e = found.joints["O4"].value, found.joints["E"].value
+    solution = solved(geared(name, phi))
+    at_o4, at_e = solution.joints["O4"].value, solution.joints["E"].value
     if flank == "paper":
-        pressure = found.motion.machine.gears[0].pressure_angle
-        line = device(found, name, phi, pressure)
-        change = line.f45 * np.exp(1j * line.delta) - found.gears["rocker to counterweight"].value
+        pressure = solution.motion.machine.gears[0].pressure_angle
+        line = device(solution, name, phi, pressure)
+        change = (
+            line.f45 * np.exp(1j * line.delta) - solution.gears["rocker to counterweight"].value
+        )
         at_o4, at_e = at_o4 + change, at_e - change
     r1 = TABLE_2[name][0]
     reach = r1 + TABLE_4[name].axes
@@ -631,10 +635,10 @@ def test_total_moment_by_equation_41(name: str, phi: float, flank: str) -> None:
     total = (
         -at_o4.imag * r1 * c
         + at_o4.real * r1 * s
-        - found.drive_torque
+        - solution.drive_torque
         - at_e.imag * reach * c
         + at_e.real * reach * s
     )
-    close(total, found.shaking_moment)
-    close(total, found.frame_moment)
-    close(total, shaking_moment_17(found.motion, name, phi) + added_26(found, name, phi))
+    close(total, solution.shaking_moment)
+    close(total, solution.frame_moment)
+    close(total, shaking_moment_17(solution.motion, name, phi) + added_26(solution, name, phi))

@@ -118,7 +118,7 @@ def scanned(name: str) -> tuple[float, float]:
         ratio = np.clip(n, 0.2, 3.0)
         return body.energy(ratio, size * np.exp(1j * angle), inertia) / body.before
 
-    found = differential_evolution(
+    optimum = differential_evolution(
         over,
         [(0.2, 3), (0, 1), (0, 1), (-pi, pi)],
         popsize=12,
@@ -130,7 +130,7 @@ def scanned(name: str) -> tuple[float, float]:
         updating="deferred",
     )
     options = {"xatol": 1e-9, "fatol": 1e-12, "maxiter": 1500, "maxfev": 3000}
-    best = minimize(lambda x: float(over(x[:, None])[0]), found.x, method="Nelder-Mead",
+    best = minimize(lambda x: float(over(x[:, None])[0]), optimum.x, method="Nelder-Mead",
                     options=options)  # fmt: skip
     return float(best.fun), float(np.clip(best.x[0], 0.2, 3.0))
 
@@ -190,18 +190,18 @@ def test_balancing_finds_it(name: str) -> None:
     assert solution.gap < 1e-8
     for other in (0.98 * ratio, min(1.02 * ratio, 3.0)):
         assert eq.balance(machine, geared(name, other, other)).cost > least - 1e-7
-    told = solution.after["shaking_moment.area"]
-    assert energy_with(name, solution, ratio, FIGURES) == pytest.approx(told, rel=1e-8)
+    reported = solution.after["shaking_moment.area"]
+    assert energy_with(name, solution, ratio, FIGURES) == pytest.approx(reported, rel=1e-8)
     weight = solution.changes[1].values
     assert weight["mass"] <= TABLE_4[name].mass * (1 + 1e-9)
     assert all(np.hypot(*p["place"]) <= TABLE_4[name].radius + 1e-6 for p in weight["pieces"])
 
 
-def energy_with(name: str, found: Any, ratio: float, angles: int) -> float:
+def energy_with(name: str, result: Any, ratio: float, angles: int) -> float:
     """Shaking energy with the weight that was found, by (17) + (26)."""
-    weight = found.changes[1].values
+    weight = result.changes[1].values
     first = weight["moment"] * np.exp(1j * weight["direction"])
-    inertia = sum(one["mass"] * np.sum(np.square(one["place"])) for one in weight["pieces"])
+    inertia = sum(item["mass"] * np.sum(np.square(item["place"])) for item in weight["pieces"])
     return float(mechanism(name, angles).energy(ratio, first, inertia)[0])
 
 

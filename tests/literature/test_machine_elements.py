@@ -17,8 +17,8 @@ RPM = 2 * pi / 60
 
 def test_the_example_of_rainflow_counting() -> None:
     """Figure 6 of ASTM E1049: ranges and how many cycles have each."""
-    found = rainflow(np.array(E1049)).by_range()
-    assert found == [(3.0, 0.5), (4.0, 1.5), (6.0, 0.5), (8.0, 1.0), (9.0, 0.5)]
+    result = rainflow(np.array(E1049)).by_range()
+    assert result == [(3.0, 0.5), (4.0, 1.5), (6.0, 0.5), (8.0, 1.0), (9.0, 0.5)]
 
 
 def test_a_deep_groove_ball_bearing() -> None:
@@ -27,9 +27,9 @@ def test_a_deep_groove_ball_bearing() -> None:
     the next larger bearing of 25.5 kN.
     """
     bearing = RollingBearing(25.5e3, load_factor=1.2, life=25e3 * 3600.0, reliability=0.9)
-    found = bearing_life(bearing, 2500.0, 350 * RPM)
-    assert found.equivalent_load == pytest.approx(3000.0)
+    life = bearing_life(bearing, 2500.0, 350 * RPM)
+    assert life.equivalent_load == pytest.approx(3000.0)
     assert bearing.life is not None
-    assert bearing.life * found.speed / (2 * pi * 1e6) == pytest.approx(525.0)
-    assert found.needed_rating == pytest.approx(24.26e3, abs=5.0)
-    assert found.reached == pytest.approx(0.9195, abs=5e-5)
+    assert bearing.life * life.speed / (2 * pi * 1e6) == pytest.approx(525.0)
+    assert life.needed_rating == pytest.approx(24.26e3, abs=5.0)
+    assert life.reached == pytest.approx(0.9195, abs=5e-5)

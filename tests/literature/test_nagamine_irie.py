@@ -112,13 +112,13 @@ def by_lambda_3(eigenvalue: float) -> Observation:
 @published(
     NAGAMINE_IRIE,
     *(
-        Printed(CASE, f"lambda_{k + 1}, alpha_1 = {alpha:g}", figures, "", told, of=(alpha, k))
+        Printed(CASE, f"lambda_{k + 1}, alpha_1 = {alpha:g}", figures, "", text, of=(alpha, k))
         for alpha, figures, computed in (
             (ALPHA[0], "Figs. 2 to 5", "1.238 2.413 4.418 6.290 9.400"),
             (0.0, "Fig. 3", "1.650 3.105 4.326 6.169 9.359"),
             (0.1, "Fig. 3", "1.497 2.631 4.364 6.221 9.387"),
         )
-        for k, told in enumerate(computed.split())
+        for k, text in enumerate(computed.split())
     ),
 )
 def test_eigenvalues(machine: Tool, row: Printed) -> float:
@@ -144,8 +144,8 @@ def test_eigenvalues(machine: Tool, row: Printed) -> float:
 )  # fmt: skip
 def test_natural_frequencies(machine: Tool, row: Printed) -> list[float]:
     """By the formula of section 3.3 too."""
-    found = natural_frequencies(machine, 5)[0][row.of] * PER_MINUTE
-    return [found, frequency(parameters(machine)[row.of])]
+    actual = natural_frequencies(machine, 5)[0][row.of] * PER_MINUTE
+    return [actual, frequency(parameters(machine)[row.of])]
 
 
 def test_harness_moved_to_the_handle(machine: Tool) -> None:
@@ -154,18 +154,20 @@ def test_harness_moved_to_the_handle(machine: Tool) -> None:
     At the handle itself both springs hold one place, and the tool turns about it: lambda_1 is 0.
     """
     handle = machine.station("handle").position
-    found = vary_tool(machine, "harness", "position", np.linspace(0, handle, 12), 5).parameter[0]
-    assert np.all(np.diff(found[:, :2], axis=0) < 0)
-    assert found[-1, 0] == 0
-    assert np.ptp(found[:, 2:], axis=0) / found[0, 2:] == pytest.approx([0, 0, 0], abs=0.06)
-    assert np.ptp(found[:, :2], axis=0).min() > 0.8
+    parameter = vary_tool(machine, "harness", "position", np.linspace(0, handle, 12), 5).parameter[
+        0
+    ]
+    assert np.all(np.diff(parameter[:, :2], axis=0) < 0)
+    assert parameter[-1, 0] == 0
+    assert np.ptp(parameter[:, 2:], axis=0) / parameter[0, 2:] == pytest.approx([0, 0, 0], abs=0.06)
+    assert np.ptp(parameter[:, :2], axis=0).min() > 0.8
 
 
 def test_ratio_of_springs(machine: Tool) -> None:
     """Fig. 4: with a stiffer harness every eigenvalue rises; the paper's own ratio is 0.465."""
     ratios = np.linspace(0.1, 2.0, 9)
-    found = vary_tool(machine, "harness", "harness.stiffness", ratios * K2, 5).parameter[0]
-    assert np.all(np.diff(found, axis=0) > 0)
+    parameter = vary_tool(machine, "harness", "harness.stiffness", ratios * K2, 5).parameter[0]
+    assert np.all(np.diff(parameter, axis=0) > 0)
 
 
 def determinant(parameter: float, stiff: tuple[float, float] = (K1, K2)) -> float:
@@ -211,7 +213,7 @@ def determinant(parameter: float, stiff: tuple[float, float] = (K1, K2)) -> floa
 def test_equations_11_to_22(machine: Tool) -> None:
     """Their determinant vanishes at our eigenvalues, and nowhere else below the sixth."""
     grid = np.linspace(0.3, 10, 2000)
-    values = np.array([determinant(float(one)) for one in grid])
+    values = np.array([determinant(float(item)) for item in grid])
     where = np.flatnonzero(np.sign(values[1:]) != np.sign(values[:-1]))
     roots = [brentq(determinant, grid[k], grid[k + 1], xtol=1e-13) for k in where]
     assert parameters(machine) == pytest.approx(roots, rel=1e-10)
@@ -220,21 +222,21 @@ def test_equations_11_to_22(machine: Tool) -> None:
 def test_determinant_chart(machine: Tool) -> None:
     """Fig. 2: our function changes its sign with their determinant."""
     chart = determinant_chart(machine, 10.0, 400)
-    signs = np.sign([determinant(float(one)) for one in chart.parameter])
+    signs = np.sign([determinant(float(item)) for item in chart.parameter])
     assert abs(np.mean(signs * np.sign(chart.value[0]))) == 1
 
 
 def test_shapes_of_fig_5(machine: Tool) -> None:
     """Each shape satisfies the equation of the beam between the stations, and (7) to (10)."""
-    found = vibrate_tool(machine, 5)
-    plane = found.planes[0]
-    step = found.places[1]
+    vibration = vibrate_tool(machine, 5)
+    plane = vibration.planes[0]
+    step = vibration.places[1]
     for k, parameter in enumerate(plane.parameter):
         shape = plane.shapes[k]
         fourth = (
             shape[:-4] - 4 * shape[1:-3] + 6 * shape[2:-2] - 4 * shape[3:-1] + shape[4:]
         ) / step**4
-        middle = found.places[2:-2]
+        middle = vibration.places[2:-2]
         gaps = np.array([station.position for station in machine.stations])
         clear = np.all(np.abs(middle[:, None] - gaps) > 3 * step, axis=1)
         wanted = (parameter / LENGTH) ** 4 * shape[2:-2]
@@ -263,9 +265,9 @@ def by_their_matrices(omega: float, n: float = 1.0, c1: float = 0.0, c2: float =
         )
 
     def jump(value: complex) -> Any:
-        found = np.eye(4, dtype=complex)
-        found[3, 0] = value
-        return found
+        result = np.eye(4, dtype=complex)
+        result[3, 0] = value
+        return result
 
     r1, r2 = (sqrt(k / WEIGHT) / omega for k in (K1, K2))
     first = -x * (r1**2 + 1j * c1 / (omega * WEIGHT))
@@ -289,9 +291,9 @@ def test_transmission_26(machine: Tool, damping: tuple[float, float]) -> None:
     hand = Hand(stiffness=(K2 / 2, K2 / 2), damping=(c2 / 2, c2 / 2), hands=2)
     tool = tool.with_station("handle", hand=hand)
     speeds = np.array([100, 300, 700, 1300, 2500, 3000, 4500, 6000, 7000, 8200]) / PER_MINUTE
-    found = transmit(tool, speeds).stations["handle"].size[0]
+    size = transmit(tool, speeds).stations["handle"].size[0]
     zeta = c2 / (2 * sqrt(WEIGHT * K2))
-    for omega, ratio in zip(speeds.tolist(), found, strict=True):
+    for omega, ratio in zip(speeds.tolist(), size, strict=True):
         x4, r2 = WEIGHT * omega**2 * LENGTH**3 / STIFFNESS, sqrt(K2 / WEIGHT) / omega
         eta = by_their_matrices(omega, 7.0, c1, c2)
         printed = x4 * r2 / 7.0 * abs((r2 + 2j * zeta) * eta)
@@ -310,16 +312,16 @@ def test_transmission_26(machine: Tool, damping: tuple[float, float]) -> None:
 )
 def test_force_transmission_vanishes(machine: Tool, row: Printed) -> float:
     speeds = np.linspace(50, 9000, 1200) / PER_MINUTE
-    found = transmit(machine, speeds).stations["handle"]
+    stations = transmit(machine, speeds).stations["handle"]
     natural = natural_frequencies(machine, 5)[0]
-    quiet, depth = found.quiet[0], found.lowest[0]
+    quiet, depth = stations.quiet[0], stations.lowest[0]
     silent = quiet[depth < 1e-6]
     between = [
         silent[(silent > natural[k]) & (silent < natural[k + 1])] * PER_MINUTE for k in (1, 3)
     ]
     assert [len(part) for part in between] == [1, 1]
     others = quiet[(quiet > natural[2]) & (quiet < natural[3])]
-    assert np.all(found.lowest[0][np.isin(quiet, others)] > 0.01)
+    assert np.all(stations.lowest[0][np.isin(quiet, others)] > 0.01)
     return float(between[row.of][0])
 
 

@@ -49,12 +49,12 @@ def centered(machine: eq.Machine, link: str, place: complex) -> eq.Machine:
     return machine.with_link(link, center_of_mass=(place.real / 1e3, place.imag / 1e3))
 
 
-def row(found: Any, **factors: float) -> Array:
+def row(result: Any, **factors: float) -> Array:
     """A combination of parameters, named such as coupler__moment_x."""
-    wanted = np.zeros(len(found.parameters))
+    wanted = np.zeros(len(result.parameters))
     for name, factor in factors.items():
         link, quantity = name.split("__")
-        wanted[found.parameters.index((link, quantity))] = factor
+        wanted[result.parameters.index((link, quantity))] = factor
     return wanted
 
 
@@ -66,17 +66,17 @@ def row(found: Any, **factors: float) -> Array:
 def test_pure_sine_takes_the_two_conditions_of_equation_80(finger: Finger) -> None:
     """m_d g_d1 c + m_c g_c1 d = 0, and the same along the other axis; divided by d."""
     *_, c, d = finger.lengths
-    found = conditions(finger.machine, "sine")
+    result = conditions(finger.machine, "sine")
     wanted = [
-        row(found, **{f"coupler__moment_{axis}": 1.0, f"rocker__moment_{axis}": c / d})
+        row(result, **{f"coupler__moment_{axis}": 1.0, f"rocker__moment_{axis}": c / d})
         for axis in "xy"
     ]
-    close(found.coefficients, wanted)
-    assert found.units == ("kg m", "kg m")
+    close(result.coefficients, wanted)
+    assert result.units == ("kg m", "kg m")
     _, m_c, m_d = finger.masses
     _, g_c, g_d = finger.centers
     rest = (m_d * g_d * c + m_c * g_c * d) / d / 1e6
-    close(found.residuals, [rest.real, rest.imag])
+    close(result.residuals, [rest.real, rest.imag])
 
 
 @equation(YAMASHITA, "(80), (83)", "conditions of balance", EXACT)
@@ -84,14 +84,14 @@ def test_pure_sine_takes_the_two_conditions_of_equation_80(finger: Finger) -> No
 def test_balance_takes_the_conditions_of_equations_80_and_83(finger: Finger) -> None:
     """(83): m_b g_b1 d + m_c b d + m_d g_d1 b = 0 and m_b g_b2 d + m_d g_d2 b = 0."""
     _, b, c, d = finger.lengths
-    found = conditions(finger.machine)
+    result = conditions(finger.machine)
     wanted = [
-        row(found, crank__moment_x=1.0, coupler__mass=b / 1e3, rocker__moment_x=b / d),
-        row(found, crank__moment_y=1.0, rocker__moment_y=b / d),
-        row(found, coupler__moment_x=1.0, rocker__moment_x=c / d),
-        row(found, coupler__moment_y=1.0, rocker__moment_y=c / d),
+        row(result, crank__moment_x=1.0, coupler__mass=b / 1e3, rocker__moment_x=b / d),
+        row(result, crank__moment_y=1.0, rocker__moment_y=b / d),
+        row(result, coupler__moment_x=1.0, rocker__moment_x=c / d),
+        row(result, coupler__moment_y=1.0, rocker__moment_y=c / d),
     ]
-    close(found.coefficients, wanted)
+    close(result.coefficients, wanted)
 
 
 def test_conditions_read_like_the_paper() -> None:
@@ -135,10 +135,10 @@ def of_the_sine(link: str, number: int, finger: Finger) -> float:
 def test_pure_sine_of_type_2(row: Printed) -> float:
     """One link's centre of mass from the two conditions."""
     link, number = row.of
-    found = conditions(TYPE_2.machine, "sine")
-    own = found.parameters.index((link, "moment_x"))
-    part = found.coefficients[:, own : own + 2]
-    moment = -np.linalg.solve(part, found.residuals)
+    result = conditions(TYPE_2.machine, "sine")
+    own = result.parameters.index((link, "moment_x"))
+    part = result.coefficients[:, own : own + 2]
+    moment = -np.linalg.solve(part, result.residuals)
     body = TYPE_2.machine.links[link]
     assert body.mass is not None
     assert body.center_of_mass is not None
@@ -180,15 +180,15 @@ def test_amplitude_of_equations_73_to_75() -> None:
 def test_moments_of_equations_84_and_85(finger: Finger) -> None:
     _, b, c, d = finger.lengths
     m_c, g_c = finger.masses[1], finger.centers[1]
-    found = least_moments(finger.machine, ["crank", "rocker"])
+    moments = least_moments(finger.machine, ["crank", "rocker"])
     rocker, crank = -m_c * g_c * d / c, -m_c * b / c * (c - g_c)
-    close(1e6 * np.array(found.totals["rocker"]), [rocker.real, rocker.imag])
-    close(1e6 * np.array(found.totals["crank"]), [crank.real, crank.imag])
-    assert np.max(eq.analyze(found.machine).forces.shaking_force.size) < 1e-12
-    for link, (x, y) in found.totals.items():
+    close(1e6 * np.array(moments.totals["rocker"]), [rocker.real, rocker.imag])
+    close(1e6 * np.array(moments.totals["crank"]), [crank.real, crank.imag])
+    assert np.max(eq.analyze(moments.machine).forces.shaking_force.size) < 1e-12
+    for link, (x, y) in moments.totals.items():
         body = finger.machine.links[link]
-        assert found.machine.links[link].mass == body.mass
-        close(np.array(found.machine.links[link].center_of_mass) * body.mass, (x, y))
+        assert moments.machine.links[link].mass == body.mass
+        close(np.array(moments.machine.links[link].center_of_mass) * body.mass, (x, y))
 
 
 @published(
@@ -202,8 +202,8 @@ def test_moments_of_equations_84_and_85(finger: Finger) -> None:
     ),
 )  # fmt: skip
 def test_printed_moments_of_type_1(row: Printed) -> float:
-    found = least_moments(TYPE_1.machine, ["crank", "rocker"])
-    return 1e6 * [*found.totals["rocker"], *found.totals["crank"]][row.of]
+    moments = least_moments(TYPE_1.machine, ["crank", "rocker"])
+    return 1e6 * [*moments.totals["rocker"], *moments.totals["crank"]][row.of]
 
 
 @equation(
@@ -220,14 +220,14 @@ def test_least_moments_are_those_of_equation_87(finger: Finger) -> None:
     m_c = finger.masses[1]
     m_b0, m_d0 = (finger.masses[k] * finger.centers[k].real for k in (0, 2))
     wanted = (b * b * c + c / m_c * (m_b0 * b - m_d0 * d)) / (b * b + d * d)
-    found = least_moments(finger.machine, ["crank", "rocker"], ["coupler"])
-    center = found.machine.links["coupler"].center_of_mass
+    moments = least_moments(finger.machine, ["crank", "rocker"], ["coupler"])
+    center = moments.machine.links["coupler"].center_of_mass
     assert 1e3 * np.array(center) == pytest.approx([wanted, 0], abs=1e-9)
-    assert np.max(eq.analyze(found.machine).forces.shaking_force.size) < 1e-12
+    assert np.max(eq.analyze(moments.machine).forces.shaking_force.size) < 1e-12
     bound = least_moments(finger.machine, ["crank", "rocker"])
-    assert found.cost < bound.cost
+    assert moments.cost < bound.cost
     su = (-m_c * wanted * d / c - m_d0) ** 2 + (-m_c * b / c * (c - wanted) - m_b0) ** 2
-    assert 1e6 * found.cost == pytest.approx(su**0.5)
+    assert 1e6 * moments.cost == pytest.approx(su**0.5)
 
 
 @pytest.mark.parametrize("step", [-1.0, 1.0])
@@ -289,15 +289,15 @@ def test_equations_80_and_83_leave_the_torque_as_it_is(finger: Finger) -> None:
 @FINGERS
 def test_moment_cannot_be_balanced_by_the_links_themselves(finger: Finger) -> None:
     """Why rotation remains in (90): coupler and rocker would need no moment of inertia."""
-    found = feasibility(finger.machine)
-    assert found.force.masses_kept
-    assert not found.moment.possible
-    assert not found.both.possible
-    assert found.moment.by_points
+    result = feasibility(finger.machine)
+    assert result.force.masses_kept
+    assert not result.moment.possible
+    assert not result.both.possible
+    assert result.moment.by_points
     *_, c, d = finger.lengths
-    assert found.moment.proof is not None
+    assert result.moment.proof is not None
     text = f"coupler.inertia / ({c:g} mm)^2 + rocker.inertia / ({d:g} mm)^2"
-    assert found.moment.proof.text == text
+    assert result.moment.proof.text == text
 
 
 # -- (64) ------------------------------------------------------------------------------------------
@@ -318,7 +318,7 @@ def test_sensitivities_of_equation_64(finger: Finger) -> None:
     m_c and m_d.
     """
     motion = eq.analyze(finger.machine, 720).motion
-    found = sensitivities(finger.machine)
+    result = sensitivities(finger.machine)
     for k, link in enumerate(("crank", "coupler", "rocker")):
         moving = motion.links[link]
         angle, w, w1 = moving.angle, moving.angular_velocity, moving.angular_acceleration
@@ -330,10 +330,10 @@ def test_sensitivities_of_equation_64(finger: Finger) -> None:
             by_mass = by_mass - motion.speed**2 * finger.lengths[1] / 1e3 * np.sin(
                 motion.crank_angle
             )
-        close(found[f"{link}.center_x"].values, -m * by_x)
-        close(found[f"{link}.center_y"].values, -m * by_y)
-        close(found[f"{link}.mass"].values, -by_mass)
-        assert not found[f"{link}.inertia"].has_effect
+        close(result[f"{link}.center_x"].values, -m * by_x)
+        close(result[f"{link}.center_y"].values, -m * by_y)
+        close(result[f"{link}.mass"].values, -by_mass)
+        assert not result[f"{link}.inertia"].has_effect
 
 
 UNCHANGED = (
@@ -385,8 +385,8 @@ def test_angles_without_effect_of_a_center_depend_on_lengths_alone() -> None:
     before, after = sensitivities(TYPE_2.machine), sensitivities(other)
     for name in ("coupler.center_x", "coupler.center_y", "rocker.center_x"):
         np.testing.assert_allclose(after[name].no_effect_at, before[name].no_effect_at, atol=1e-9)
-    one, two = (found["coupler.mass"].no_effect_at for found in (before, after))
-    assert len(one) != len(two) or np.max(np.abs(one - two)) > 0.01
+    first, two = (result["coupler.mass"].no_effect_at for result in (before, after))
+    assert len(first) != len(two) or np.max(np.abs(first - two)) > 0.01
 
 
 # -- 5-2 and 5-3, found by balancing ---------------------------------------------------------------
@@ -409,7 +409,7 @@ def test_angles_without_effect_of_a_center_depend_on_lengths_alone() -> None:
         )
     ),
 )  # fmt: skip
-def test_flattest_coupler_of_type_2_is_found(row: Printed) -> float:
+def test_flattest_coupler_of_type_2_results(row: Printed) -> float:
     """The grid's is worse, by less than 1 %."""
     solution = eq.balance(eq.load("balance-coupler"))
     center = np.array(solution.machine.links["coupler"].center_of_mass) * 1e3
@@ -448,7 +448,7 @@ def smallest_less_by(phase: float) -> float:
         )
     ),
 )  # fmt: skip
-def test_counterweight_of_type_1_is_found(row: Printed) -> float:
+def test_counterweight_of_type_1_results(row: Printed) -> float:
     """X is the weight's direction while the crank lies on the line from A to D, at -psi."""
     solution = eq.balance(eq.load("balance-crank"))
     (change,) = solution.changes
@@ -462,7 +462,7 @@ def test_counterweight_of_type_1_is_found(row: Printed) -> float:
     return float([change.values["radius"] * 1e3, direction, *less][row.of])
 
 
-def test_counterweight_that_is_found_quietens_the_rig() -> None:
+def test_counterweight_that_results_quietens_the_rig() -> None:
     """Section 5-3 on the rig, mm from peak to peak: 12.62 without, 0.54 with it.
 
     The rig's moment of inertia is held at its printed value, as in `test_yamashita_vibration`.
@@ -473,8 +473,8 @@ def test_counterweight_that_is_found_quietens_the_rig() -> None:
         "crank", mass=crank.mass, center_of_mass=crank.center_of_mass, inertia=crank.inertia
     )
     before, after = (
-        1e3 * eq.respond(one, model="linear").gauges["gauge"].displacement.peak_to_peak
-        for one in (eq.load("yamashita-rig"), machine)
+        1e3 * eq.respond(item, model="linear").gauges["gauge"].displacement.peak_to_peak
+        for item in (eq.load("yamashita-rig"), machine)
     )
     assert before == pytest.approx(12.62, abs=0.006)
     assert after == pytest.approx(0.54, abs=0.006)

@@ -80,8 +80,8 @@ def identified(record: eq.measured.Record) -> eq.measured.Decay:
 
 @pytest.mark.parametrize("friction", [0.0, T_F], ids=["as printed", "with friction"])
 def test_the_rig_without_noise(friction: float) -> None:
-    found = identified(rig(friction))
-    for method, tolerance in ((found.by_record, 1e-9), (found.by_line, 2e-3)):
+    decays = identified(rig(friction))
+    for method, tolerance in ((decays.by_record, 1e-9), (decays.by_line, 2e-3)):
         assert method["inertia"].value == pytest.approx(I_0, rel=tolerance / 10)
         assert method["viscous_damping"].value == pytest.approx(C_R, rel=tolerance)
         assert method["coulomb_torque"].value == pytest.approx(friction, abs=tolerance)
@@ -91,8 +91,8 @@ def test_the_rig_without_noise(friction: float) -> None:
 @published(
     YAMASHITA,
     *(
-        Printed("yamashita-rig", f"{what} from a free decay", "Table 2", printed, told, unit, of=of)
-        for what, printed, told, unit, of in (
+        Printed("yamashita-rig", f"{what} from a free decay", "Table 2", printed, text, unit, of=of)
+        for what, printed, text, unit, of in (
             ("I0", "2.152", "2.152", "kgf m s2", ("inertia", KGF)),
             ("Cr", "0.333", "0.333", "kgf m s", ("viscous_damping", KGF)),
             ("Tf", "0", "0.000", "kgf m", ("coulomb_torque", KGF)),
@@ -102,19 +102,21 @@ def test_the_rig_without_noise(friction: float) -> None:
 )
 def test_constants_of_the_rig_come_back(row: Printed) -> list[float]:
     """By the whole record and by the line of its turning points."""
-    found, (name, unit) = identified(rig()), row.of
-    return [method[name].value / unit for method in (found.by_record, found.by_line)]
+    actual, (name, unit) = identified(rig()), row.of
+    return [method[name].value / unit for method in (actual.by_record, actual.by_line)]
 
 
 @pytest.mark.parametrize("friction", [0.0, T_F], ids=["as printed", "with friction"])
 def test_the_rig_with_a_noisy_gauge(friction: float) -> None:
     """2.152 and 12.4 to every printed digit, 0.333 to 1 %; by both methods."""
-    found = identified(rig(friction, noise=2e-5))
-    for method in (found.by_record, found.by_line):
+    decays = identified(rig(friction, noise=2e-5))
+    for method in (decays.by_record, decays.by_line):
         assert method["inertia"].value / KGF == pytest.approx(2.152, abs=5e-4)
         assert round(method["damped_angular_frequency"].value, 1) == BETA
         assert method["viscous_damping"].value / KGF == pytest.approx(0.333, rel=0.01)
         assert method["coulomb_torque"].value == pytest.approx(friction, abs=0.01 * KGF)
-    assert found.by_record["inertia"].low <= I_0 <= found.by_record["inertia"].high
-    assert found.by_record["viscous_damping"].low <= C_R <= found.by_record["viscous_damping"].high
-    assert found.by_record["coulomb_torque"].includes_zero == (friction == 0)
+    assert decays.by_record["inertia"].low <= I_0 <= decays.by_record["inertia"].high
+    assert (
+        decays.by_record["viscous_damping"].low <= C_R <= decays.by_record["viscous_damping"].high
+    )
+    assert decays.by_record["coulomb_torque"].includes_zero == (friction == 0)

@@ -339,9 +339,9 @@ def test_parts_of_the_torque_are_columns_of_the_regressor(finger: Finger) -> Non
 
 def regressor_parts(motion: eq.mechanism.Motion) -> dict[tuple[str, str], Array]:
     """Drive torque by link and inertial parameter, N m."""
-    found = eq.mechanism.regressor(motion)
-    rows = found.values[:, None] * found.drive_torque
-    return dict(zip(found.parameters, rows, strict=True))
+    regressor = eq.mechanism.regressor(motion)
+    rows = regressor.values[:, None] * regressor.drive_torque
+    return dict(zip(regressor.parameters, rows, strict=True))
 
 
 @equation(YAMASHITA, "(90)", "drive torque of turning alone", EXACT)

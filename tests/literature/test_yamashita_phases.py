@@ -55,10 +55,10 @@ def rows(*phases: float) -> eq.Machine:
     YAMASHITA, Printed("two of yamashita-2", "best phase X", "section 5-5", "180", unit="deg")
 )
 def test_two_claws_are_best_half_a_turn_apart() -> float:
-    found = choose_phases(rows(0.0, 0.0), [U])
-    assert found.phases == (0.0, pi)
-    assert found.after[U.name] == pytest.approx(np.std(sums(pi)) * links_mass(), rel=1e-9)
-    return float(np.degrees(found.phases[1]))
+    phasing = choose_phases(rows(0.0, 0.0), [U])
+    assert phasing.phases == (0.0, pi)
+    assert phasing.after[U.name] == pytest.approx(np.std(sums(pi)) * links_mass(), rel=1e-9)
+    return float(np.degrees(phasing.phases[1]))
 
 
 def links_mass() -> float:
@@ -67,8 +67,8 @@ def links_mass() -> float:
 
 def sums(phase: float, axis: str = "y") -> np.ndarray:
     """Acceleration of two claws together over a turn, m/s2."""
-    one = acceleration(axis)
-    return (one + one.shifted(phase)).samples(7200)
+    first = acceleration(axis)
+    return (first + first.shifted(phase)).samples(7200)
 
 
 def test_deviation_against_phase_is_symmetric_with_one_minimum() -> None:
@@ -86,8 +86,8 @@ def less_at_180(axis: str, sign: int) -> float:
 
 def finger_less_at_180(sign: int, finger: Finger) -> float:
     """The same by the paper's equations."""
-    one = sign * vertical_acceleration(finger)
-    return 100 * float(1 - np.max(one + np.roll(one, len(one) // 2)) / np.max(2 * one))
+    first = sign * vertical_acceleration(finger)
+    return 100 * float(1 - np.max(first + np.roll(first, len(first) // 2)) / np.max(2 * first))
 
 
 def short_of_both(sign: int, most: float) -> Observation:
@@ -109,10 +109,10 @@ def sampled_as_printed(step: int) -> bool:
     """Whether samples every so many degrees, wherever they begin, give 77 and 60 %, to half a
     digit, together.
     """
-    one, both = (np.append(sums(phase), sums(phase)) for phase in (0.0, pi))
+    first, both = (np.append(sums(phase), sums(phase)) for phase in (0.0, pi))
     at = np.arange(20 * step)[:, None] + np.arange(0, 7200, 20 * step)
-    largest = 100 * (1 - np.max(both[at], axis=1) / np.max(one[at], axis=1))
-    smallest = 100 * (1 - np.min(both[at], axis=1) / np.min(one[at], axis=1))
+    largest = 100 * (1 - np.max(both[at], axis=1) / np.max(first[at], axis=1))
+    smallest = 100 * (1 - np.min(both[at], axis=1) / np.min(first[at], axis=1))
     return bool(np.any((np.abs(largest - 77) <= 0.5) & (np.abs(smallest - 60) <= 0.5)))
 
 
@@ -138,13 +138,13 @@ def test_horizontally_about_the_same() -> None:
 )  # fmt: skip
 def test_even_orders_are_left_at_twice_their_size() -> None:
     """(71), (72), and figure 17: the sum repeats after half a turn."""
-    one = acceleration()
-    both = one + one.shifted(pi)
-    assert np.max(both.sizes[1::2]) < 1e-14 * one.sizes[1]
-    assert both.amplitudes[2::2] == pytest.approx(2 * one.amplitudes[2::2], rel=1e-12)
-    found = choose_phases(rows(0.0, 0.0), [U])
-    assert found.remaining
-    assert all(order % 2 == 0 for order in found.remaining)
+    first = acceleration()
+    both = first + first.shifted(pi)
+    assert np.max(both.sizes[1::2]) < 1e-14 * first.sizes[1]
+    assert both.amplitudes[2::2] == pytest.approx(2 * first.amplitudes[2::2], rel=1e-12)
+    phasing = choose_phases(rows(0.0, 0.0), [U])
+    assert phasing.remaining
+    assert all(order % 2 == 0 for order in phasing.remaining)
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 4, 5])
@@ -153,12 +153,12 @@ def test_an_order_vanishes_at_pi_over_itself(order: int) -> None:
 
     A single order is best removed at any odd multiple of that; the grid's first one is as good.
     """
-    one = acceleration()
-    gone = (one + one.shifted(pi / order)).sizes
-    assert gone[order] < 1e-14 * one.sizes[1]
-    found = choose_phases(rows(0.0, 0.3), [Objective("shaking_force.y", orders=(order,))])
-    assert found.after.popitem()[1] == pytest.approx(0.0, abs=1e-9)
-    assert (found.phases[1] * order / pi) % 2 == pytest.approx(1.0, abs=1e-9)
+    first = acceleration()
+    gone = (first + first.shifted(pi / order)).sizes
+    assert gone[order] < 1e-14 * first.sizes[1]
+    phasing = choose_phases(rows(0.0, 0.3), [Objective("shaking_force.y", orders=(order,))])
+    assert phasing.after.popitem()[1] == pytest.approx(0.0, abs=1e-9)
+    assert (phasing.phases[1] * order / pi) % 2 == pytest.approx(1.0, abs=1e-9)
 
 
 # -- four and six claws ----------------------------------------------------------------------------
@@ -188,14 +188,14 @@ def test_table_5(name: str) -> None:
 @pytest.mark.parametrize("name", TABLE_5)
 def test_table_5_on_type_ii(name: str) -> None:
     """The same found on the sum of six or four accelerations, and on its twist."""
-    pattern, one = PATTERNS[name], acceleration()
-    total, turned = one * 0.0, one * 0.0
+    pattern, first = PATTERNS[name], acceleration()
+    total, turned = first * 0.0, first * 0.0
     for phase, place in zip(pattern.phases, pattern.places, strict=True):
-        total = total + one.shifted(phase)
-        turned = turned + one.shifted(phase) * place
+        total = total + first.shifted(phase)
+        turned = turned + first.shifted(phase) * place
     for order in range(1, 9):
         left = pattern.remaining.get(order % pattern.cycle or pattern.cycle, 0.0)
-        assert total.sizes[order] == pytest.approx(left * one.sizes[order], abs=1e-11)
+        assert total.sizes[order] == pytest.approx(left * first.sizes[order], abs=1e-11)
     assert (float(turned.rms) > 1e-9) is pattern.twists
 
 
@@ -211,33 +211,33 @@ def test_all_phases_at_once_find_the_same_as_pairs() -> None:
     """Section 5-6 (1), which was too long to compute: four rows of type II end up in the pattern
     that the rule has, with the least twist that its phases can have.
     """
-    found = choose_phases(rows(0.0, 0.0, 0.0, 0.0), [U])
-    assert sorted(found.phases) == pytest.approx(sorted(halved(4).phases), abs=1e-9)
-    assert all(order % 4 == 0 for order in found.remaining)
+    phasing = choose_phases(rows(0.0, 0.0, 0.0, 0.0), [U])
+    assert sorted(phasing.phases) == pytest.approx(sorted(halved(4).phases), abs=1e-9)
+    assert all(order % 4 == 0 for order in phasing.remaining)
     printed = arranged(MACHINE, "4 quarter turns", 0.3)
     as_printed = choose_phases(printed, [U])
-    assert as_printed.after == pytest.approx(found.after, rel=1e-9)
-    for name, (_, after) in found.lateral.items():
+    assert as_printed.after == pytest.approx(phasing.after, rel=1e-9)
+    for name, (_, after) in phasing.lateral.items():
         assert after == pytest.approx(as_printed.lateral[name][0], rel=1e-9)
 
 
 def test_left_and_right_in_balance_cost_force() -> None:
     """Table 5: what leaves no twist, 4 (b), leaves the even orders."""
     force, roll = (Objective(name) for name in ("shaking_force", "roll_moment"))
-    found = choose_phases(rows(0.0, 0.5, 1.0, 1.5), [force, roll])
-    assert found.phases == pytest.approx(PATTERNS["4 mirrored"].phases, abs=1e-9)
-    assert found.after[roll.name] == 0.0
+    phasing = choose_phases(rows(0.0, 0.5, 1.0, 1.5), [force, roll])
+    assert phasing.phases == pytest.approx(PATTERNS["4 mirrored"].phases, abs=1e-9)
+    assert phasing.after[roll.name] == 0.0
     quarter = choose_phases(arranged(MACHINE, "4 quarter turns", 0.3), [force])
-    assert found.after[force.name] > 2 * quarter.after[force.name]
+    assert phasing.after[force.name] > 2 * quarter.after[force.name]
 
 
 def test_bundled_example() -> None:
     """Four rows in phase; in the phases found, 16 % of the shaking force is left (recomputed)."""
     machine = eq.load("four-row-transplanter")
     assert machine.balance is not None
-    found = choose_phases(machine, machine.balance.objectives, machine.balance.phases)
-    assert np.degrees(found.phases) == pytest.approx([0.0, 180.0, 270.0, 90.0], abs=1e-9)
-    assert found.combined == pytest.approx((1.0, 0.15912), abs=5e-6)
+    phasing = choose_phases(machine, machine.balance.objectives, machine.balance.phases)
+    assert np.degrees(phasing.phases) == pytest.approx([0.0, 180.0, 270.0, 90.0], abs=1e-9)
+    assert phasing.combined == pytest.approx((1.0, 0.15912), abs=5e-6)
 
 
 def test_patterns_of_the_paper_come_first() -> None:

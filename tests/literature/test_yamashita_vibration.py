@@ -93,8 +93,8 @@ def links_mass(machine: eq.Machine) -> float:
 def over_theta_b(name: str) -> Periodic:
     """Vertical acceleration of the common centre of mass against theta_b, m/s2."""
     machine = eq.load(name)
-    found = eq.analyze(machine, 720, acceleration=0.0).forces
-    samples = -found.shaking_force.y / links_mass(machine)
+    forces = eq.analyze(machine, 720, acceleration=0.0).forces
+    samples = -forces.shaking_force.y / links_mass(machine)
     return Periodic.of(samples).shifted(-PSI[name])
 
 
@@ -142,23 +142,23 @@ RIG = on_rig(eq.load("yamashita-1"))
 def rows_of_table_4() -> Iterator[Printed]:
     yield Printed(
         "yamashita-1", "Y_G'', mean", "Table 4", "0.0209", "0.0000", "m/s2", why=BUMP,
-        of=lambda found: found.mean,
+        of=lambda result: result.mean,
     )  # fmt: skip
     columns: dict[str, tuple[str, Callable[[int, Periodic], float]]] = {
-        "A": ("m/s2", lambda n, found: found.amplitudes[n].real),
-        "B": ("m/s2", lambda n, found: -found.amplitudes[n].imag),
-        "R": ("m/s2", lambda n, found: found.sizes[n]),
-        "M R": ("kgf", lambda n, found: found.sizes[n] * 1.145 / KGF),
-        "phi": ("deg", lambda n, found: float(np.degrees(found.phases[n]))),
+        "A": ("m/s2", lambda n, result: result.amplitudes[n].real),
+        "B": ("m/s2", lambda n, result: -result.amplitudes[n].imag),
+        "R": ("m/s2", lambda n, result: result.sizes[n]),
+        "M R": ("kgf", lambda n, result: result.sizes[n] * 1.145 / KGF),
+        "phi": ("deg", lambda n, result: float(np.degrees(result.phases[n]))),
     }
     for n, (printed, exact) in PRINTED.items():
-        for (key, (unit, read)), one, told in zip(
+        for (key, (unit, read)), part, text in zip(
             columns.items(), printed.split(), exact.split(), strict=True
         ):
             slip, words, right = SLIPS.get((n, key), ("", "", ""))
             why = is_right(n, key, words, right) if slip else their_own(n, key)
             yield Printed(
-                "yamashita-1", f"Y_G'', {key} of order {n}", "Table 4", slip or one, told, unit,
+                "yamashita-1", f"Y_G'', {key} of order {n}", "Table 4", slip or part, text, unit,
                 why=why, slip=bool(slip), of=partial(read, n),
             )  # fmt: skip
 
@@ -231,8 +231,8 @@ def test_rounded_data_do_not_give_table_4() -> None:
     printed = table_4()[1:]
 
     def missed(off: np.ndarray) -> np.ndarray:
-        found = np.fft.fft(vertical_acceleration(with_table_3(data + off * halves)))
-        off_by = found[1:10] * 2 / len(found) - printed
+        spectrum = np.fft.fft(vertical_acceleration(with_table_3(data + off * halves)))
+        off_by = spectrum[1:10] * 2 / len(spectrum) - printed
         return np.concatenate([off_by.real, off_by.imag])
 
     best = least_squares(missed, np.zeros(len(data)), bounds=(-1, 1))
@@ -282,15 +282,15 @@ def test_first_order_is_the_counterweight() -> float:
 
 
 def test_example_is_the_rig() -> None:
-    found, wanted = eq.load("yamashita-rig").support, RIG.support
-    assert found is not None and wanted is not None
-    assert found.pivot == pytest.approx(wanted.pivot)
-    assert found.pivot_inertia == pytest.approx(wanted.pivot_inertia, rel=1e-8)
-    one, other = (s.mounts for s in (found, wanted))
+    actual, wanted = eq.load("yamashita-rig").support, RIG.support
+    assert actual is not None and wanted is not None
+    assert actual.pivot == pytest.approx(wanted.pivot)
+    assert actual.pivot_inertia == pytest.approx(wanted.pivot_inertia, rel=1e-8)
+    first, other = (s.mounts for s in (actual, wanted))
     for name in ("spring", "bearing"):
         for key in ("stiffness", "damping", "torsional_stiffness", "torsional_damping"):
-            assert getattr(one[name], key) == pytest.approx(getattr(other[name], key))
-    for s in (found, wanted):
+            assert getattr(first[name], key) == pytest.approx(getattr(other[name], key))
+    for s in (actual, wanted):
         assert s.gauges["gauge"].point == pytest.approx((0.16, 0.0, 0.0))
 
 
@@ -305,8 +305,8 @@ def test_natural_frequency() -> None:
 @published(
     YAMASHITA,
     *(
-        Printed("yamashita-rig", f"resonance of order {n}", "Fig. 8", printed, told, "rad/s", of=n)
-        for n, printed, told in (
+        Printed("yamashita-rig", f"resonance of order {n}", "Fig. 8", printed, text, "rad/s", of=n)
+        for n, printed, text in (
             (1, "", "12.42"),
             (2, "", "6.21"),
             (3, "", "4.14"),
@@ -318,7 +318,7 @@ def test_natural_frequency() -> None:
 def test_resonances(row: Printed) -> float:
     """The highest peak at beta, the second at 6.2 rad/s, as orders 1, 2 ... meet it."""
     met = resonances(linear_of(RIG, "linear"), 2.0, 30.0)
-    assert [one.order for one in met][:5] == [1, 2, 3, 4, 5]
+    assert [item.order for item in met][:5] == [1, 2, 3, 4, 5]
     return met[row.of - 1].speed
 
 
@@ -426,10 +426,13 @@ def test_counterweight_that_adds_to_the_inertia() -> None:
 
 
 def test_example_has_the_counterweight() -> None:
-    found, wanted = eq.load("yamashita-rig-counterweight").links["crank"], balanced().links["crank"]
-    assert found.mass == pytest.approx(wanted.mass)
-    assert found.center_of_mass == pytest.approx(wanted.center_of_mass, rel=1e-6)
-    assert found.inertia == pytest.approx(wanted.inertia, rel=1e-6)
+    actual, wanted = (
+        eq.load("yamashita-rig-counterweight").links["crank"],
+        balanced().links["crank"],
+    )
+    assert actual.mass == pytest.approx(wanted.mass)
+    assert actual.center_of_mass == pytest.approx(wanted.center_of_mass, rel=1e-6)
+    assert actual.inertia == pytest.approx(wanted.inertia, rel=1e-6)
     assert swing(eq.load("yamashita-rig-counterweight")) == pytest.approx(0.54, abs=5e-3)
 
 
@@ -447,11 +450,11 @@ def left(size: float, phase: float) -> float:
     """U of (63) with the counterweight of (67), M_ba = M, over that of the best one."""
     signal = over_theta_b("yamashita-1")
     both = [(size * RADIUS, phase * PHASE), (RADIUS, PHASE)]
-    one, best = (
+    first, best = (
         (signal - Periodic(np.array([0, -1j * r * SPEED**2 * np.exp(1j * at)]))).vibration_rms
         for r, at in both
     )
-    return float(one / best)
+    return float(first / best)
 
 
 def rises(size: float, phase: float, percent: int) -> bool:
@@ -474,7 +477,7 @@ def rises(size: float, phase: float, percent: int) -> bool:
             of=[(1.0, 0.95), (1.0, 1.05)]),
 )  # fmt: skip
 def test_phase_matters_more_than_radius(row: Printed) -> list[float]:
-    return [100 * (left(*one) - 1) for one in row.of]
+    return [100 * (left(*item) - 1) for item in row.of]
 
 
 def is_short_of_40(most: float) -> bool:
@@ -509,8 +512,8 @@ def test_two_in_opposite_phase_leave_even_orders(name: str) -> None:
 def test_two_in_opposite_phase_on_the_rig() -> None:
     """On the rig they leave 0.81 mm of 12.62 mm by (59), and even orders alone."""
     two = RIG.with_rows([Row(), Row(phase=pi)])
-    found = respond(two, SPEED, "linear").gauges["gauge"].displacement
-    assert 1e3 * float(found.peak_to_peak) == pytest.approx(0.807, abs=5e-4)
-    assert np.max(found.sizes[1::2]) < 1e-12
+    displacement = respond(two, SPEED, "linear").gauges["gauge"].displacement
+    assert 1e3 * float(displacement.peak_to_peak) == pytest.approx(0.807, abs=5e-4)
+    assert np.max(displacement.sizes[1::2]) < 1e-12
     # In phase they shake nearly twice as hard: they are 10 % of I.
     assert swing(RIG.with_rows([Row(), Row()])) == pytest.approx(2 * swing(RIG), rel=0.2)

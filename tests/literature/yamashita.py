@@ -49,9 +49,9 @@ TYPE_2 = Finger("yamashita-2", (85, 40, 70, 80), (17, -45 - 20j, 12), (226, 761,
 FINGERS = pytest.mark.parametrize("finger", [TYPE_1, TYPE_2], ids=["I", "II"])
 
 
-def close(found: Any, wanted: Any) -> None:
+def close(result: Any, wanted: Any) -> None:
     """Assert equality to EXACT of the largest value."""
-    np.testing.assert_allclose(found, wanted, rtol=0, atol=EXACT * float(np.max(np.abs(wanted))))
+    np.testing.assert_allclose(result, wanted, rtol=0, atol=EXACT * float(np.max(np.abs(wanted))))
 
 
 # -- the paper's equations -------------------------------------------------------------------------
@@ -135,7 +135,7 @@ def numbers_of_table_3(finger: Finger) -> tuple[Array, Array]:
     """Lengths, centres, masses, psi and speed as one array, and half of the last digit of each."""
     data = [*finger.lengths, *(x for g in finger.centers for x in (g.real, g.imag)),
             *finger.masses, finger.psi, finger.rpm]  # fmt: skip
-    halves = [0.5 if one == int(one) else 0.05 for one in data]
+    halves = [0.5 if item == int(item) else 0.05 for item in data]
     return np.array(data), np.array(halves)
 
 
@@ -183,7 +183,7 @@ def flattest_coupler(finger: Finger) -> Array:
         vertical_acceleration(replace(finger, centers=(g_b, g_c, g_d))) for g_c in (0j, 1 + 0j, 1j)
     )
     changes = np.stack([along - none, across - none], axis=1)
-    free, fixed = (one - np.mean(one, axis=0) for one in (changes, none))
+    free, fixed = (item - np.mean(item, axis=0) for item in (changes, none))
     return np.asarray(np.linalg.lstsq(free, -fixed, rcond=None)[0])
 
 

@@ -60,13 +60,13 @@ def added(link: str, at: str, shape: str = "any", **room: float) -> eq.balancing
 
 def small(words: str) -> tuple[Objective, ...]:
     """Objectives in words: measures and outputs."""
-    return tuple(Objective(*one.split()[::-1]) for one in words.split(", "))  # type: ignore[arg-type]
+    return tuple(Objective(*part.split()[::-1]) for part in words.split(", "))  # type: ignore[arg-type]
 
 
 def limits(words: str) -> Iterator[eq.balancing.Limit]:
     """Limits in words: measure, output, and how much of it, in SI units or % of before."""
-    for one in filter(None, words.split(", ")):
-        measure, output, much, *share = one.split()
+    for part in filter(None, words.split(", ")):
+        measure, output, much, *share = part.split()
         wish = Objective(output, measure)  # type: ignore[arg-type]
         most = {"ratio": float(much) / 100} if share else {"at_most": float(much)}
         yield eq.balancing.Limit(wish, **most)
@@ -221,12 +221,12 @@ class Draws:
         return added(link, at, shape, **room)
 
     def objectives(self, count: int) -> tuple[Objective, ...]:
-        drawn = {one.name: one for one in (self.objective() for _ in range(count))}
+        drawn = {item.name: item for item in (self.objective() for _ in range(count))}
         return tuple(drawn.values())
 
     def limits(self, count: int) -> Iterator[eq.balancing.Limit]:
-        for one in self.objectives(count):
-            yield eq.balancing.Limit(one, ratio=self.uniform(1, 1.3))
+        for item in self.objectives(count):
+            yield eq.balancing.Limit(item, ratio=self.uniform(1, 1.3))
 
     def objective(self) -> Objective:
         """Draw a measure; forces in joints only without gears, whose flanks change sides."""
@@ -318,11 +318,11 @@ def balanced(name: str) -> eq.balancing.Balanced:
 @every_case
 def test_no_other_is_better(name: str) -> None:
     machine, plan = case_of(name)
-    found, problem = balanced(name), Problem(machine, plan)
+    actual, problem = balanced(name), Problem(machine, plan)
     whole = sum(problem.weights)
     for seed in range(1, 9):  # a blind search may end in another valley
         sampled, at = evolved(problem, seed=seed)
-        if sampled <= found.cost + SEARCHED * whole:
+        if sampled <= actual.cost + SEARCHED * whole:
             break
     rebuilt = problem.rebuilt(at)
     values = [measured(rebuilt, objective) for objective in plan.objectives]
@@ -332,12 +332,12 @@ def test_no_other_is_better(name: str) -> None:
     wishes = plan.objectives
     shares = [measured_exactly(rebuilt, w) / measured_exactly(machine, w) for w in wishes]
     cost = float(problem.combined([np.array(share) for share in shares]))
-    assert cost >= found.cost - BEATEN * whole
-    assert cost >= found.bound - BEATEN * whole
+    assert cost >= actual.cost - BEATEN * whole
+    assert cost >= actual.bound - BEATEN * whole
     # where the signal jumps, the search sees peaks and areas at its own crank angles only
     peaks = any(objective.measure.startswith("peak") for objective in plan.objectives)
     misses = 2e-3 if peaks and (loads_jump(machine) or has_corners(machine)) else SEARCHED
-    assert cost <= found.cost + misses * whole
+    assert cost <= actual.cost + misses * whole
 
 
 def has_corners(machine: Machine) -> bool:
@@ -354,38 +354,38 @@ def has_corners(machine: Machine) -> bool:
 @every_case
 def test_values_before_and_after(name: str) -> None:
     machine, plan = case_of(name)
-    found, problem = balanced(name), Problem(machine, plan)
+    actual, problem = balanced(name), Problem(machine, plan)
     values = []
-    for one, goal in zip(plan.objectives, problem.goals, strict=True):
-        before, after = found.objectives[one.name]
+    for item, goal in zip(plan.objectives, problem.goals, strict=True):
+        before, after = actual.objectives[item.name]
         jumps = loads_jump(machine)
         # the reference's samples miss a little of an area where the signal jumps
-        near = 1e-4 if jumps and one.measure == "area" else 1e-12
-        peaks = one.measure.startswith("peak")
+        near = 1e-4 if jumps and item.measure == "area" else 1e-12
+        peaks = item.measure.startswith("peak")
         if peaks:  # where loads jump, those of the reference's samples, though of many
             near = 1e-6 if jumps else 5e-3 if has_corners(machine) else 1e-9
-        assert before == pytest.approx(measured_exactly(machine, one), rel=near)
+        assert before == pytest.approx(measured_exactly(machine, item), rel=near)
         # the reference's own peaks are those of samples, which the curve rises above
-        coarse = one.measure.startswith("peak")
+        coarse = item.measure.startswith("peak")
         assert before >= goal.before * (1 - (5e-3 if jumps else 1e-12))
         assert before == pytest.approx(
             goal.before, rel=2e-2 if jumps else 1e-3 if coarse else 1e-12
         )
-        exact = measured_exactly(found.machine, one)
+        exact = measured_exactly(actual.machine, item)
         assert after == pytest.approx(exact, abs=max(near, 1e-9) * before)
         values.append(np.array(after / before))
-    assert found.cost == pytest.approx(float(problem.combined(values)), rel=1e-9)
-    assert found.bound <= found.cost + GAP * sum(problem.weights)
-    assert found.gap < BEATEN  # mostly 1e-9; how near a cone program ends, rounding decides
+    assert actual.cost == pytest.approx(float(problem.combined(values)), rel=1e-9)
+    assert actual.bound <= actual.cost + GAP * sum(problem.weights)
+    assert actual.gap < BEATEN  # mostly 1e-9; how near a cone program ends, rounding decides
     for given, most in zip(plan.limits, problem.limits, strict=True):
-        assert measured(found.machine, given.objective) <= most * (1 + 1e-7)
+        assert measured(actual.machine, given.objective) <= most * (1 + 1e-7)
 
 
 def test_area_and_torque_of_a_sector() -> None:
     machine, plan = eq.load(PAPERS["rocker's sector"][0]), PAPERS["rocker's sector"][1]
     plan = replace(plan, objectives=small("area shaking_moment, ripple drive_torque"))
-    found, problem = eq.balance(machine, plan), Problem(machine, plan)
-    assert evolved(problem)[0] == pytest.approx(found.cost, abs=BEATEN * 2)
+    actual, problem = eq.balance(machine, plan), Problem(machine, plan)
+    assert evolved(problem)[0] == pytest.approx(actual.cost, abs=BEATEN * 2)
 
 
 def test_each_weight_has_a_price() -> None:
@@ -500,17 +500,17 @@ def convex_case(name: str) -> tuple[eq.balancing.Balanced, Problem]:
 @compared(BLIND_SEARCH, "least cost, over that before; convex program", BEATEN)
 @pytest.mark.parametrize("name", CONVEX)
 def test_optimum_of_a_convex_program(name: str) -> None:
-    found, problem = convex_case(name)
+    actual, problem = convex_case(name)
     whole = sum(problem.weights)
-    assert found.cost == pytest.approx(convex_optimum(problem), abs=BEATEN * whole)
-    assert found.gap < GAP
+    assert actual.cost == pytest.approx(convex_optimum(problem), abs=BEATEN * whole)
+    assert actual.gap < GAP
 
 
 @pytest.mark.parametrize("name", SMOOTH)
 def test_optimum_by_a_first_order_solver(name: str) -> None:
-    found, problem = convex_case(name)
+    actual, problem = convex_case(name)
     whole = sum(problem.weights)
-    assert found.cost == pytest.approx(convex_optimum(problem, "SCS"), abs=BEATEN * whole)
+    assert actual.cost == pytest.approx(convex_optimum(problem, "SCS"), abs=BEATEN * whole)
 
 
 # -- the changes are real --------------------------------------------------------------------------
@@ -529,29 +529,29 @@ def real_case(name: str) -> tuple[Machine, Balance, eq.balancing.Balanced]:
 
 
 @every_real
-def test_changes_tell_the_machine(name: str) -> None:
-    machine, plan, found = real_case(name)
-    rebuilt = made(machine, plan, found.changes)
+def test_changes_report_the_machine(name: str) -> None:
+    machine, plan, actual = real_case(name)
+    rebuilt = made(machine, plan, actual.changes)
     joints = [f"joints.{joint}" for joint in eq.analyze(machine, 90).forces.joints]
     outputs = [
         (output, None, ())
         for output in ("shaking_force", "shaking_moment", "drive_torque", "frame_force", *joints)
     ]
-    spread = any(len(change.values.get("pieces", ())) > 1 for change in found.changes)
+    spread = any(len(change.values.get("pieces", ())) > 1 for change in actual.changes)
     before = signals_of(machine, outputs)
-    told, given = signals_of(rebuilt, outputs), signals_of(found.machine, outputs)
-    for (output, _, _), size, one, other in zip(outputs, before, told, given, strict=True):
-        apart, largest = np.max(np.abs(one - other)), np.max(np.abs(size))
+    text, given = signals_of(rebuilt, outputs), signals_of(actual.machine, outputs)
+    for (output, _, _), size, item, other in zip(outputs, before, text, given, strict=True):
+        apart, largest = np.max(np.abs(item - other)), np.max(np.abs(size))
         assert apart <= (1e-7 if spread else 1e-9) * max(largest, np.max(np.abs(other))), output
 
 
 @every_real
 def test_changes_keep_to_their_room(name: str) -> None:
-    _, plan, found = real_case(name)
-    told = [change for change in found.changes if change.kind == "added mass"]
+    _, plan, actual = real_case(name)
+    texts = [change for change in actual.changes if change.kind == "added mass"]
     asked = [*((a.link, a.weight) for a in plan.masses), *((g.name, g.weight) for g in plan.geared)]
-    assert [change.link for change in told] == [link for link, _ in asked]
-    for (_, weight), change in zip(asked, told, strict=True):
+    assert [change.link for change in texts] == [link for link, _ in asked]
+    for (_, weight), change in zip(asked, texts, strict=True):
         pieces = change.values["pieces"]
         mass = sum(piece["mass"] for piece in pieces)
         least, most = mass_range(weight)
@@ -559,7 +559,7 @@ def test_changes_keep_to_their_room(name: str) -> None:
         assert least * (1 - 1e-7) <= mass <= most * (1 + 1e-7)
         for piece in pieces:
             keeps_to(weight, piece, np.array(change.values["center"]))
-    moved = [change for change in found.changes if change.kind == "center of mass"]
+    moved = [change for change in actual.changes if change.kind == "center of mass"]
     for move, change in zip(plan.moves, moved, strict=True):
         place = np.array(change.values["to"])
         if move.center is not None and move.radius is not None:
@@ -568,8 +568,8 @@ def test_changes_keep_to_their_room(name: str) -> None:
             low, high = np.transpose([move.x, move.y])
             slack = 1e-7 * (high - low)
             assert np.all((low - slack <= place) & (place <= high + slack))
-    total = sum(change.values["mass"] for change in told)
-    assert found.added_mass == pytest.approx(total, abs=1e-12)
+    total = sum(change.values["mass"] for change in texts)
+    assert actual.added_mass == pytest.approx(total, abs=1e-12)
     assert total <= (plan.added_mass or np.inf) * (1 + 1e-7)
 
 
@@ -691,19 +691,19 @@ def refusal(plan: Balance) -> str:
 
 def without(plan: Balance, sentence: str) -> Iterator[tuple[str, Balance]]:
     """Take each of the limits that a sentence names out of a plan."""
-    for one in plan.limits:
-        if re.search(rf"\b{re.escape(one.name)} at most", sentence):
-            yield one.name, replace(plan, limits=tuple(x for x in plan.limits if x is not one))
+    for limit in plan.limits:
+        if re.search(rf"\b{re.escape(limit.name)} at most", sentence):
+            yield limit.name, replace(plan, limits=tuple(x for x in plan.limits if x is not limit))
     if "added mass" in sentence:
         yield "added mass", replace(plan, added_mass=None)
-    for number, one in enumerate(plan.masses):
+    for number, limit in enumerate(plan.masses):
         for what, much in (("radius", 1e3), ("mass", 1e3)):
-            if f"{what} on {one.link}" in sentence:
-                weight = one.weight
+            if f"{what} on {limit.link}" in sentence:
+                weight = limit.weight
                 most = {"radius": weight.radius * much} if what == "radius" else {"at_most": much}
-                other = replace(one, weight=replace(weight, **most))
+                other = replace(limit, weight=replace(weight, **most))
                 masses = (*plan.masses[:number], other, *plan.masses[number + 1 :])
-                yield f"{what} on {one.link}", replace(plan, masses=masses)
+                yield f"{what} on {limit.link}", replace(plan, masses=masses)
 
 
 @pytest.mark.parametrize("name", CLASHES)
@@ -715,12 +715,12 @@ def test_a_clash_is_named(name: str) -> None:
     assert len(named) > ("clash" in sentence)
     for other in named.values():
         assert eq.balance(machine, other).gap < BEATEN
-    told = re.search(r"; (.*) can become ([\d.]+) (N|N m) at the least", sentence)
-    assert told
-    number = [limit.name for limit in plan.limits].index(told[1])
+    match = re.search(r"; (.*) can become ([\d.]+) (N|N m) at the least", sentence)
+    assert match
+    number = [limit.name for limit in plan.limits].index(match[1])
     kept = tuple(limit for limit in plan.limits if limit.name in named)
     problem = Problem(machine, replace(plan, limits=kept))
-    number = [one.name for one in kept].index(told[1])
+    number = [item.name for item in kept].index(match[1])
     least = convex_optimum(problem, least=number)
     assert least > 1
-    assert least * problem.limits[number] == pytest.approx(float(told[2]), rel=1e-3)
+    assert least * problem.limits[number] == pytest.approx(float(match[2]), rel=1e-3)

@@ -37,8 +37,8 @@ def test_forces(name: str) -> None:
     force, moment = FLOOR * force_size(machine, poses), FLOOR * moment_size(machine, poses)
     assert set(forces.joints) == set(solved.joints)
     assert set(forces.cams) == set(solved.cams)
-    for one, reaction in solved.joints.items():
-        same_reaction(one, forces.joints[one], reaction, force, moment)
-    for one, reaction in solved.cams.items():
-        same_reaction(one, forces.cams[one], reaction, force, moment)
+    for key, reaction in solved.joints.items():
+        same_reaction(key, forces.joints[key], reaction, force, moment)
+    for key, reaction in solved.cams.items():
+        same_reaction(key, forces.cams[key], reaction, force, moment)
     same_totals(forces, solved, force, moment)

@@ -74,9 +74,9 @@ def compared(
     figures, reasons = Batch(base, paths_of(numbers), wanted, angles=ANGLES)(values)
     moved = 0
     for row, got, reason in zip(values, figures, reasons, strict=True):
-        told = reason_of(base, numbers, row)
-        assert reason == told
-        if told:
+        reported = reason_of(base, numbers, row)
+        assert reason == reported
+        if reported:
             assert np.isnan(got).all()
             continue
         known = known_of(design(base, numbers, row), ANGLES, signals)
@@ -130,7 +130,7 @@ def test_joints_that_hold_too_much(kind: str, numpy_engine: None) -> None:
 def test_forces_that_joints_share(name: str, numpy_engine: None) -> None:
     """As of an analysis of each design, and of least squares on all its free bodies at once."""
     base = eq.load(name) if "-" in name else make(name, 1).machine
-    link = next(name for name, one in base.links.items() if one.mass)
+    link = next(name for name, item in base.links.items() if item.mass)
     own = (str(KeyPath(("links", link, *keys))) for keys in (("mass",), ("center_of_mass", "y")))
     numbers = named(base, *own, "drive.speed")
     mass, y, speed = (number.value for number in numbers)
@@ -146,9 +146,9 @@ def test_forces_that_joints_share(name: str, numpy_engine: None) -> None:
         largest = max(known)
         np.testing.assert_allclose(got, known, rtol=1e-9, atol=1e-9 * largest)
         free = free_bodies.solve(machine, from_motion(machine, analysis.motion)).joints
-        for joint, one in analysis.forces.joints.items():
+        for joint, value in analysis.forces.joints.items():
             least = free[joint].force @ [1, 1j]
-            np.testing.assert_allclose(one.value, np.squeeze(least), atol=1e-8 * largest)
+            np.testing.assert_allclose(value.value, np.squeeze(least), atol=1e-8 * largest)
 
 
 @pytest.mark.parametrize("name", ["straw-walker", "double_guide", "rocking_screen"])
@@ -164,12 +164,12 @@ def test_forces_that_are_shared_with_teeth_or_by_stiffness(
         each = enumerate(shared.names, 1)
         given = (JointProperties(joint, stiffness=1e5 * (9 + number)) for number, joint in each)
         base = replace(base, joints=tuple(given))
-    link = next(name for name, one in base.links.items() if one.mass)
+    link = next(name for name, item in base.links.items() if item.mass)
     numbers = named(base, str(KeyPath(("links", link, "mass"))), "drive.speed")
     analysis = eq.analyze(base, 8)
     names = [f"joints.{joint}" for joint in analysis.forces.joints]
     names += [f"gears.{gear.name}" for gear in base.gears]
-    mass, speed = (one.value for one in numbers)
+    mass, speed = (item.value for item in numbers)
     values = np.array([[mass, speed], [1.5 * mass, 0.7 * speed]])
     wanted = [Figure(name, "rms") for name in names]
     figures, reasons = Batch(base, paths_of(numbers), wanted, angles=ANGLES)(values)
@@ -234,7 +234,7 @@ def test_links_beside_each_other(kind: str, numpy_engine: None) -> None:
 def test_masses_in_planes_of_their_own(numpy_engine: None) -> None:
     """Of links that are made of bodies."""
     base = set_apart(make("slider_crank", 3).machine, np.random.default_rng(5))
-    link = next(name for name, one in base.links.items() if one.bodies)
+    link = next(name for name, item in base.links.items() if item.bodies)
     path, wanted = f"links.{link}.bodies[2].mass", [Figure("rocking_moment", "rms")]
     wanted += [Figure(f"bearings.{name}", "peak") for name in base.bearings]
     masses = np.array([[0.3], [1.7]])
@@ -322,7 +322,7 @@ def test_driver_that_turns_fully(numpy_engine: None) -> None:
     assert compared(base, 4, 1)
 
 
-def test_other_windings_are_right_or_told(numpy_engine: None) -> None:
+def test_other_windings_are_right_or_reported(numpy_engine: None) -> None:
     """A rocker may become a link that turns fully; then the gear behind it turns on too."""
     base = train(-2.0, -0.5)
     numbers = named(base, "frame.points.D.x", "links.crank.points.B.x")

@@ -171,8 +171,8 @@ def test_two_motors_turn_two_rows() -> None:
 def test_two_motors_turn_a_five_bar() -> None:
     drive = eq.Drive("left crank", 15.0, motor=LAGGING)
     other = FurtherDrive("right crank", start=pi / 3, motor=QUICK)
-    found = against_free_bodies(five_bar(drive, other), 0.3, {})
-    assert all(abs(course.turns) > 0.5 for course in found.drives.values())
+    result = against_free_bodies(five_bar(drive, other), 0.3, {})
+    assert all(abs(course.turns) > 0.5 for course in result.drives.values())
 
 
 def table_on_two_cranks(drive: eq.Drive, other: FurtherDrive) -> eq.Machine:
@@ -190,8 +190,8 @@ def table_on_two_cranks(drive: eq.Drive, other: FurtherDrive) -> eq.Machine:
 def test_a_table_on_two_cranks_whose_links_are_solved_at_once() -> None:
     drive = eq.Drive("crank", 15.0, free=True)
     other = FurtherDrive("second crank", motor=QUICK)
-    found = against_free_bodies(table_on_two_cranks(drive, other), 0.25, {})
-    assert found.drives["second crank"].turns > 0.5
+    result = against_free_bodies(table_on_two_cranks(drive, other), 0.25, {})
+    assert result.drives["second crank"].turns > 0.5
 
 
 JOINTS = tuple(
@@ -206,22 +206,22 @@ def test_two_motors_turn_a_five_bar_with_friction_in_its_pins() -> None:
     drive = eq.Drive("left crank", 15.0, motor=LAGGING)
     other = FurtherDrive("right crank", start=pi / 3, motor=QUICK)
     machine = replace(five_bar(drive, other), joints=JOINTS)
-    found = against_free_bodies(machine, 0.07, {})
+    result = against_free_bodies(machine, 0.07, {})
     without = eq.run(replace(machine, joints=()), 0.07)
-    slower = found.drives["left crank"].turns / without.drives["left crank"].turns
+    slower = result.drives["left crank"].turns / without.drives["left crank"].turns
     assert 0.3 < slower < 0.9999
-    total = np.sum([*found.losses.values()], axis=0)
-    np.testing.assert_allclose(found.work["friction"], -total, atol=1e-12 * total[-1])
-    assert min(lost[-1] for lost in found.losses.values()) > 0.001 * total[-1]
+    total = np.sum([*result.losses.values()], axis=0)
+    np.testing.assert_allclose(result.work["friction"], -total, atol=1e-12 * total[-1])
+    assert min(lost[-1] for lost in result.losses.values()) > 0.001 * total[-1]
 
 
 # As `test_two_motors_turn_a_five_bar`.
 @pytest.mark.exhaustive
 def test_the_bundled_mixer_starts_by_two_motors() -> None:
     machine = eq.load("two-motor-mixer")
-    found = against_free_bodies(machine, 0.06, {})
-    assert {*found.losses} == {"A", "B", "C", "D", "E"}
-    assert all(course.turns > 0.05 for course in found.drives.values())
+    result = against_free_bodies(machine, 0.06, {})
+    assert {*result.losses} == {"A", "B", "C", "D", "E"}
+    assert all(course.turns > 0.05 for course in result.drives.values())
 
 
 def test_a_five_bar_swings_with_friction() -> None:
@@ -229,27 +229,27 @@ def test_a_five_bar_swings_with_friction() -> None:
     drive = eq.Drive("left crank", 5.0, free=True)
     other = FurtherDrive("right crank", ratio=0.0, start=0.3, free=True)
     machine = replace(five_bar(drive, other), joints=JOINTS)
-    found = against_free_bodies(machine, 0.2, {})
-    assert {event.of for event in found.events if event.kind == "reversal"} >= {"left crank"}
-    lost = found.kinetic_energy - found.work["weight"] - found.work["friction"]
+    result = against_free_bodies(machine, 0.2, {})
+    assert {event.of for event in result.events if event.kind == "reversal"} >= {"left crank"}
+    lost = result.kinetic_energy - result.work["weight"] - result.work["friction"]
     np.testing.assert_allclose(lost, lost[0], atol=1e-9 * np.max(np.abs(lost)))
 
 
 def test_a_five_bar_moves_freely() -> None:
     drive = eq.Drive("left crank", 15.0, free=True)
     other = FurtherDrive("right crank", start=pi / 3, free=True)
-    found = against_free_bodies(five_bar(drive, other), 0.5, {}, speed=12.0)
-    total = found.kinetic_energy - found.work["weight"]
+    result = against_free_bodies(five_bar(drive, other), 0.5, {}, speed=12.0)
+    total = result.kinetic_energy - result.work["weight"]
     np.testing.assert_allclose(total, total[0], rtol=BALANCE)
-    assert not np.any(found.drives["left crank"].effort)
+    assert not np.any(result.drives["left crank"].effort)
 
 
 def test_a_motor_beside_a_crank_of_constant_speed() -> None:
     drive = eq.Drive("left crank", 15.0)
     other = FurtherDrive("right crank", start=pi / 3, motor=LAGGING)
     law = {"left crank": lambda time: (15.0 * time, 15.0, 0.0)}
-    found = against_free_bodies(five_bar(drive, other), 0.3, law)
-    np.testing.assert_allclose(found.drives["left crank"].speed, 15.0)
+    result = against_free_bodies(five_bar(drive, other), 0.3, law)
+    np.testing.assert_allclose(result.drives["left crank"].speed, 15.0)
 
 
 def test_a_free_crank_beside_one_that_swings() -> None:
@@ -264,8 +264,8 @@ def test_a_free_crank_beside_one_that_swings() -> None:
             half * 15.0**2 * np.cos(turned),
         )  # fmt: skip
 
-    found = against_free_bodies(five_bar(drive, other), 0.3, {"right crank": law})
-    assert found.drives["right crank"].moved_by == "given motion"
+    result = against_free_bodies(five_bar(drive, other), 0.3, {"right crank": law})
+    assert result.drives["right crank"].moved_by == "given motion"
 
 
 def test_a_drive_that_follows_the_crank_feels_its_own_torque_alone() -> None:
@@ -306,15 +306,15 @@ def test_a_cylinder_between_the_cranks_of_a_five_bar() -> None:
     """The first drive is free beside a cycle that goes on evenly."""
     drive = eq.Drive("left crank", 15.0, free=True, motion=AngleLaw(between=(0.0, 0.5)))
     machine, pushing = pushed_five_bar(drive), (("left crank", "P"), ("right crank", "D"))
-    found = against_free_bodies(machine, 0.08, {}, [(*pushing, stroke_by_time)])
-    course = found.drives["right crank"]
-    wanted = [stroke_by_time(time)[0] for time in found.time]
+    result = against_free_bodies(machine, 0.08, {}, [(*pushing, stroke_by_time)])
+    course = result.drives["right crank"]
+    wanted = [stroke_by_time(time)[0] for time in result.time]
     np.testing.assert_allclose(course.length, wanted, atol=1e-12)
     bodies = PinnedBodies(machine, {}, motor_torques(machine, {})[0])
     bodies.strokes = [(*pushing, stroke_by_time)]
-    motion = found.motion_at(np.array([0]))
+    motion = result.motion_at(np.array([0]))
     angles = {link: float(np.angle(motion.state[u(link)[0]][0])) for link in machine.links}
-    speeds = {link: item.speed[0] for link, item in found.drives.items()}
+    speeds = {link: item.speed[0] for link, item in result.drives.items()}
     multiplier = bodies.multipliers(0.0, bodies.start(angles, speeds))[-1]
     # of half a squared length, and on the side of the accelerations
     np.testing.assert_allclose(course.effort[0], -multiplier * course.length[0], rtol=1e-8)

@@ -56,14 +56,14 @@ def first_frequency(parts: int) -> float:
 
 
 def test_natural_frequency_of_a_beam_on_two_pins() -> None:
-    one = eq.analyze(swing()).sections["bar"]
-    assert one.natural_frequency == pytest.approx(first_frequency(12), rel=1e-5)
+    first = eq.analyze(swing()).sections["bar"]
+    assert first.natural_frequency == pytest.approx(first_frequency(12), rel=1e-5)
 
 
 def test_sag_of_a_bar_that_stays_level() -> None:
     """5 w L^4 / 384 E I in its middle, and w L^3 / 24 E I of slope at its ends."""
-    found = eq.analyze(swing(), [1.2]).forces.sections["bar"]
-    elastic = elastic_link(found)
+    sections = eq.analyze(swing(), [1.2]).forces.sections["bar"]
+    elastic = elastic_link(sections)
     assert elastic is not None
     weight = MASS * 9.80665
     sag = 5 * weight * LENGTH**3 / (384 * BENDING)
@@ -109,12 +109,12 @@ def test_where_rigid_links_mislead(tmp_path: Path) -> None:
     assert natural is not None
     slow, fast, beyond = (swing(2 * pi * natural / times) for times in (10.0, 5.0, 1.9))
     assert "natural frequency" not in " ".join(map(str, eq.analyze(slow).notes))
-    told = " ".join(map(str, eq.analyze(fast).notes))
+    text = " ".join(map(str, eq.analyze(fast).notes))
     assert (
-        "the bar has its first natural frequency at 5.00 times the crank's speed: bending" in told
+        "the bar has its first natural frequency at 5.00 times the crank's speed: bending" in text
     )
     share = (2 / 5) ** 2 / (1 - (2 / 5) ** 2)
-    assert f"adds {100 * share:.0f} %" in told
+    assert f"adds {100 * share:.0f} %" in text
     assert "the bar bends at 1.90 times the crank's speed" in " ".join(
         map(str, eq.analyze(beyond).notes)
     )
@@ -124,8 +124,8 @@ def test_where_rigid_links_mislead(tmp_path: Path) -> None:
 
 def test_without_a_modulus_there_is_none() -> None:
     machine = engine(elastic_modulus=None)
-    one = eq.analyze(machine).sections["rod"]
-    assert one.natural_frequency is None and one.deflection is None and one.path_error is None
+    first = eq.analyze(machine).sections["rod"]
+    assert first.natural_frequency is None and first.deflection is None and first.path_error is None
 
 
 @pytest.mark.exhaustive(but=["True"])

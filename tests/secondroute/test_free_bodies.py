@@ -35,7 +35,7 @@ def pairs(subject: Subject) -> dict[str, tuple[str, str]]:
     The frame, or else the body whose motion is found first, holds the others, except that a gear
     on the axis of its carrier may be held by the carrier.
     """
-    found: dict[str, tuple[str, str]] = {}
+    actual: dict[str, tuple[str, str]] = {}
     for label, bodies in pins(subject.machine).items():
         if len(bodies) < 3:
             continue
@@ -45,8 +45,8 @@ def pairs(subject: Subject) -> dict[str, tuple[str, str]]:
         assert all(name == f"{label}/{joint.on}" for name, joint in joints.items())
         assert {body for joint in joints.values() for body in (joint.on, joint.by)} == set(bodies)
         assert FRAME not in {joint.on for joint in joints.values()}
-        found |= {name: (joint.on, joint.by) for name, joint in joints.items()}
-    return found
+        actual |= {name: (joint.on, joint.by) for name, joint in joints.items()}
+    return actual
 
 
 def same_forces(subject: Subject) -> None:
@@ -130,16 +130,16 @@ def test_everything_across_the_plane(name: str) -> float:
     moment = force * span
     assert set(across.tilting_moments) == set(solved.couples)
     assert set(across.bearings) == set(solved.bearings) == set(machine.bearings)
-    found = [
+    actual = [
         agree("rocking", vector(across.rocking_moment), solved.rocking, TOLERANCE, moment),
         agree("frame", vector(across.frame_rocking_moment), solved.on_frame, TOLERANCE, moment),
     ]
     for key, want in solved.couples.items():
         got = across.tilting_moments[key]
-        found.append(agree(f"couple in {key}", vector(got), want, TOLERANCE, moment))
+        actual.append(agree(f"couple in {key}", vector(got), want, TOLERANCE, moment))
     for key, want in solved.bearings.items():
-        found.append(agree(key, vector(across.bearings[key]), want, TOLERANCE, force))
-    return max(found)
+        actual.append(agree(key, vector(across.bearings[key]), want, TOLERANCE, force))
+    return max(actual)
 
 
 @every_apart
@@ -164,14 +164,14 @@ def test_parts_across_the_plane(name: str) -> None:
             agree(link, np.column_stack([value.real, value.imag]), want, TOLERANCE, force * span)
     whole, acting = values_across(machine), slice(3, None)
 
-    def told(across: Any) -> dict[str, Any]:
-        found = {"rocking": across.rocking_moment, "frame": across.frame_rocking_moment}
-        return found | {**across.tilting_moments} | {**across.bearings}
+    def reported_forces(across: Any) -> dict[str, Any]:
+        actual = {"rocking": across.rocking_moment, "frame": across.frame_rocking_moment}
+        return actual | {**across.tilting_moments} | {**across.bearings}
 
-    causes, columns = told(split.across), told(parameters.across)
-    for key, one in told(forces.across).items():
+    causes, columns = reported_forces(split.across), reported_forces(parameters.across)
+    for key, item in reported_forces(forces.across).items():
         got = whole @ columns[key].value + causes[key].value[acting].sum(axis=(0, 1))
         size = force if key in machine.bearings else force * span
-        assert np.max(np.abs(got - one.value)) <= TOLERANCE * max(
-            np.max(np.abs(one.value)), size
+        assert np.max(np.abs(got - item.value)) <= TOLERANCE * max(
+            np.max(np.abs(item.value)), size
         ), key

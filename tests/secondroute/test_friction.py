@@ -58,7 +58,7 @@ def test_friction_obeys_its_law_with_the_forces_that_it_makes(name: str) -> None
         got, extra = forces.joints[key], 0.0
         sign = 1.0 if got.on == reaction.on else -1.0
         if key in rubbing and not forces.frictions[key].is_pin:
-            slider = next(one for one in machine.sliders if one.name == key)
+            slider = next(item for item in machine.sliders if item.name == key)
             along = rubbing[key].effort[:, None] * friction_reference.line(slider, poses)
             extra = along if reaction.on == slider.link else -along
         agree(f"force in {key}", vector(got), sign * (reaction.force + extra), TOLERANCE, force)

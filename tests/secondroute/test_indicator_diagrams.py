@@ -115,7 +115,7 @@ def test_pressure_by_the_volume(first: int, fires: int) -> None:
     (load,) = loads_of(assemble(machine_of(diagram(FOUR[first:] + FOUR[:first]))))
     theta = np.radians(np.arange(0.25, 720.0, 1.7))
     force, _ = load_at(load, theta)
-    found = -force.real / AREA + BAR
+    actual = -force.real / AREA + BAR
     stroke = (np.mod(theta - np.radians(fires), 4 * pi) / pi).astype(int)
     share = way_of(theta) / STROKE
     wanted = np.empty_like(share)
@@ -123,7 +123,7 @@ def test_pressure_by_the_volume(first: int, fires: int) -> None:
         x, p = np.array(branch if branch[0][0] < branch[-1][0] else branch[::-1]).T
         wanted[stroke == number] = np.interp(share[stroke == number], x, BAR * p)
     # a degree of the crank is straight, within which volume and pressure bend
-    assert np.max(np.abs(found - wanted)) < 0.02 * BAR
+    assert np.max(np.abs(actual - wanted)) < 0.02 * BAR
 
 
 def test_a_compiled_study_has_the_same_torque() -> None:
@@ -131,10 +131,10 @@ def test_a_compiled_study_has_the_same_torque() -> None:
     machine = machine_of(diagram(FOUR))
     figure = Figure("drive_torque", "rms")
     batch = Batch(machine, ["links.piston.mass"], [figure], angles=720)
-    (found,), _ = batch(np.array([[0.4]]))
+    (actual,), _ = batch(np.array([[0.4]]))
     heavier = machine.with_link("piston", mass=0.4)
     torque = eq.analyze(heavier, angles=720).summary["drive_torque"]
-    assert found[0] == pytest.approx(torque.rms, rel=1e-9)
+    assert actual[0] == pytest.approx(torque.rms, rel=1e-9)
     with refused(UsageError, by="Batch.__init__"):
         Batch(machine, ["links.rod.points.C.x"], [figure])
     with refused(UsageError, paths="loads[1].back_pressure"):

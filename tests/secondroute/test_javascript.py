@@ -78,7 +78,7 @@ def test_example(name: str, tmp_path: Path) -> None:
     """1e-13 of the same terms by NumPy; further from an analysis only where dyads are weak."""
     machine = eq.load(name).without_friction()
     linkage = assemble(machine)
-    names = [one for one in signals_of(machine) if "." in one or one != "shaking_force"]
+    names = [item for item in signals_of(machine) if "." in item or item != "shaking_force"]
     script = javascript(linkage, names)
     analysis = eq.analyze(machine, ANGLES)
     theta = analysis.crank_angle
@@ -87,10 +87,10 @@ def test_example(name: str, tmp_path: Path) -> None:
     by_name = dict(zip(
         script.source.signals, script.source.states(*columns, *script.grid(theta)), strict=True
     ))  # fmt: skip
-    same = np.array([np.broadcast_to(by_name[one], (1, len(theta)))[0] for one in names])
+    same = np.array([np.broadcast_to(by_name[item], (1, len(theta)))[0] for item in names])
     assert np.all(np.abs(got - same) <= 1e-13 * size(same, names))
     arrays = {output.name: output.values for output in analysis.outputs}
-    known = np.array([arrays[one] for one in names])
+    known = np.array([arrays[item] for item in names])
     assert np.all(np.abs(got - known) <= 1e-9 * size(known, names))
 
 
@@ -128,7 +128,7 @@ def test_numbers_that_are_changed(name: str, tmp_path: Path) -> None:
 def test_one_number_of_many(path: str, tmp_path: Path) -> None:
     """What it does not change is written once, as of a script of all numbers."""
     base = eq.load("watt-six-bar")
-    every = {one.path: one.value for one in numbers_of(base, 1e-3)}
+    every = {item.path: item.value for item in numbers_of(base, 1e-3)}
     linkage, names = assemble(base), signals_of(base)
     script = javascript(linkage, names, {path: every[path]})
     assert len(script.text) < 1.5 * len(javascript(linkage, names, every).text)
@@ -144,20 +144,20 @@ def test_one_number_of_many(path: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(("name", "path"), [
     ("class-three", "links.rod.points.C.x"), ("baler-pickup", "links.tine.points.R.y"),
 ])  # fmt: skip
-def test_loops_start_from_the_base_and_tell_where_they_do_not_arrive(
+def test_loops_start_from_the_base_and_report_where_they_do_not_arrive(
     name: str, path: str, tmp_path: Path
 ) -> None:
     base = eq.load(name).without_friction()
-    (one,) = (one for one in numbers_of(base, 1e-3) if one.path == path)
+    (first,) = (item for item in numbers_of(base, 1e-3) if item.path == path)
     linkage = assemble(base)
     signals = ["drive_torque", "joints.B.force_x", "joints.B.force_y"]
     watched = [signal for signal in pose_signals(linkage) if signal.startswith("cosine")]
     assert len(watched) == 2
-    script = javascript(linkage, [*signals, *watched], {path: one.value})
+    script = javascript(linkage, [*signals, *watched], {path: first.value})
     for factor, arrives in ((1.0, True), (1.02, True), (3.0, False)):
-        changed = design(base, [one], np.array([factor * one.value]))
+        changed = design(base, [first], np.array([factor * first.value]))
         theta = np.arange(ANGLES) * (2 * np.pi / ANGLES)
-        got = run(script, np.array([factor * one.value]), theta, tmp_path)
+        got = run(script, np.array([factor * first.value]), theta, tmp_path)
         assert bool(np.all(got[len(signals) :] >= FAR)) == arrives
         if arrives:
             arrays = {output.name: output.values for output in eq.analyze(changed, ANGLES).outputs}

@@ -41,7 +41,7 @@ class BeamFile:
 
 def read_beams(text: str) -> BeamFile:
     """Read an input file of CalculiX by its keywords."""
-    found = BeamFile({}, [], ("", []), 0.0, [], [])
+    result = BeamFile({}, [], ("", []), 0.0, [], [])
     keyword, kind = "", ""
     for line in text.splitlines():
         assert line.isascii() and len(line) <= 80
@@ -51,24 +51,24 @@ def read_beams(text: str) -> BeamFile:
             keyword = line.partition(",")[0]
             kind = line.rpartition("SECTION=")[2] if keyword == "*BEAM SECTION" else kind
             if keyword == "*STEP":
-                found.steps.append({})
+                result.steps.append({})
             continue
         cells = [cell.strip() for cell in line.split(",")]
         assert keyword == "*HEADING" or all(len(cell) <= 20 for cell in cells)
         if keyword == "*NODE":
-            found.nodes[int(cells[0])] = float(cells[1])
+            result.nodes[int(cells[0])] = float(cells[1])
         elif keyword == "*ELEMENT":
-            found.elements.append((int(cells[1]), int(cells[3])))
-        elif keyword == "*BEAM SECTION" and not found.section[0]:
-            found.section = kind, [float(cell) for cell in cells]
+            result.elements.append((int(cells[1]), int(cells[3])))
+        elif keyword == "*BEAM SECTION" and not result.section[0]:
+            result.section = kind, [float(cell) for cell in cells]
         elif keyword == "*ELASTIC":
-            found.modulus = float(cells[0])
+            result.modulus = float(cells[0])
         elif keyword == "*BOUNDARY":
             first, last = int(cells[1]), int(cells[2])
-            found.held += [(int(cells[0]), k) for k in range(first, last + 1)]
+            result.held += [(int(cells[0]), k) for k in range(first, last + 1)]
         elif keyword == "*CLOAD":
-            found.steps[-1][int(cells[0]), int(cells[1])] = float(cells[2])
-    return found
+            result.steps[-1][int(cells[0]), int(cells[1])] = float(cells[2])
+    return result
 
 
 def stiffness(length: float, stretching: float, bending: float) -> Array:

@@ -68,15 +68,15 @@ def test_a_force_over_the_crank_angle_gives_its_power_to_the_drive() -> None:
     """Less force times the change of the distance for each angle, by differences; and its work in
     a cycle is the mean of that.
     """
-    found, bare = (eq.analyze(loaded(*loads), 720) for loads in ((BY_ANGLE,), ()))
-    motion = found.motion
+    actual, bare = (eq.analyze(loaded(*loads), 720) for loads in ((BY_ANGLE,), ()))
+    motion = actual.motion
     apart = np.abs(motion.point("R").place - motion.point("Q").place)
     around = np.concatenate([apart[-3:], apart, apart[:3]])
     weights = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60  # differences of sixth order
     rate = np.convolve(around, weights[::-1], "valid") / (2 * np.pi / 720)
     columns = (TABLE.crank_angle, TABLE.values[0])
     wanted = np.interp(motion.crank_angle, *columns, left=0.0, right=0.0) * rate
-    added = found.forces.drive_torque - bare.forces.drive_torque
+    added = actual.forces.drive_torque - bare.forces.drive_torque
     np.testing.assert_allclose(added, wanted, atol=1e-8 * np.max(np.abs(wanted)))
     work = work_in_cycle(loaded(BY_ANGLE), BY_ANGLE)
     # to what a sum over 720 angles makes of the bends of the table

@@ -57,20 +57,20 @@ def test_gas_in_a_cylinder_that_swings_is_a_rod_between_two_pins() -> None:
     """What it adds at each pin is its force in their line, and to the drive what the pins come
     apart for each angle of the crank; nothing on the frame as a whole.
     """
-    found, bare = (eq.analyze(engine(*loads), 180).forces for loads in ((PUSH,), ()))
-    theta = found.motion.crank_angle
+    actual, bare = (eq.analyze(engine(*loads), 180).forces for loads in ((PUSH,), ()))
+    theta = actual.motion.crank_angle
     assert PUSH.force is not None
     size, apart = PUSH.force[0], distance(theta)
     rate = DISTANCE * CRANK * np.sin(theta) / np.abs(apart)
-    added = found.drive_torque - bare.drive_torque
+    added = actual.drive_torque - bare.drive_torque
     np.testing.assert_allclose(added, -size * rate, atol=1e-11)
     for name, pushed in (("B", -1.0), ("D", 1.0)):
-        joint = found.joints[name]
+        joint = actual.joints[name]
         sign = pushed * (1.0 if joint.by in ("frame", "crank") else -1.0)
         borne = sign * (joint.value - bare.joints[name].value)
         np.testing.assert_allclose(borne, size * apart / np.abs(apart), atol=1e-11 * size)
-    np.testing.assert_allclose(found.frame_force.value, bare.frame_force.value, atol=1e-12 * size)
-    np.testing.assert_allclose(found.frame_moment, bare.frame_moment, atol=1e-12 * size)
+    np.testing.assert_allclose(actual.frame_force.value, bare.frame_force.value, atol=1e-12 * size)
+    np.testing.assert_allclose(actual.frame_moment, bare.frame_moment, atol=1e-12 * size)
 
 
 SHARES = [(0.3, 6.0), (0.0, 6.0), (0.02, 1.0), (1.0, 0.9), (0.97, 5.5), (0.6, 6.1)]
@@ -111,19 +111,19 @@ def test_an_indicator_diagram_in_a_cylinder_that_swings() -> None:
 def test_the_drive_gives_its_work_and_a_run_keeps_its_energy(load: Load) -> None:
     """Work of both ends in a cycle, and over the way of the crank in a run."""
     machine = engine(load)
-    found, bare = (eq.analyze(one, 720).forces for one in (machine, engine()))
-    added = found.drive_torque - bare.drive_torque
+    actual, bare = (eq.analyze(item, 720).forces for item in (machine, engine()))
+    added = actual.drive_torque - bare.drive_torque
     work = work_in_cycle(machine, load)
     assert work.both > 0.1
-    mean = float(found.motion.mean(added))
+    mean = float(actual.motion.mean(added))
     assert 2 * pi * mean == pytest.approx(-work.net, abs=1e-10 * work.both)
     size = np.max(np.abs(bare.frame_force.value))
-    np.testing.assert_allclose(found.frame_force.value, bare.frame_force.value, atol=1e-12 * size)
+    np.testing.assert_allclose(actual.frame_force.value, bare.frame_force.value, atol=1e-12 * size)
     run = eq.run(machine, "0.1 s", speed=40.0)
     theta = np.linspace(run.crank_angle[0], run.crank_angle[-1], 20_001)
     torque = sum(
-        eq.analyze(one, theta).forces.drive_torque * sign
-        for one, sign in ((machine, 1.0), (engine(), -1.0))
+        eq.analyze(first, theta).forces.drive_torque * sign
+        for first, sign in ((machine, 1.0), (engine(), -1.0))
     )
     wanted = -float(np.sum((torque[1:] + torque[:-1]) / 2 * np.diff(theta)))
     assert run.work["loads"][-1] == pytest.approx(wanted, abs=1e-6 * work.both)
@@ -134,14 +134,14 @@ def test_what_it_shakes_across_the_plane_cancels() -> None:
     """As both ends are in one line; joints beside each other bear its tilting moment."""
     machine = engine()
     machine = machine.with_link("piston", plane=0.02).with_link("cylinder", plane=0.05)
-    found, bare = (
+    actual, bare = (
         eq.analyze(replace(machine, loads=loads), 90).forces.across for loads in ((PUSH,), ())
     )
-    size = np.max(np.abs(found.loads["piston"]))
+    size = np.max(np.abs(actual.loads["piston"]))
     assert size > 1.0
-    np.testing.assert_allclose(found.loads["piston"] + found.loads["cylinder"], 0.0, atol=1e-15)
+    np.testing.assert_allclose(actual.loads["piston"] + actual.loads["cylinder"], 0.0, atol=1e-15)
     np.testing.assert_allclose(
-        found.frame_rocking_moment.value, bare.frame_rocking_moment.value, atol=1e-12 * size
+        actual.frame_rocking_moment.value, bare.frame_rocking_moment.value, atol=1e-12 * size
     )
 
 

@@ -50,12 +50,12 @@ MACHINES = {
 def names_of(machine: eq.Machine) -> list[str]:
     """Every output that an analysis of the machine has."""
     motion = eq.move(machine, ANGLES)
-    found = OutputSource(motion, eq.forces(motion))
+    result = OutputSource(motion, eq.forces(motion))
     return [
-        one.named(item)
-        for one in DECLARED.values()
-        if one.needs == "masses" and not one.unbounded
-        for item in one.items_of(found)
+        value.named(item)
+        for value in DECLARED.values()
+        if value.needs == "masses" and not value.unbounded
+        for item in value.items_of(result)
     ]
 
 
@@ -77,18 +77,18 @@ def test_figures_are_those_of_each_design(name: str) -> None:
     asked = [Figure(signal, kind) for signal in names_of(machine) for kind in ("rms", "mean")]
     wanted = [figure for figure in asked if can_use(machine, paths, [figure])]
     designs = [design(machine, links, share) for share in SHARES]
-    values = np.array([[one.links[link].mass for link in links] for one in designs])
+    values = np.array([[element.links[link].mass for link in links] for element in designs])
     figures, reason = MassBatch(machine, paths, wanted, ANGLES)(values)
     assert np.all(reason == COMPUTED)
-    for row, one in zip(figures, designs, strict=True):
-        motion = resolved(eq.move(one, ANGLES))
-        found, shares = OutputSource(motion, eq.forces(motion)), motion.shares
+    for row, entry in zip(figures, designs, strict=True):
+        motion = resolved(eq.move(entry, ANGLES))
+        actual, shares = OutputSource(motion, eq.forces(motion)), motion.shares
         for figure, value in zip(wanted, row, strict=True):
             output, item = declared(figure.signal) or pytest.fail(figure.signal)
-            signal = output.values(found, item)
+            signal = output.values(actual, item)
             power = 2 if figure.name == "rms" else 1
             exact = np.average(signal**power, weights=shares) ** (1 / power)
-            size = max(np.max(np.abs(signal)), 1e-3 * np.max(found.forces.frame_force.size))
+            size = max(np.max(np.abs(signal)), 1e-3 * np.max(actual.forces.frame_force.size))
             assert value == pytest.approx(exact, abs=1e-9 * size), figure
 
 
@@ -126,8 +126,8 @@ def test_a_study_of_a_chain_has_the_strands_of_each_design(tmp_path: Path) -> No
     machine = eq.load(str(path))
     assert machine.switches
     masses = [1.0, 4.2, 12.0, 20.0]
-    found = evaluator(study)(np.array(masses)[:, None]).figures[:, 0]
+    figures = evaluator(study)(np.array(masses)[:, None]).figures[:, 0]
     each = [
         eq.analyze(machine.with_link("knife", mass=mass), 360).summary[name].rms for mass in masses
     ]
-    np.testing.assert_allclose(found, each, rtol=1e-9)
+    np.testing.assert_allclose(figures, each, rtol=1e-9)

@@ -81,7 +81,7 @@ def test_power_and_the_law(name: str, joint: str) -> None:
         gained, friction.loss, atol=1e-10 * np.max(np.abs(free.forces.power))
     )
     push = np.abs(analysis.forces.couplings["gears"][pair].parts["tangential"])
-    gear = next(one for one in lossy.gears if one.name == pair)
+    gear = next(item for item in lossy.gears if item.name == pair)
     turns = {
         "frame": np.zeros(36),
         **{k: v.angular_velocity for k, v in analysis.motion.links.items()},
@@ -176,7 +176,7 @@ def test_they_are_reported_everywhere() -> None:
     )
     assert analysis.summary[name].mean == pytest.approx(analysis.losses.loss)
     assert f"{name} [W]" in to_csv(analysis).partition("\n")[0]
-    assert not [one for one in analysis.outputs.names if one.startswith("joints.crank to wheel")]
+    assert not [item for item in analysis.outputs.names if item.startswith("joints.crank to wheel")]
 
 
 @pytest.mark.parametrize(

@@ -163,7 +163,7 @@ def machine_of(case: Case | Trochoid, **more: Any) -> eq.Machine:
 
 
 @cache
-def found(name: str) -> PlantingFigures:
+def figures_of(name: str) -> PlantingFigures:
     return plant(eq.load(name) if name in PRINTED else machine_of(CASES[name]))
 
 
@@ -221,7 +221,7 @@ def test_figures_stays_loops_and_cusps(name: str) -> None:
     same_figures(name, want)
     same_stays(name, want["visits"])
     same_loops(name, want)
-    assert found(name).cusps == pytest.approx(want["cusps"], abs=WITHIN)
+    assert figures_of(name).cusps == pytest.approx(want["cusps"], abs=WITHIN)
 
 
 def same_figures(name: str, want: dict[str, Any]) -> None:
@@ -230,12 +230,12 @@ def same_figures(name: str, want: dict[str, Any]) -> None:
     assert len(names) >= 80
     for figure in names:
         within = DIPPING if figure == "soil.hole_length" and dips(CASES[name]) else WITHIN
-        assert apart(figure, found(name)[figure], want) < within, figure
+        assert apart(figure, figures_of(name)[figure], want) < within, figure
 
 
 def same_stays(name: str, want: list[tuple[float, float]]) -> None:
     """Compare stays; the reference lists the deepest first, then the others as time goes on."""
-    got = found(name).visits
+    got = figures_of(name).visits
     assert len(got) == len(want)
     assert turned_apart(got[0].entry, want[0][0]) < WITHIN
     for visit in got:
@@ -245,8 +245,8 @@ def same_stays(name: str, want: list[tuple[float, float]]) -> None:
 
 def same_loops(name: str, want: dict[str, Any]) -> None:
     """Compare loops, each with the reference's that passes its crossing at the same times."""
-    assert len(found(name).loops) == len(want["loops"])
-    pairs = [pair(loop, want["loops"]) for loop in found(name).loops]
+    assert len(figures_of(name).loops) == len(want["loops"])
+    pairs = [pair(loop, want["loops"]) for loop in figures_of(name).loops]
     assert sorted(k for k, _ in pairs) == list(range(len(want["loops"])))
     for k, loop in pairs:
         other = want["loops"][k]
@@ -268,7 +268,7 @@ def pair(loop: Loop, others: list[dict[str, float]]) -> tuple[int, Loop]:
 
 @EXHAUSTIVE  # Each of these machines is in other tests of this file on every change.
 def test_some_machines_plant_twice() -> None:
-    assert [name for name in RANDOM if len(found(name).visits) == 2] == [
+    assert [name for name in RANDOM if len(figures_of(name).visits) == 2] == [
         f"crank-rocker-{seed}" for seed in range(25) if seed % 6 == 5
     ]
 
@@ -293,9 +293,9 @@ def test_trochoids_have_a_loop_a_cusp_or_neither(name: str) -> None:
     case = TROCHOIDS[name]
     slowest = np.pi / 2 if case.omega * case.v > 0 else 3 * np.pi / 2
     ratio = case.r * abs(case.omega / case.v)
-    assert len(found(name).loops) == (ratio > 1)
-    assert found(name).cusps == (pytest.approx((slowest,)) if ratio == 1 else ())
-    for loop in found(name).loops:
+    assert len(figures_of(name).loops) == (ratio > 1)
+    assert figures_of(name).cusps == (pytest.approx((slowest,)) if ratio == 1 else ())
+    for loop in figures_of(name).loops:
         middle = (loop.first + np.sign(case.omega) * loop.way / 2) % TURN
         assert turned_apart(middle, slowest) < WITHIN
 

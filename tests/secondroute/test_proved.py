@@ -43,10 +43,10 @@ def test_there_are_fifty() -> None:
 @pytest.mark.parametrize("case", few(PLANS, PLANS[::10]))
 def test_no_change_of_masses_is_better_than_what_is_proved(case: int) -> None:
     machine, plan = random_case(case)
-    found, problem = eq.balance(machine, plan), Problem(machine, plan)
-    assert found.proved
+    actual, problem = eq.balance(machine, plan), Problem(machine, plan)
+    assert actual.proved
     generation = SIZE * len(problem.bounds)
-    turns = -(-max(TIMES * found.looked_at, LEAST) // generation)
+    turns = -(-max(TIMES * actual.looked_at, LEAST) // generation)
     _, at = evolved(problem, seed=case, turns=turns, size=SIZE, polished=2)
     rebuilt = problem.rebuilt(at)
     shares = [
@@ -55,8 +55,8 @@ def test_no_change_of_masses_is_better_than_what_is_proved(case: int) -> None:
     ]
     areas = any(objective.measure == "area" for objective in plan.objectives)
     room = (SAMPLED if areas and loads_jump(machine) else BEATEN) * sum(problem.weights)
-    assert float(problem.combined(shares)) >= found.bound - room
-    assert float(problem.combined(shares)) >= found.cost - room
+    assert float(problem.combined(shares)) >= actual.bound - room
+    assert float(problem.combined(shares)) >= actual.cost - room
 
 
 def rows_of(seed: int) -> tuple[Machine, list[Objective]]:
@@ -77,7 +77,7 @@ def rows_of(seed: int) -> tuple[Machine, list[Objective]]:
 @pytest.mark.parametrize("case", few(ROWS, [5]))
 def test_no_phases_are_better_than_what_is_proved(case: int) -> None:
     machine, wishes = rows_of(case)
-    found, dumb = choose_phases(machine, wishes), Dumb(machine, wishes, "sum")
+    actual, dumb = choose_phases(machine, wishes), Dumb(machine, wishes, "sum")
     whole = float(len(wishes))
     other = differential_evolution(
         dumb,
@@ -87,6 +87,6 @@ def test_no_phases_are_better_than_what_is_proved(case: int) -> None:
         tol=0,
         seed=case,
     )
-    assert found.bound <= found.combined[1] * (1 + BEATEN)
-    assert other.fun >= found.bound - 3 * BEATEN * whole
-    assert other.fun >= found.combined[1] - 3 * BEATEN * whole
+    assert actual.bound <= actual.combined[1] * (1 + BEATEN)
+    assert other.fun >= actual.bound - 3 * BEATEN * whole
+    assert other.fun >= actual.combined[1] - 3 * BEATEN * whole

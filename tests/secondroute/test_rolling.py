@@ -39,12 +39,12 @@ def ellipses(driver: str, driven: str, carrier: str, phase: float, start: float)
 def same(linkage: eq.Machine, geared: eq.Machine, pairs: dict[str, str], theta: np.ndarray) -> None:
     """Compare motion of links and all that drive and frame bear."""
     drive = {"speed": 7.0, "acceleration": 13.0}
-    want, got = (eq.analyze(one, theta, **drive) for one in (linkage, geared))
-    for one, other in pairs.items():
-        a, b = want.motion.links[one], got.motion.links[other]
-        agree(one, np.exp(1j * (b.angle - a.angle)), np.ones(len(theta)), TOLERANCE)
-        agree(one, b.angular_velocity, a.angular_velocity, TOLERANCE)
-        agree(one, b.angular_acceleration, a.angular_acceleration, TOLERANCE)
+    want, got = (eq.analyze(item, theta, **drive) for item in (linkage, geared))
+    for key, other in pairs.items():
+        a, b = want.motion.links[key], got.motion.links[other]
+        agree(key, np.exp(1j * (b.angle - a.angle)), np.ones(len(theta)), TOLERANCE)
+        agree(key, b.angular_velocity, a.angular_velocity, TOLERANCE)
+        agree(key, b.angular_acceleration, a.angular_acceleration, TOLERANCE)
     for name in ("drive_torque", "frame_moment"):
         agree(name, getattr(got.forces, name), getattr(want.forces, name), TOLERANCE)
     agree("frame", got.forces.frame_force.value, want.forces.frame_force.value, TOLERANCE)
@@ -122,7 +122,7 @@ def test_the_law_of_a_shape(name: str) -> None:
     x = np.linspace(-7, 9, 15)
     want = Rolling(gear)
     angle, ratio, bend = law_of(shape, mean)(x)
-    turned = np.array([want.angle(float(one)) for one in x])
+    turned = np.array([want.angle(float(item)) for item in x])
     np.testing.assert_allclose(angle - angle[0], turned - turned[0], atol=1e-11)
     np.testing.assert_allclose(ratio, want.ratio(x), rtol=1e-12)
     np.testing.assert_allclose(bend, want.bend(x), atol=1e-12)

@@ -93,8 +93,8 @@ def test_paths_of_both_tips(name: str) -> None:
 def test_force_and_moment_are_changes_of_momentum(name: str) -> None:
     case, machine = CASES[name], MACHINES[name]
     force, moment = case.shaking(machine.drive.speed)
-    found = eq.mechanism.forces(eq.move(machine, CYCLE))
-    for got, want in ((found.shaking_force.value, force), (found.shaking_moment, moment)):
+    forces = eq.mechanism.forces(eq.move(machine, CYCLE))
+    for got, want in ((forces.shaking_force.value, force), (forces.shaking_moment, moment)):
         np.testing.assert_allclose(got, want, atol=1e-10 * np.max(np.abs(want)))
 
 
@@ -112,12 +112,12 @@ def test_figures_of_planting_stand_on_these_paths() -> None:
     """Lowest point, height and hills of the bundled machine."""
     case, figures = CASES["bundled"], eq.plant(MACHINES["bundled"])
     theta = np.arange(200_000) * (TURN / 200_000)
-    for arm, found in zip(case.arms, figures.arms, strict=True):
+    for arm, actual in zip(case.arms, figures.arms, strict=True):
         path = case.tip(arm, theta)
-        assert found["curve.height"] == pytest.approx(np.ptp(path.imag), abs=1e-9)
-        assert found["curve.width"] == pytest.approx(np.ptp(path.real), abs=1e-9)
+        assert actual["curve.height"] == pytest.approx(np.ptp(path.imag), abs=1e-9)
+        assert actual["curve.width"] == pytest.approx(np.ptp(path.real), abs=1e-9)
         lowest = theta[np.argmin(path.imag)]
-        assert found["lowest.crank_angle"] == pytest.approx(lowest, abs=1e-4)
+        assert actual["lowest.crank_angle"] == pytest.approx(lowest, abs=1e-4)
     assert figures["hills.smallest_distance"] == pytest.approx(0.16, abs=1e-6)
     assert figures["hills.largest_distance"] == pytest.approx(0.16, abs=1e-6)
 

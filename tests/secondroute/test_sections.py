@@ -56,7 +56,7 @@ def test_loads_along_a_link_are_held_once() -> None:
         stress, built = loads.stress, tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    held = sum(one.nbytes for one in (loads.places, loads.axial, loads.shear, loads.bending))
+    held = sum(item.nbytes for item in (loads.places, loads.axial, loads.shear, loads.bending))
     assert built < 1.3 * held
     np.testing.assert_array_equal(stress, np.max(np.abs(loads.stresses), axis=(0, 1)))
 
@@ -105,8 +105,8 @@ def test_each_half_of_a_cut_rod_is_in_equilibrium(aside: float) -> None:
 def closes(loads: SectionLoads) -> bool:
     """Whether nothing is left behind the end."""
     each = (loads.axial, loads.shear, loads.bending / loads.length)
-    size = max(float(np.max(np.abs(one))) for one in each)
-    return all(float(np.max(np.abs(one[-1]))) <= 1e-9 * size for one in each)
+    size = max(float(np.max(np.abs(item))) for item in each)
+    return all(float(np.max(np.abs(item[-1]))) <= 1e-9 * size for item in each)
 
 
 def sectioned(machine: eq.Machine) -> eq.Machine:
@@ -160,11 +160,11 @@ def test_a_rod_that_hangs_and_a_bar_that_swings() -> None:
     np.testing.assert_allclose(loads.axial[1:40, 0], drawn, rtol=1e-12)
     np.testing.assert_allclose(loads.bending[1:40, 0], bent, rtol=1e-9)
     assert loads.mass.rod == pytest.approx(mass)
-    told = eq.analyze(machine, 360).sections["bar"]
+    reported = eq.analyze(machine, 360).sections["bar"]
     area, modulus = pi * 0.02**2 / 4, pi * 0.02**3 / 32
     most = mass * speed**2 * length / 2 / area + mass * 9.80665 * length / 2 / modulus
-    assert told.stress == pytest.approx(most, rel=2e-3)  # weight along the bar beside it
-    assert told.place == 0.0 and told.safety == pytest.approx(235e6 / told.stress)
+    assert reported.stress == pytest.approx(most, rel=2e-3)  # weight along the bar beside it
+    assert reported.place == 0.0 and reported.safety == pytest.approx(235e6 / reported.stress)
 
 
 def test_a_column_of_euler_and_one_of_johnson() -> None:
@@ -183,14 +183,14 @@ def test_a_column_of_euler_and_one_of_johnson() -> None:
 def test_life_follows_from_the_stress_of_a_cycle() -> None:
     """A thinner rod under the same forces: Miner's sum by hand of its one large cycle."""
     thin = eq.analyze(engine(height="5 mm", width="3 mm", tensile_strength=None))
-    told = thin.sections["rod"]
-    assert told.cycles_to_failure is not None and told.life is not None
+    reported = thin.sections["rod"]
+    assert reported.cycles_to_failure is not None and reported.life is not None
     period = 2 * pi / abs(thin.machine.drive.speed)
-    assert told.life == pytest.approx(told.cycles_to_failure * period)
+    assert reported.life == pytest.approx(reported.cycles_to_failure * period)
     stresses = thin.resolved.forces.sections["rod"].stresses
     swing = np.max(np.ptp(stresses, axis=2)) / 2
-    assert told.fatigue_safety == pytest.approx(180e6 / swing)
-    assert told.cycles_to_failure == pytest.approx(1e6 * (180e6 / swing) ** 5, rel=0.2)
+    assert reported.fatigue_safety == pytest.approx(180e6 / swing)
+    assert reported.cycles_to_failure == pytest.approx(1e6 * (180e6 / swing) ** 5, rel=0.2)
     endless = eq.analyze(engine()).sections["rod"]
     assert endless.cycles_to_failure is None and endless.fatigue_safety > 1
 
@@ -231,16 +231,18 @@ def test_life_over_duty_states_is_that_of_each_alone() -> None:
     periods = np.array([2 * pi / item.machine.drive.speed for item in alone])
     each = [item.sections["rod"] for item in alone]
     lives = np.array([np.inf if item.life is None else item.life for item in each])
-    found = eq.analyze(replace(machine, duty=duty)).sections["rod"]
-    assert found.life is not None and found.cycles_to_failure is not None
+    sections = eq.analyze(replace(machine, duty=duty)).sections["rod"]
+    assert sections.life is not None and sections.cycles_to_failure is not None
     together = 1 / np.sum(shares / lives)
     # of places that differ from state to state the worst of all is at least as good as that
-    assert found.life == pytest.approx(together, rel=0.02) and found.life >= together * (1 - 1e-9)
-    assert found.cycles_to_failure == pytest.approx(found.life * np.sum(shares / periods))
+    assert sections.life == pytest.approx(together, rel=0.02) and sections.life >= together * (
+        1 - 1e-9
+    )
+    assert sections.cycles_to_failure == pytest.approx(sections.life * np.sum(shares / periods))
     for name in ("stress", "tension", "compression", "shear", "bending_moment", "deflection"):
-        assert getattr(found, name) == pytest.approx(max(getattr(item, name) for item in each))
+        assert getattr(sections, name) == pytest.approx(max(getattr(item, name) for item in each))
     for name in ("safety", "buckling_safety", "fatigue_safety"):
-        assert getattr(found, name) == pytest.approx(min(getattr(item, name) for item in each))
+        assert getattr(sections, name) == pytest.approx(min(getattr(item, name) for item in each))
     (title,) = (
         str(table.title)
         for table in analysis_tables(replace(machine, duty=duty))
@@ -251,8 +253,8 @@ def test_life_over_duty_states_is_that_of_each_alone() -> None:
 
 def test_one_duty_state_as_the_machine_runs_changes_nothing() -> None:
     machine = engine()
-    found = eq.analyze(replace(machine, duty=(DutyState(7.0),))).sections
-    assert found == eq.analyze(machine).sections
+    sections = eq.analyze(replace(machine, duty=(DutyState(7.0),))).sections
+    assert sections == eq.analyze(machine).sections
 
 
 def analysis_tables(machine: eq.Machine) -> list[Table]:

@@ -56,9 +56,9 @@ def test_motion_forces_and_power(kind: str, seed: int, by_slider: bool) -> None:
     same_motion(subject, turned_alike(subject.machine, newton.coordinates(first, 0)))
     same_forces(subject)
     acting_on_the_later(subject)
-    found = subject.forces
-    rows = [*kinetic_power(found), *-gravity_power(found), *-load_power(found)]
-    rows = [*rows, *-spring_power(found)]
-    size = np.max(np.sum(np.abs(rows), axis=0) + np.abs(found.power))
-    alike(found.power, np.sum(rows, axis=0), 1e-12, float(size))
-    assert np.any(found.drive_torque) != subject.machine.drive.pushes
+    forces = subject.forces
+    rows = [*kinetic_power(forces), *-gravity_power(forces), *-load_power(forces)]
+    rows = [*rows, *-spring_power(forces)]
+    size = np.max(np.sum(np.abs(rows), axis=0) + np.abs(forces.power))
+    alike(forces.power, np.sum(rows, axis=0), 1e-12, float(size))
+    assert np.any(forces.drive_torque) != subject.machine.drive.pushes

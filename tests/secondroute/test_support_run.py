@@ -96,11 +96,11 @@ def against_exact(machine: eq.Machine, duration: float, close: float) -> DrivesR
     wanted = eq.simulate(machine, duration, drive=True, samples=60)
     run = eq.run(machine, duration, support=True)
     assert isinstance(run, DrivesRun)
-    found = sampled(run, wanted.time)
-    np.testing.assert_allclose(found["crank"], wanted.crank_angle, atol=close)
+    result = sampled(run, wanted.time)
+    np.testing.assert_allclose(result["crank"], wanted.crank_angle, atol=close)
     place, _ = wanted.system.place_and_rate(wanted.states)
     for row, name in enumerate(("x", "y", FRAME)):
-        np.testing.assert_allclose(found[name], place[row], atol=close)
+        np.testing.assert_allclose(result[name], place[row], atol=close)
     assert run.energy_error < BALANCE
     return run
 
@@ -173,8 +173,8 @@ def against_free_bodies(
     angles = angles_of_rows(machine, run)
     state = np.concatenate([bodies.start(angles, speeds), np.zeros(more)])
     times = np.linspace(0.0, run.time[-1], 40)
-    wanted, found = bodies.follow(state, times), sampled(run, times)
-    for name, values in found.items():
+    wanted, actual = bodies.follow(state, times), sampled(run, times)
+    for name, values in actual.items():
         np.testing.assert_allclose(values, wanted[name] - wanted[name][0], atol=CLOSE)
     return run
 
@@ -497,8 +497,8 @@ def test_what_links_exert_on_a_support_in_space_is_as_of_orders() -> None:
     state = equation.at(np.zeros(12), 0.0, equation.placed(np.zeros(12), angles, speeds), near)
     excitation = WholeExcitation(SupportBody(machine))
     wanted = excitation.samples(crank, machine.drive.speed)
-    found = -equation.rows.total(state.pose.bias)[1:]
-    np.testing.assert_allclose(found, wanted, atol=1e-9 * np.max(np.abs(wanted)))
+    actual = -equation.rows.total(state.pose.bias)[1:]
+    np.testing.assert_allclose(actual, wanted, atol=1e-9 * np.max(np.abs(wanted)))
 
 
 # What links exert on a support at rest, and rigid bodies in space: the tests above.
@@ -522,7 +522,7 @@ def test_the_riding_transplanter_comes_to_its_linear_response() -> None:
     grid = crank[-1] - np.linspace(0, 2 * pi, 64, endpoint=False)
     waves = np.exp(-1j * np.outer([1, 2, 3], grid)) / 32
     for name, gauge in response.gauges.items():
-        found = waves @ np.interp(grid, crank, run.support.gauges[name][places])
+        actual = waves @ np.interp(grid, crank, run.support.gauges[name][places])
         wanted = gauge.displacement.amplitudes[1:4]
         # tilts of 6e-3 rad and changes of speed are not in the linear model
-        np.testing.assert_allclose(found, wanted, atol=2e-3 * np.max(np.abs(wanted)))
+        np.testing.assert_allclose(actual, wanted, atol=2e-3 * np.max(np.abs(wanted)))

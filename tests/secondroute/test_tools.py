@@ -62,10 +62,10 @@ def test_natural_frequencies(theory: Theory, seed: int, plane: int) -> None:
 def test_eigenvalues(theory: Theory, seed: int, plane: int) -> None:
     """The first eight, and as many within the same radius."""
     tool = made(theory, seed)
-    found = np.array([mode.eigenvalue for mode in vibrate_tool(tool, 10).planes[plane].damped])
-    found = found[found.imag != 0]
+    values = np.array([mode.eigenvalue for mode in vibrate_tool(tool, 10).planes[plane].damped])
+    values = values[values.imag != 0]
     wanted = reference(tool, plane, 192).eigenvalues(8)
-    np.testing.assert_allclose(found[:8], wanted, rtol=2e-9)
+    np.testing.assert_allclose(values[:8], wanted, rtol=2e-9)
 
 
 @compared(FINITE_ELEMENTS, "six eigenvalues with heavy damping", 1e-7, *TOOLS[::2])
@@ -83,32 +83,32 @@ def test_eigenvalues_of_heavy_damping(theory: Theory) -> None:
         for station in tool.stations
     )
     heavy = replace(tool, stations=stations)
-    told = vibrate_tool(heavy, 10)
+    reported = vibrate_tool(heavy, 10)
     for plane in range(2):
-        found = np.array([mode.eigenvalue for mode in told.planes[plane].damped])
-        found = found[found.imag != 0]
+        values = np.array([mode.eigenvalue for mode in reported.planes[plane].damped])
+        values = values[values.imag != 0]
         wanted = reference(heavy, plane, 192).eigenvalues(6)
-        np.testing.assert_allclose(found[:6], wanted, rtol=1e-7)
-        assert np.max(-found.real / np.abs(found)) > 0.3
+        np.testing.assert_allclose(values[:6], wanted, rtol=1e-7)
+        assert np.max(-values.real / np.abs(values)) > 0.3
 
 
-def elements(found: ToolResponse, plane: int) -> Iterator[tuple[int, int, Response]]:
+def elements(result: ToolResponse, plane: int) -> Iterator[tuple[int, int, Response]]:
     """Order, speed and what finite elements answer to all that shakes in a plane at that order."""
-    tool = found.tool
+    tool = result.tool
     subject = reference(tool, plane, 192)
-    for k, order in enumerate(found.orders):
-        for i, speed in enumerate(found.speed):
+    for k, order in enumerate(result.orders):
+        for i, speed in enumerate(result.speed):
             forces = [
                 (tool.station(shake.station).position, shake.at(np.array([speed]))[plane, 0], 0.0)
-                for shake in found.shakes
+                for shake in result.shakes
                 if shake.order == order and shake.force[plane] != 0
             ]
             yield k, i, subject.response([order * speed], forces)
 
 
-def close(found: Array, wanted: Array, tolerance: float = 1e-7) -> None:
+def close(result: Array, wanted: Array, tolerance: float = 1e-7) -> None:
     """Beside the largest of those wanted."""
-    np.testing.assert_allclose(found, wanted, rtol=0, atol=tolerance * np.max(np.abs(wanted)))
+    np.testing.assert_allclose(result, wanted, rtol=0, atol=tolerance * np.max(np.abs(wanted)))
 
 
 @pytest.mark.exhaustive(but=["vertical-euler-bernoulli-11", "lateral-timoshenko-11"])
@@ -117,18 +117,18 @@ def close(found: Array, wanted: Array, tolerance: float = 1e-7) -> None:
 @planes
 def test_motion_and_moment_anywhere(theory: Theory, seed: int, plane: int) -> None:
     """Displacement, slope of the section and bending moment, just right of where it jumps."""
-    found = answered(theory, seed)
-    tool = found.tool
+    result = answered(theory, seed)
+    tool = result.tool
     stations = [station.position for station in tool.stations[:-1]]
     places = np.array([*stations, *(tool.shaft.length * np.array([0.03, 0.37, 0.58, 0.77, 0.97]))])
-    line = found.line(places)
-    for k, i, exact in elements(found, plane):
+    line = result.line(places)
+    for k, i, exact in elements(result, plane):
         close(line.displacement[:, plane, k, i], exact.displacement(places)[0])
         close(line.slope[:, plane, k, i], exact.slope(places)[0])
         close(line.moment[:, plane, k, i], exact.bending_moment(places, "right")[0])
         ends = [station.position for station in tool.stations]
         moved = np.array(
-            [found.displacement(station.name)[plane, k, i] for station in tool.stations]
+            [result.displacement(station.name)[plane, k, i] for station in tool.stations]
         )
         close(moved, exact.displacement(ends)[0])
 
@@ -138,31 +138,31 @@ def test_motion_and_moment_anywhere(theory: Theory, seed: int, plane: int) -> No
 @planes
 def test_forces_on_the_ground_and_the_body(theory: Theory, seed: int, plane: int) -> None:
     """Of all springs and dampers of a station; what its hands weigh is left out."""
-    found = answered(theory, seed)
-    for k, i, exact in elements(found, plane):
+    result = answered(theory, seed)
+    for k, i, exact in elements(result, plane):
         ground = exact.ground_force()[0]
-        told = []
-        for station in found.tool.stations:
-            forces = found.forces(station.name)
+        texts = []
+        for station in result.tool.stations:
+            forces = result.forces(station.name)
             total = sum(force[plane, k, i] for force in forces.values())
             if station.hand is not None:
                 mass = station.hand.hands * station.hand.mass
-                total -= mass * found.acceleration(station.name)[plane, k, i]
-            told.append(total)
-        close(np.array(told), ground)
+                total -= mass * result.acceleration(station.name)[plane, k, i]
+            texts.append(total)
+        close(np.array(texts), ground)
 
 
 @compared(FINITE_ELEMENTS, "power fed in and lost", 2e-7, *TOOLS)
 @subjects
 def test_power(theory: Theory, seed: int) -> None:
     """What is fed in, what the shaft's material takes, and what each damper takes; both planes."""
-    found = answered(theory, seed)
-    shape = found.frequency.shape
+    result = answered(theory, seed)
+    shape = result.frequency.shape
     fed_in, shaft = np.zeros(shape), np.zeros(shape)
-    names = [station.name for station in found.tool.stations]
+    names = [station.name for station in result.tool.stations]
     dampers, absorbers = (np.zeros((len(names), *shape)) for _ in range(2))
     for plane in range(2):
-        for k, i, exact in elements(found, plane):
+        for k, i, exact in elements(result, plane):
             if not np.any(exact.displacement([0.0])):
                 continue  # nothing shakes in this plane at this order
             power = exact.power()
@@ -170,12 +170,12 @@ def test_power(theory: Theory, seed: int) -> None:
             shaft[k, i] += power["shaft"][0]
             dampers[:, k, i] += power["damper"][0] + power["rotational_damper"][0]
             absorbers[:, k, i] += power["absorber"][0]
-    np.testing.assert_allclose(found.fed_in, fed_in, rtol=2e-7)
-    np.testing.assert_allclose(found.lost_in_shaft, shaft, rtol=2e-7)
+    np.testing.assert_allclose(result.fed_in, fed_in, rtol=2e-7)
+    np.testing.assert_allclose(result.lost_in_shaft, shaft, rtol=2e-7)
     for name, by_dampers, by_absorber in zip(names, dampers, absorbers, strict=True):
-        told = found.power(name)
-        absorbed = told.pop("absorber", np.zeros(shape))
-        np.testing.assert_allclose(sum(told.values(), np.zeros(shape)), by_dampers, rtol=2e-7)
+        reported = result.power(name)
+        absorbed = reported.pop("absorber", np.zeros(shape))
+        np.testing.assert_allclose(sum(reported.values(), np.zeros(shape)), by_dampers, rtol=2e-7)
         np.testing.assert_allclose(absorbed, by_absorber, rtol=2e-7)
 
 
@@ -199,8 +199,8 @@ def measured(tool: Tool, rows: int) -> Tool:
     hertz = np.linspace(10, 300, rows)
     w = 2 * pi * hertz
     stations = []
-    for one in tool.stations:
-        hand = one.hand
+    for station in tool.stations:
+        hand = station.hand
         if hand is not None:
             tables = tuple(
                 Impedance(
@@ -210,8 +210,8 @@ def measured(tool: Tool, rows: int) -> Tool:
                 )
                 for plane in range(2)
             )
-            one = replace(one, hand=Hand(impedance=tables, hands=hand.hands))  # noqa: PLW2901
-        stations.append(one)
+            station = replace(station, hand=Hand(impedance=tables, hands=hand.hands))  # noqa: PLW2901
+        stations.append(station)
     return replace(tool, stations=tuple(stations))
 
 
@@ -227,11 +227,11 @@ def test_a_hand_by_its_table(theory: Theory) -> None:
     wanted = answered(theory, 12)
     away = []
     for rows in (1451, 2901, 5801):
-        found = respond_tool(measured(tool, rows), SPEEDS)
+        response = respond_tool(measured(tool, rows), SPEEDS)
         for name in ("front", "rear"):
-            one, other = (each.forces(name)["hand"] for each in (found, wanted))
-            close(one, other, 1e-3 * (290 / (rows - 1)) ** 2)
-        moved, still_wanted = (each.displacement("front") for each in (found, wanted))
+            first, other = (each.forces(name)["hand"] for each in (response, wanted))
+            close(first, other, 1e-3 * (290 / (rows - 1)) ** 2)
+        moved, still_wanted = (each.displacement("front") for each in (response, wanted))
         away.append(np.max(np.abs(moved - still_wanted)))
     assert away[0] / away[1] == pytest.approx(4, rel=0.5)
     assert away[1] / away[2] == pytest.approx(4, rel=0.5)

@@ -32,7 +32,7 @@ def machine_of(name: str) -> Machine:
 
 
 def signals(machine: Machine) -> list[str]:
-    return [one for one in signals_of(machine) if not one.startswith("transmission")]
+    return [item for item in signals_of(machine) if not item.startswith("transmission")]
 
 
 @node
@@ -42,7 +42,7 @@ def test_scripts(name: str, tmp_path: Path) -> None:
     linkage = assemble(machine)
     assert can_emit(linkage)
     names = signals(machine)
-    assert any("drive" in one for one in names)
+    assert any("drive" in item for item in names)
     script = javascript(linkage, names)
     analysis = eq.analyze(machine, ANGLES)
     got = run(script, script.numbers(linkage), analysis.crank_angle, tmp_path)
@@ -81,13 +81,15 @@ def test_scripts_with_other_numbers(name: str, tmp_path: Path) -> None:
 def test_compiled_loops(name: str) -> None:
     base = machine_of(name)
     numbers = numbers_of(base, 1e-3)
-    names = [one for one in eq.analyze(base, 8).summary if "drive" in one or one == "frame_force"]
+    names = [
+        item for item in eq.analyze(base, 8).summary if "drive" in item or item == "frame_force"
+    ]
     batch = Batch(
-        base, [number.path for number in numbers], [Figure(one, "rms") for one in names], 90
+        base, [number.path for number in numbers], [Figure(item, "rms") for item in names], 90
     )
     rows = drawn(numbers, 2, 5)
     figures, reason = batch(rows)
     assert not np.any(reason)
     for row, own in zip(figures, rows, strict=True):
         summary = eq.analyze(design(base, numbers, own), 90).summary
-        np.testing.assert_allclose(row, [summary[one].rms for one in names], rtol=1e-8)
+        np.testing.assert_allclose(row, [summary[item].rms for item in names], rtol=1e-8)

@@ -102,9 +102,9 @@ class Pair:
     def places(self) -> tuple[Array, Array]:
         return self.found.system.place_and_rate(self.states)
 
-    def close(self, found: Array, wanted: Array, size: float = 0.0) -> None:
+    def close(self, result: Array, wanted: Array, size: float = 0.0) -> None:
         size = size or float(np.max(np.abs(wanted)))
-        np.testing.assert_allclose(found, wanted, rtol=0, atol=self.case.tolerance * size)
+        np.testing.assert_allclose(result, wanted, rtol=0, atol=self.case.tolerance * size)
 
 
 def solved(name: str) -> Pair:
@@ -114,11 +114,11 @@ def solved(name: str) -> Pair:
     """
     case = CASES[name]
     machine = in_package(case.rig, case.motor).with_drive(speed=case.speed)
-    found = solve_exact(machine, case.speed, case.motor is not None)
-    states = found.steady.orbit.at(TRAVEL)
+    solution = solve_exact(machine, case.speed, case.motor is not None)
+    states = solution.steady.orbit.at(TRAVEL)
     start = states[: rig_reference.difference_steps(case.rig, 1.0).size, 0]
     wanted = rig_reference.steady(case.rig, case.speed, SAMPLES, start_state=start)
-    return Pair(case, wanted, found, states)
+    return Pair(case, wanted, solution, states)
 
 
 @pytest.mark.exhaustive(but=["lifting off", "193 rpm"])
@@ -138,10 +138,10 @@ def same_motion(pair: Pair) -> None:
     place, rate = pair.places
     n = pair.case.rig.freedoms
     kept = slice(3 - n, 3)
-    for found, wanted in zip(place[kept], pair.wanted.state[:, :n].T, strict=True):
-        pair.close(found, wanted)
-    for found, wanted in zip(rate[kept], pair.wanted.state[:, n : 2 * n].T, strict=True):
-        pair.close(found, wanted)
+    for actual, wanted in zip(place[kept], pair.wanted.state[:, :n].T, strict=True):
+        pair.close(actual, wanted)
+    for actual, wanted in zip(rate[kept], pair.wanted.state[:, n : 2 * n].T, strict=True):
+        pair.close(actual, wanted)
 
 
 def same_gauge(pair: Pair) -> None:
@@ -165,8 +165,8 @@ def same_mounts(pair: Pair) -> None:
         assert 0.1 < np.mean(pair.wanted.mounts[:, 0] == 0) < 0.9
     assert pair.found.linear is not None
     given = np.concatenate(pair.case.rig.preloads)
-    found = list(pair.found.linear.rest.preload.values())
-    np.testing.assert_allclose(found, given, rtol=1e-11)
+    result = list(pair.found.linear.rest.preload.values())
+    np.testing.assert_allclose(result, given, rtol=1e-11)
 
 
 def same_drive(pair: Pair) -> None:
@@ -188,16 +188,16 @@ def same_joints(pair: Pair) -> None:
     exact = replace(pair.found)
     exact.__dict__["turned"] = TRAVEL  # equal steps of the crank instead of time
     ride, kept = exact.base_motion, slice(3 - pair.case.rig.freedoms, 3)
-    for found, wanted in zip(ride.change[kept], pair.wanted.acceleration.T[kept], strict=True):
-        pair.close(found, wanted)
+    for actual, wanted in zip(ride.change[kept], pair.wanted.acceleration.T[kept], strict=True):
+        pair.close(actual, wanted)
     turn = np.exp(1j * ride.place[2])
     size = max(float(np.max(np.abs(force))) for force in pair.wanted.joints.values())
     torque = float(np.max(np.abs(pair.wanted.torque)))
-    for k, one in enumerate(exact.passes):
+    for k, reactions in enumerate(exact.passes):
         for name in rig_reference.JOINTS:
             wanted = pair.wanted.joints[name][:, k]
-            pair.close(turn * one.joints[name].value, wanted, size)
-        pair.close(one.drive_torque, pair.wanted.torque[:, k], torque)
+            pair.close(turn * reactions.joints[name].value, wanted, size)
+        pair.close(reactions.drive_torque, pair.wanted.torque[:, k], torque)
 
 
 def same_work(pair: Pair) -> None:
@@ -205,10 +205,10 @@ def same_work(pair: Pair) -> None:
 
     What the motor gives and takes back in a turn is much more, and as good as it is integrated.
     """
-    found = pair.found.energy()
+    result = pair.found.energy()
     swing = 2 * pi * float(np.max(np.abs(pair.wanted.motor)))
-    assert found.fed_in == pytest.approx(pair.wanted.work, abs=pair.case.tolerance * swing)
-    assert found.lost == pytest.approx(pair.wanted.loss, abs=pair.case.tolerance * swing)
+    assert result.fed_in == pytest.approx(pair.wanted.work, abs=pair.case.tolerance * swing)
+    assert result.lost == pytest.approx(pair.wanted.loss, abs=pair.case.tolerance * swing)
 
 
 @pytest.mark.exhaustive(but=["reversed", "motor"])
@@ -222,11 +222,11 @@ def test_multipliers(name: str) -> None:
     off, the differences meet the kink: 5e-5.
     """
     case = CASES[name]
-    found = solve_exact(in_package(case.rig, case.motor), case.speed, case.motor is not None)
+    solution = solve_exact(in_package(case.rig, case.motor), case.speed, case.motor is not None)
     count = rig_reference.difference_steps(case.rig, 1.0).size
-    start = found.steady.orbit.starts[:count, 0]
+    start = solution.steady.orbit.starts[:count, 0]
     wanted = rig_reference.multipliers(case.rig, case.speed, start)
-    values = found.steady.multipliers(count)
+    values = solution.steady.multipliers(count)
     tolerance = 5e-5 if name == "lifting off" else 1e-6
     values, wanted = np.sort_complex(values), np.sort_complex(wanted)
     np.testing.assert_allclose(values, wanted, rtol=0, atol=tolerance)
@@ -263,8 +263,8 @@ def test_steps_of_the_paper(rig: Rig, speed: float, step: int) -> None:
     np.testing.assert_allclose(values, wanted.gauge, rtol=0, atol=max(1e-9 * size, 5e-11))
     if step == 54:
         assert response.multipliers is not None
-        one, other = (np.sort_complex(m) for m in (response.multipliers, wanted.multipliers))
-        np.testing.assert_allclose(one, other, atol=1e-7)
+        first, other = (np.sort_complex(m) for m in (response.multipliers, wanted.multipliers))
+        np.testing.assert_allclose(first, other, atol=1e-7)
 
 
 @pytest.mark.parametrize(
@@ -282,26 +282,26 @@ def test_steps_of_the_paper(rig: Rig, speed: float, step: int) -> None:
 )
 def test_figures_of_the_rig(rig: Rig, model: ExcitationModel, millimetres: float) -> None:
     """Peak to peak at the gauge at 193 rpm, as the reference has it to all these digits."""
-    found = respond(in_package(rig), 193 * RPM, model).gauges["gauge"].displacement
-    assert 1e3 * float(found.peak_to_peak) == pytest.approx(millimetres, abs=1e-7)
+    displacement = respond(in_package(rig), 193 * RPM, model).gauges["gauge"].displacement
+    assert 1e3 * float(displacement.peak_to_peak) == pytest.approx(millimetres, abs=1e-7)
 
 
 def test_multipliers_of_the_rig() -> None:
-    found = respond(in_package(one_row()), 193 * RPM, "exact").multipliers
-    assert found is not None
-    np.testing.assert_allclose(found.real, -0.73131820, atol=6e-9)
-    np.testing.assert_allclose(np.abs(found.imag), 0.64657931, atol=6e-9)
+    multipliers = respond(in_package(one_row()), 193 * RPM, "exact").multipliers
+    assert multipliers is not None
+    np.testing.assert_allclose(multipliers.real, -0.73131820, atol=6e-9)
+    np.testing.assert_allclose(np.abs(multipliers.imag), 0.64657931, atol=6e-9)
 
 
 def test_motor_with_its_mean_speed_held() -> None:
     """The reference with the curve moved by the shift that was found turns at the same speed."""
     motor = Motor(9.0 / 0.4, 9.0)
     machine: eq.Machine = in_package(replace(one_row(), flywheel=0.01), motor)
-    found = solve_exact(machine, 193 * RPM, True)
-    shift = found.response().drive.shift
+    solution = solve_exact(machine, 193 * RPM, True)
+    shift = solution.response().drive.shift
     rig = replace(one_row(), drive=line(9.0 + 0.4 * shift, 0.4), flywheel=0.01)
-    start = found.steady.orbit.starts[:3, 0]
+    start = solution.steady.orbit.starts[:3, 0]
     wanted = rig_reference.steady(rig, 193 * RPM, SAMPLES, start_state=start)
     np.testing.assert_allclose(wanted.state[0], start, rtol=1e-8, atol=1e-10)
-    states = found.steady.orbit.at(TRAVEL)
+    states = solution.steady.orbit.at(TRAVEL)
     np.testing.assert_allclose(states[3], wanted.times, rtol=0, atol=1e-9)

@@ -64,5 +64,5 @@ def filtered_rms(waves: tuple[tuple[float, float, float], ...]) -> float:
 def test_against_the_filter_integrated_in_time() -> None:
     time = np.arange(1000) / 4000.0
     values = sum(size * np.sin(2 * np.pi * f * time + phase) for f, size, phase in WAVES)
-    found = weigh_signal(time, values, periodic=True).a_hw[0]
-    assert filtered_rms(WAVES) == pytest.approx(found, rel=1e-5)
+    a_hw = weigh_signal(time, values, periodic=True).a_hw[0]
+    assert filtered_rms(WAVES) == pytest.approx(a_hw, rel=1e-5)

@@ -57,10 +57,10 @@ def signal_of(analysis: Any, name: str) -> Array:
     """Return an output by its name as components against crank angle, (1 or 2, N)."""
     name, dot, component = name.rpartition(".") if name.endswith((".x", ".y")) else (name, "", "")
     forces = analysis.forces
-    found = forces.joints[name[7:]] if name.startswith("joints.") else getattr(forces, name)
+    actual = forces.joints[name[7:]] if name.startswith("joints.") else getattr(forces, name)
     if dot:
-        return np.array([getattr(found, component)])
-    return np.array([found.x, found.y] if hasattr(found, "x") else [found])
+        return np.array([getattr(actual, component)])
+    return np.array([actual.x, actual.y] if hasattr(actual, "x") else [actual])
 
 
 def only(orders: tuple[float, ...], signal: Array, turns: int) -> Array:
@@ -92,13 +92,13 @@ def value_of(measure: str, signal: Array) -> Any:
         return np.sqrt(np.mean(square, 0))
     if measure == "peak":
         return np.sqrt(np.max(square, 0))
-    (one,) = signal
+    (first,) = signal
     if measure == "ripple":
-        return np.std(one, 0)
+        return np.std(first, 0)
     if measure == "peak_to_peak":
-        return np.ptp(one, 0)
+        return np.ptp(first, 0)
     assert measure == "area"
-    return 2 * pi * np.mean(np.abs(one), 0)
+    return 2 * pi * np.mean(np.abs(first), 0)
 
 
 def measured(machine: Machine, objective: eq.balancing.Objective) -> float:
@@ -142,7 +142,7 @@ def _measured_in_pieces(machine: Machine, objective: eq.balancing.Objective) -> 
     edges = []
     for load in machine.loads:
         of_table = () if load.table is None else load.table.crank_angle
-        steps = (one for one in (load.start, load.stop) if one is not None)
+        steps = (item for item in (load.start, load.stop) if item is not None)
         edges += np.mod([*steps, *of_table], 2 * pi).tolist()
     sides = np.add.outer(2 * pi * np.arange(turns), edges)
     grid = np.add.outer(2 * pi * np.arange(turns), np.linspace(0, 2 * pi, 181))
@@ -380,8 +380,8 @@ class Measured:
     def values(self, changes: Array) -> Array:
         """(S,) for changes (P, S) of the parameters."""
         if self.smooth:
-            one = np.ones((1, changes.shape[1]))
-            return np.linalg.norm(self.factor @ np.concatenate([one, changes]), axis=0)
+            first = np.ones((1, changes.shape[1]))
+            return np.linalg.norm(self.factor @ np.concatenate([first, changes]), axis=0)
         return value_of(self.measure, self.signal(changes))
 
 
@@ -436,11 +436,12 @@ class Problem:
                     spot(mass, -size, -size),
                 ]
             )
-            found = [
-                signals_of(with_parameters(self.machine, link, old + one), outputs) for one in given
+            actual = [
+                signals_of(with_parameters(self.machine, link, old + item), outputs)
+                for item in given
             ]
             for number, gathered in enumerate(columns):
-                risen = np.stack([one[number] - base[number] for one in found], -1)
+                risen = np.stack([item[number] - base[number] for item in actual], -1)
                 gathered.append(risen @ np.linalg.inv(given).T)
         return [
             Measured(w.measure, b, np.concatenate(c, -1), float(value_of(w.measure, old)))
@@ -453,15 +454,15 @@ class Problem:
 
     def changes(self, at: Array) -> tuple[Array, Array]:
         """Changes of all parameters (P, S), and mass added in all (S,), at coordinates (d, S)."""
-        found = {link: np.zeros((4, at.shape[1])) for link in self.links}
+        actual = {link: np.zeros((4, at.shape[1])) for link in self.links}
         added, first = np.zeros(at.shape[1]), 0
         for part in self.parts:
             last = first + len(part.low)
             effect = part.effect(at[first:last])
-            found[part.link] += effect
+            actual[part.link] += effect
             added += effect[0] if part.added else 0.0
             first = last
-        return np.concatenate([found[link] for link in self.links]), added
+        return np.concatenate([actual[link] for link in self.links]), added
 
     def combined(self, values: Array | list[Array]) -> Any:
         """Cost of values of the objectives over those before."""
@@ -505,7 +506,7 @@ def evolved(
     """Return least cost and its coordinates by differential evolution, then polishing."""
     low, high = np.array(problem.bounds).T
     bounds = list(zip(low, np.maximum(high, low + 1e-300), strict=True))
-    found = differential_evolution(
+    optimum = differential_evolution(
         problem.rank,
         bounds,
         seed=seed,
@@ -518,9 +519,9 @@ def evolved(
         polish=False,
         x0=None,
     )
-    order = np.argsort(found.population_energies)
-    starts = found.population[order[np.linspace(0, len(order) // 2, polished, dtype=int)]]
-    best, at = float(found.fun), found.x
+    order = np.argsort(optimum.population_energies)
+    starts = optimum.population[order[np.linspace(0, len(order) // 2, polished, dtype=int)]]
+    best, at = float(optimum.fun), optimum.x
     for start in starts:
         end = polish(problem, polish(problem, start))
         cost = float(problem.rank(end)[0])
@@ -611,12 +612,12 @@ class _Walk:
         """What must not be below 0, and its slope."""
         changes, slope, added, added_slope = self._slope(z)
         values, slopes = [], []
-        for number, (one, over) in enumerate(self._sized()):
-            value, by_changes = self._below(one, self.rows[number], changes, z, number, over)
+        for number, (item, over) in enumerate(self._sized()):
+            value, by_changes = self._below(item, self.rows[number], changes, z, number, over)
             values.append(value)
             own = np.zeros((len(value), len(z)))
             own[:, : self.count] = by_changes @ slope
-            own[:, self.count + number] = self._by_height(one, z, number)
+            own[:, self.count + number] = self._by_height(item, z, number)
             slopes.append(own)
         first = len(self.problem.goals)
         for number in range(first, len(self.measures)):
@@ -631,26 +632,26 @@ class _Walk:
             slopes.append(row)
         return np.concatenate(values), np.vstack(slopes)
 
-    def _by_height(self, one: Measured, z: Array, number: int) -> float:
-        vector = one.measure == "peak" and len(one.base) > 1
+    def _by_height(self, item: Measured, z: Array, number: int) -> float:
+        vector = item.measure == "peak" and len(item.base) > 1
         return 2 * z[self.count + number] if vector else 1.0
 
     def _below(
-        self, one: Measured, rows: Array, changes: Array, z: Array, number: int, over: float
+        self, item: Measured, rows: Array, changes: Array, z: Array, number: int, over: float
     ) -> tuple[Array, Array]:
         height = z[self.count + number]
-        if one.smooth:
-            free = one.factor[:, 1:]
-            residual = one.factor[:, 0] + free @ changes
+        if item.smooth:
+            free = item.factor[:, 1:]
+            residual = item.factor[:, 0] + free @ changes
             size = np.linalg.norm(residual) or 1e-300
             return np.array([height - size / over]), -(residual @ free / size / over)[None]
-        signal = one.base + one.columns @ changes
-        if one.measure == "area":
+        signal = item.base + item.columns @ changes
+        if item.measure == "area":
             value = 2 * pi * np.mean(np.abs(signal))
-            slope = 2 * pi * np.mean(np.sign(signal[0])[:, None] * one.columns[0], 0)
+            slope = 2 * pi * np.mean(np.sign(signal[0])[:, None] * item.columns[0], 0)
             return np.array([height - value / over]), -slope[None] / over
-        near, columns = signal[:, rows] / over, one.columns[:, rows] / over
-        if one.measure == "peak_to_peak":
+        near, columns = signal[:, rows] / over, item.columns[:, rows] / over
+        if item.measure == "peak_to_peak":
             highs, lows = slice(None, PAIRED), slice(PAIRED, None)
             value = height - (near[0][highs][:, None] - near[0][lows][None]).ravel()
             slope = columns[0][highs][:, None] - columns[0][lows][None]
@@ -685,7 +686,7 @@ class _Walk:
         def slopes(z: Array) -> Array:
             return self.kept(z)[1][:fixed]
 
-        found = minimize(
+        result = minimize(
             self.cost,
             self.start,
             jac=True,
@@ -694,7 +695,7 @@ class _Walk:
             constraints={"type": "ineq", "fun": values, "jac": slopes},
             options={"maxiter": self.most, "ftol": 1e-12},
         )
-        at = found.x[: self.count]
+        at = result.x[: self.count]
         return self._coordinates(at if np.all(np.isfinite(at)) else self.start)
 
 
@@ -783,24 +784,24 @@ def _moved(move: eq.balancing.CenterMove, link: Link, unknown: _Lifted) -> list[
     return [*kept, place >= low, place <= high]
 
 
-def convex_measure(one: Measured, changes: Any, over: float) -> Any:
+def convex_measure(item: Measured, changes: Any, over: float) -> Any:
     """Return a measure over a value as a convex expression."""
     import cvxpy as cp
 
-    if one.smooth:
-        return cp.norm(one.factor[:, 0] / over + (one.factor[:, 1:] / over) @ changes)
+    if item.smooth:
+        return cp.norm(item.factor[:, 0] / over + (item.factor[:, 1:] / over) @ changes)
     parts = [
         base / over + (columns / over) @ changes
-        for base, columns in zip(one.base, one.columns, strict=True)
+        for base, columns in zip(item.base, item.columns, strict=True)
     ]
     if len(parts) == 2:
         return cp.max(cp.norm(cp.vstack(parts), axis=0))
     (signal,) = parts
-    if one.measure == "peak":
+    if item.measure == "peak":
         return cp.max(cp.abs(signal))
-    if one.measure == "peak_to_peak":
+    if item.measure == "peak_to_peak":
         return cp.max(signal) - cp.min(signal)
-    return 2 * pi / one.base.shape[1] * cp.norm1(signal)
+    return 2 * pi / item.base.shape[1] * cp.norm1(signal)
 
 
 class _Goal:
@@ -808,27 +809,31 @@ class _Goal:
     samples, too, where no load jumps.
     """
 
-    def __init__(self, one: Measured, objective: eq.balancing.Objective, original: Machine) -> None:
-        self.measured, self.before = one, one.before
+    def __init__(
+        self, item: Measured, objective: eq.balancing.Objective, original: Machine
+    ) -> None:
+        self.measured, self.before = item, item.before
         self.places: Any = slice(None)
-        self.grows = one.measure.startswith("peak") and not loads_jump(original)
+        self.grows = item.measure.startswith("peak") and not loads_jump(original)
         if self.grows:
             base, columns = (
-                resample(each, DENSER * one.base.shape[1], axis=1)
-                for each in (one.base, one.columns)
+                resample(each, DENSER * item.base.shape[1], axis=1)
+                for each in (item.base, item.columns)
             )
             self.measured, self.before = (
-                replace(one, base=base, columns=columns),
+                replace(item, base=base, columns=columns),
                 measured_exactly(original, objective),
             )
             self.places = np.arange(0, base.shape[1], FEWER)
 
     def over(self, value: float, changes: Any) -> Any:
         """The measure over a value as a convex expression."""
-        one = self.measured
+        first = self.measured
         if self.grows:
-            one = replace(one, base=one.base[:, self.places], columns=one.columns[:, self.places])
-        return convex_measure(one, changes, value)
+            first = replace(
+                first, base=first.base[:, self.places], columns=first.columns[:, self.places]
+            )
+        return convex_measure(first, changes, value)
 
     def takes_more(self, changes: Array) -> bool:
         """Whether a solution has tops above all values that are in the program, which are taken."""
@@ -869,7 +874,7 @@ def convex_optimum(problem: Problem, solver: str = "CLARABEL", least: int | None
     if plan.added_mass is not None:
         kept.append(sum(item.mass for item in weights) <= plan.added_mass)
     goals, bounded = (
-        [_Goal(one, wish, problem.original) for one, wish in zip(each, wishes, strict=True)]
+        [_Goal(entry, wish, problem.original) for entry, wish in zip(each, wishes, strict=True)]
         for each, wishes in (
             (problem.goals, plan.objectives),
             (problem.kept, [limit.objective for limit in plan.limits]),
@@ -888,12 +893,13 @@ def convex_optimum(problem: Problem, solver: str = "CLARABEL", least: int | None
         cost = sum(shares)
         if plan.combine == "squares":
             most = cp.Variable(len(shares), nonneg=True)
-            rows += [share <= one for share, one in zip(shares, most, strict=True)]
+            rows += [share <= entry for share, entry in zip(shares, most, strict=True)]
             cost = cp.norm(most)
         if least is not None:
             cost = limits[least]
         program = cp.Problem(
-            cp.Minimize(cost), kept + rows + [one for item in weights for one in item.of_weight()]
+            cp.Minimize(cost),
+            kept + rows + [entry for item in weights for entry in item.of_weight()],
         )
         program.solve(solver=solver, **PRECISION[solver])
         assert program.status == "optimal", program.status
@@ -941,10 +947,10 @@ def made(machine: Machine, plan: eq.balancing.Balance, changes: Sequence[Any]) -
             machine = machine.with_link(change.link, center_of_mass=change.values["to"])
     for change in changes:
         if change.kind == "added mass":
-            found = np.array(parameters_of(machine.links[change.link]))
+            result = np.array(parameters_of(machine.links[change.link]))
             for piece in change.values["pieces"]:
-                found = found + spot(piece["mass"], *piece["place"], piece_inertia(piece))
-            machine = with_parameters(machine, change.link, found)
+                result = result + spot(piece["mass"], *piece["place"], piece_inertia(piece))
+            machine = with_parameters(machine, change.link, result)
     return machine
 
 
@@ -995,7 +1001,7 @@ class FreeShaft:
 
     def evolved(self, seed: int = 0, turns: int = 150) -> tuple[float, Array]:
         """Return least cost and its coordinates."""
-        found = differential_evolution(
+        optimum = differential_evolution(
             self.cost,
             self.bounds,
             seed=seed,
@@ -1010,7 +1016,7 @@ class FreeShaft:
         low, high = np.array(self.bounds).T
         ending = minimize(
             lambda at: float(self.cost(np.clip(at, low, high))[0]),
-            found.x,
+            optimum.x,
             method="Nelder-Mead",
             options={"maxiter": 800, "xatol": 1e-10, "fatol": 1e-12},
         )

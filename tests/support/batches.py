@@ -91,11 +91,11 @@ def known_of(design: Machine, angles: int, signals: Sequence[str]) -> Mapping[st
     sizes, sampling = _sizes(design, analysis), analysis.resolved.motion.sampling
     shown = slice(None) if sampling is None else sampling.curve_places
     at = (analysis.crank_angle if sampling is None else sampling.at)[shown]
-    found = {}
+    actual = {}
     for name in signals:
-        one = analysis.outputs[name]
-        found[name] = Known(one.resolved[shown], at, one.figures, sizes(name))
-    return found
+        first = analysis.outputs[name]
+        actual[name] = Known(first.resolved[shown], at, first.figures, sizes(name))
+    return actual
 
 
 def _sizes(design: Machine, analysis: Any) -> Any:
@@ -121,19 +121,19 @@ def same_figures(
     """Compare one design's row of figures; at the place of an extreme the extreme has to be."""
     for value, figure in zip(got, wanted, strict=True):
         signal, name = known[figure.signal], PLACES.get(figure.name, figure.name)
-        told, found = getattr(signal.figures, name), value
+        text, actual = getattr(signal.figures, name), value
         if figure.name in PLACES:
             here = signal.samples[_near(signal.at, value, 2 * pi / angles)]
             sizes = np.abs(here) if name == "peak" else here
-            found = np.min(sizes) if name == "min" else np.max(sizes)
-        apart, room = abs(found - told) / signal.scale, tolerance
+            actual = np.min(sizes) if name == "min" else np.max(sizes)
+        apart, room = abs(actual - text) / signal.scale, tolerance
         if figure.name in PLACES:  # of tops that are so near to each other the first is told
             room += EQUAL * signal.figures.peak_to_peak / signal.scale
             room += 2 * float(np.ptp(sizes)) / signal.scale  # the top lies between samples
         elif name in ("min", "peak_to_peak"):  # of a size near zero its square is what is computed
             least = abs(signal.figures.min) / signal.scale
             room += float(np.hypot(least, SQUARE_ROUNDING)) - least
-        assert apart <= room, f"{figure} is {found:.9g}, {apart:.2g} off {told:.9g}"
+        assert apart <= room, f"{figure} is {actual:.9g}, {apart:.2g} off {text:.9g}"
 
 
 def _near(at: Array, place: float, step: float) -> Array:

@@ -250,8 +250,8 @@ class _Mesh:
         wanted = 2 * (count + self.ref.rigid_modes) + 8
         while wanted < 2 * size - 1:
             theta, z = eigs(operator, wanted, v0=start)
-            found = zip(shift + 1 / theta, z[:size].T, strict=True)
-            s = np.array([self._root(*pair) for pair in found])
+            result = zip(shift + 1 / theta, z[:size].T, strict=True)
+            s = np.array([self._root(*pair) for pair in result])
             s = np.array(sorted(s[(s.imag > 1e-6 * abs(s)) & (abs(s) > 1e-5 * scale)], key=abs))
             if len(s) >= count and abs(s[count - 1]) <= abs(1 / theta).max() - shift:
                 return s[:count]

@@ -111,12 +111,12 @@ class Cut:
         )
         gaps = np.array([self.distance(way) - self.cam.radius for way in ways])
         for k in np.flatnonzero(gaps[:-1] * gaps[1:] < 0):
-            found = brentq(
+            result = brentq(
                 lambda w: self.distance(w) - self.cam.radius, ways[k], ways[k + 1], xtol=1e-15
             )
-            if self.is_right(found):
-                rises = self.distance(found + 1e-6) > self.distance(found)
-                return float(found), 1.0 if rises else -1.0
+            if self.is_right(result):
+                rises = self.distance(result + 1e-6) > self.distance(result)
+                return float(result), 1.0 if rises else -1.0
         raise AssertionError("the follower does not reach the base circle")
 
     def moved(self, angle: float) -> tuple[Three, Three]:
@@ -254,12 +254,12 @@ def trace(machine: Machine, angles: Array, first: Poses) -> Poses:
         q = np.append(q, [0.0, 0.0, turned])
     q = newton.closed(constraints, q, 0.0)
     constraints.mesh(q)
-    found, here = [], 0.0
+    actual, here = [], 0.0
     for angle in map(float, angles):
         q = newton.followed(constraints, q, here, angle)
         here = angle
-        found.append(q)
-    return newton.moving(constraints, angles, found)
+        actual.append(q)
+    return newton.moving(constraints, angles, actual)
 
 
 def line_of_force(machine: Machine, cam: Cam, poses: Poses) -> tuple[Array, Array]:

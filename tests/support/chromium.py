@@ -56,8 +56,8 @@ def served(*arguments: str) -> Iterator[tuple[str, int]]:
     words = command("serve", *arguments, "--no-browser")
     with subprocess.Popen(words, stdout=subprocess.PIPE, encoding="utf-8") as server:
         assert server.stdout is not None
-        found = (re.search(r"http://\S+", line) for line in iter(server.stdout.readline, ""))
-        address = next(filter(None, found), None)
+        actual = (re.search(r"http://\S+", line) for line in iter(server.stdout.readline, ""))
+        address = next(filter(None, actual), None)
         try:
             assert address is not None, "the server ended"
             yield address[0], server.pid

@@ -138,9 +138,9 @@ class Printed:
         """How exactly a printed number is met that nothing else is told of."""
         return self.within or HALF * digit(self.printed)
 
-    def apart(self, one: Decimal, other: Decimal) -> Decimal:
+    def apart(self, item: Decimal, other: Decimal) -> Decimal:
         """One number less the other; angles are alike after a turn."""
-        off = one - other
+        off = item - other
         return off - 360 * round(off / 360) if self.unit == "deg" else off
 
     def check_cause(self) -> None:
@@ -153,15 +153,15 @@ class Printed:
             return
         printed = number(self.printed)
         given = np.ravel(self.why.gives()).tolist()
-        off = [float(self.apart(Decimal(one), printed)) for one in given]
+        off = [float(self.apart(Decimal(item), printed)) for item in given]
         allowed = HALF * digit(self.printed)
         assert min(off) <= allowed and max(off) >= -allowed, (
             f"{self}: {self.why} gives {given}, not {self.printed}"
         )
 
-    def hold(self, found: Any) -> None:
+    def hold(self, result: Any) -> None:
         """Hold one or more values, each by a way of its own, to the digits told."""
-        values = np.ravel(found)
+        values = np.ravel(result)
         allowed = HALF * digit(self.told) if self.computed else self.allowed
         assert values.size
         for value in values.tolist():
@@ -259,8 +259,8 @@ def cases(test: Test) -> list[str]:
     """Names of what a test is done with; random machines of a kind are one case."""
     (mark,) = (mark for mark in test.pytestmark if mark.name == "parametrize")  # type: ignore[attr-defined]
     names: dict[str, int] = {}
-    for one in mark.kwargs.get("ids") or mark.args[1]:
-        (name,) = one.values if isinstance(one, type(pytest.param())) else (one,)
+    for item in mark.kwargs.get("ids") or mark.args[1]:
+        (name,) = item.values if isinstance(item, type(pytest.param())) else (item,)
         kind, _, seed = name.partition(":")
         names[kind] = names.get(kind, 0) + bool(seed)
     return [

@@ -76,7 +76,7 @@ def plain_of(machine: Machine) -> Plain:
         "springs": [
             {"stiffness": s.stiffness, "free_length": s.free_length} for s in machine.springs
         ],
-        "bearings": {name: {"plane": one.plane} for name, one in machine.bearings.items()},
+        "bearings": {name: {"plane": item.plane} for name, item in machine.bearings.items()},
         "polar": {},
     }
 
@@ -125,7 +125,7 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
         position=base.position,
         loads=base.loads,
         bearings={
-            name: replace(one, **plain["bearings"][name]) for name, one in base.bearings.items()
+            name: replace(item, **plain["bearings"][name]) for name, item in base.bearings.items()
         },
         gravity=tuple(plain["gravity"]),
         **listed,
@@ -136,12 +136,12 @@ def _shaped(shape: GearShape | None) -> Plain | None:
     """Numbers of a shape of gears whose laws are formulas of them."""
     if shape is None:
         return None
-    told: Plain = {"phase": shape.phase}
+    content: Plain = {"phase": shape.phase}
     if shape.kind in ("elliptic", "limacon"):
-        told["eccentricity"] = shape.eccentricity
+        content["eccentricity"] = shape.eccentricity
     if shape.kind == "ratio":
-        told |= {"cosines": [*shape.cosines], "sines": [*shape.sines]}
-    return told
+        content |= {"cosines": [*shape.cosines], "sines": [*shape.sines]}
+    return content
 
 
 def design(base: Machine, numbers: Sequence[Number], values: Sequence[float]) -> Machine:
@@ -288,10 +288,13 @@ def _across(machine: Machine) -> Iterator[Number]:
         for keys, z in ways.items():
             path = str(KeyPath(("links", name, *keys)))
             yield Number(path, z, _putter("links", name, *keys), _near(z, spread))
-    for name, one in machine.bearings.items():
+    for name, item in machine.bearings.items():
         put = _putter("bearings", name, "plane")
         yield Number(
-            str(KeyPath(("bearings", name, "plane"))), one.plane, put, _near(one.plane, spread / 5)
+            str(KeyPath(("bearings", name, "plane"))),
+            item.plane,
+            put,
+            _near(item.plane, spread / 5),
         )
 
 
@@ -351,9 +354,9 @@ def _of_gears(machine: Machine) -> Iterator[Number]:
         for key, value in (_shaped(gear.shape) or {}).items():
             path = f"gears[{k + 1}].shape.{key}"
             if isinstance(value, list):
-                for place, one in enumerate(value):
+                for place, item in enumerate(value):
                     put = _putter("shapes", k, key, place)
-                    yield Number(f"{path}[{place + 1}]", one, put, _near(one, abs(one) / 4))
+                    yield Number(f"{path}[{place + 1}]", item, put, _near(item, abs(item) / 4))
             else:
                 spread = pi if key == "phase" else value / 2
                 yield Number(path, value, _putter("shapes", k, key), _near(value, spread))

@@ -20,15 +20,17 @@ Engine = Callable[[Machine, Poses], Totals]
 def same_totals(subject: Subject, engine: Engine) -> float:
     """Compare the outputs of a machine with those of an engine; tell how far they are apart."""
     machine, poses, forces = subject.machine, subject.poses, subject.forces
-    told = engine(machine, poses)
+    reported = engine(machine, poses)
     force, moment = FLOOR * force_size(machine, poses), FLOOR * moment_size(machine, poses)
     # engines tell the work of all drives by crank angle
     torque = sum(forces.drives[d.link] * poses.omega[d.link] for d in machine.driven)
     torque = (forces.power if machine.pushers else torque) / machine.drive.speed
     across = subject.forces.across
     return max(
-        agree("rocking", vector(across.rocking_moment), told.rocking_moment, TOLERANCE, moment),
-        agree("shaking force", vector(forces.shaking_force), told.shaking_force, TOLERANCE, force),
-        agree("shaking moment", forces.shaking_moment, told.shaking_moment, TOLERANCE, moment),
-        agree("drive torque", torque, told.drive_torque, TOLERANCE, moment),
+        agree("rocking", vector(across.rocking_moment), reported.rocking_moment, TOLERANCE, moment),
+        agree(
+            "shaking force", vector(forces.shaking_force), reported.shaking_force, TOLERANCE, force
+        ),
+        agree("shaking moment", forces.shaking_moment, reported.shaking_moment, TOLERANCE, moment),
+        agree("drive torque", torque, reported.drive_torque, TOLERANCE, moment),
     )

@@ -141,12 +141,12 @@ class Build:
 
     def pin(self, *at: tuple[tuple[int, int], float]) -> None:
         """Join two bodies by a pin."""
-        markers = [self.place(one) for one in at]
+        markers = [self.place(entry) for entry in at]
         self.system.AddObject(item.ObjectJointRevolute2D(markerNumbers=markers))
 
     def guide(self, *at: tuple[tuple[int, int], float]) -> None:
         """Let the second body slide along x on the first, without turning in it."""
-        markers = [self.place(one) for one in at]
+        markers = [self.place(entry) for entry in at]
         self.system.AddObject(item.ObjectJointPrismatic2D(markerNumbers=markers))
 
     def hold(self, marker: int, rate: float | None = None) -> None:

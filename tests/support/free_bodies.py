@@ -118,7 +118,7 @@ def solve(
     machine: Machine,
     poses: Poses,
     pairs: Mapping[str, tuple[str, str]] | None = None,
-    told: Mapping[str, Array] | None = None,
+    text: Mapping[str, Array] | None = None,
     acting: Sequence[Acting] = (),
 ) -> FreeBodies:
     """Solve the free bodies of a machine.
@@ -145,18 +145,18 @@ def solve(
         system.known -= given
     passing = [*joints, *gears, *racks, *belts]
     unknowns = solved(system, passing)
-    unknown = sum(1 if isinstance(one, tuple) else one.size for one in passing)
+    unknown = sum(1 if isinstance(item, tuple) else item.size for item in passing)
     if unknown + len(machine.driven) > system.known.shape[1]:  # least squares weigh whole pushes
         tried = (
             {
-                gear.name: np.sum(told[gear.name] * one.directions[0], 1, keepdims=True)
-                for gear, one in zip(machine.gears, gears, strict=True)
+                gear.name: np.sum(text[gear.name] * item.directions[0], 1, keepdims=True)
+                for gear, item in zip(machine.gears, gears, strict=True)
             }
-            if told
+            if text
             else unknowns
         )
-        slanted = [leant(gear, one, machine, poses, tried)
-                   for gear, one in zip(machine.gears, gears, strict=True)]  # fmt: skip
+        slanted = [leant(gear, item, machine, poses, tried)
+                   for gear, item in zip(machine.gears, gears, strict=True)]  # fmt: skip
         unknowns = solved(system, [*joints, *slanted, *racks, *belts])
         sizes = [np.max(np.abs(unknowns[gear.name])) for gear in machine.gears]
         for gear in machine.gears:
@@ -231,18 +231,18 @@ def solved(system: System, passing: list[Contact | Strands]) -> dict[str, Array]
         columns, owners = [*columns, driving(system, drive)], [*owners, drive]
     matrix = np.stack(columns, -1)
     if matrix.shape[1] == matrix.shape[2]:
-        found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
+        solution = np.linalg.solve(matrix, system.known[..., None])[..., 0]
     else:
         couples = []
-        for one in passing:
-            size, forces = (1, 1) if isinstance(one, tuple) else (one.size, len(one.directions))
+        for item in passing:
+            size, forces = (1, 1) if isinstance(item, tuple) else (item.size, len(item.directions))
             couples += [k == forces for k in range(size)]
         units = np.where(
             [*couples, *[False] * len(system.machine.driven)], extent(system.machine), 1.0
         )
         pairs = zip(matrix * units, system.known, strict=True)
-        found = units * np.array([np.linalg.lstsq(*pair)[0] for pair in pairs])
-    return {name: found[:, [o == name for o in owners]] for name in dict.fromkeys(owners)}
+        solution = units * np.array([np.linalg.lstsq(*pair)[0] for pair in pairs])
+    return {name: solution[:, [o == name for o in owners]] for name in dict.fromkeys(owners)}
 
 
 def driving(system: System, drive: Drive | FurtherDrive) -> Array:
@@ -259,10 +259,10 @@ def driving(system: System, drive: Drive | FurtherDrive) -> Array:
 def cylinder(machine: Machine, drive: Drive | FurtherDrive, poses: Poses) -> Contact:
     """Return where a drive that pushes acts, and along which line."""
     if drive.slider:
-        one = next(slider for slider in machine.sliders if slider.name == drive.slider)
-        at = poses.place(one.link, machine.links[one.link].points[one.point])
-        line = (float(np.cos(one.direction)), float(np.sin(one.direction)))
-        return Contact("", one.link, one.on, at, (poses.turned(one.on, line),))
+        first = next(slider for slider in machine.sliders if slider.name == drive.slider)
+        at = poses.place(first.link, machine.links[first.link].points[first.point])
+        line = (float(np.cos(first.direction)), float(np.sin(first.direction)))
+        return Contact("", first.link, first.on, at, (poses.turned(first.on, line),))
     assert drive.between is not None
     bodies = drive.ends(machine.bodies)
     ends = zip(bodies, drive.between, strict=True)
@@ -291,7 +291,7 @@ def pin_contacts(
     machine: Machine, poses: Poses, pairs: Mapping[str, tuple[str, str]]
 ) -> list[Contact]:
     """List all pins; which body holds which is a matter of choice where there are more than two."""
-    found = []
+    actual = []
     for label, bodies in pins(machine).items():
         chosen = {label: (bodies[1], bodies[0])}
         if len(bodies) > 2:
@@ -299,8 +299,8 @@ def pin_contacts(
             chosen = {f"{label}/{body}": (body, bodies[0]) for body in bodies[1:]}
             chosen = {name: pairs[name] for name in names} or chosen
         for name, (on, by) in chosen.items():
-            found.append(pin_contact(name, on, by, label, machine, poses))
-    return found
+            actual.append(pin_contact(name, on, by, label, machine, poses))
+    return actual
 
 
 def pin_contact(name: str, on: str, by: str, label: str, machine: Machine, poses: Poses) -> Contact:
@@ -313,14 +313,14 @@ def pin_contact(name: str, on: str, by: str, label: str, machine: Machine, poses
 def slider_contacts(machine: Machine, poses: Poses) -> list[Contact]:
     """List all sliding joints; the later of the two bodies is the one acted on."""
     order = [FRAME, *machine.links]
-    found = []
+    actual = []
     for slider in machine.sliders:
         by, on = sorted((slider.link, slider.on), key=order.index)
         at = poses.place(slider.link, machine.links[slider.link].points[slider.point])
         line = (float(np.cos(slider.direction)), float(np.sin(slider.direction)))
         across = quarter(poses.turned(slider.on, line))
-        found.append(Contact(slider.name, on, by, at, (across,), couple=True))
-    return found
+        actual.append(Contact(slider.name, on, by, at, (across,), couple=True))
+    return actual
 
 
 def slot_contact(slot: CircularSlot | CurvedSlot, machine: Machine, poses: Poses) -> Contact:
@@ -414,13 +414,13 @@ def strand_contacts(belt: Belt, machine: Machine, poses: Poses) -> Strands:
     second = -second if belt.crossed else second
     lean = np.arccos((first - second) / np.linalg.norm(between[0]))
     heading = np.arctan2(between[:, 1], between[:, 0])
-    found = []
+    actual = []
     for side in (1.0, -1.0):
         out = turned(heading + side * lean, (1.0, 0.0))
         start, stop = axes[0] + first * out, axes[1] + second * out
         pull = (start - stop) / np.linalg.norm(start - stop, axis=-1, keepdims=True)
-        found.append(Contact(belt.name, belt.driven, belt.driver, stop, (pull,)))
-    return found[0], found[1]
+        actual.append(Contact(belt.name, belt.driven, belt.driver, stop, (pull,)))
+    return actual[0], actual[1]
 
 
 def tensions(belt: Belt, transmitted: Array) -> tuple[Array, Array]:
@@ -481,8 +481,8 @@ def gathered(
     loads = zip(loads_by_end(machine), on_links(machine, poses), strict=False)
     pulls += [pull_on_frame(*acting) for load, acting in loads if load.reaction == FRAME]
     pushing = [drive for drive in machine.driven if drive.stroke is not None]
-    pulls += [reaction(cylinder(machine, one, poses), unknowns[one]) for one in pushing]
-    torque = sum(drives[one.link] for one in machine.driven if one not in pushing)
+    pulls += [reaction(cylinder(machine, item, poses), unknowns[item]) for item in pushing]
+    torque = sum(drives[item.link] for item in machine.driven if item not in pushing)
     every = [*held.values(), *meshed.values(), *racked.values(), *pulled, *pulls]
     force, moment = on_frame(machine, every)
     pressed = {cam.name: held.pop(cam.name) for cam in machine.cams}

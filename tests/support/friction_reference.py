@@ -38,7 +38,7 @@ def rubbed(machine: Machine, joints: list[str], rng: np.random.Generator, size: 
     size : of its links, m.  force : of its forces, N.
     """
     pace = abs(machine.drive.speed) or 1.0
-    found = []
+    actual = []
     for name in joints:
         given = {"friction": rng.uniform(0.02, 0.12)}
         if rng.random() < 0.5:
@@ -51,8 +51,8 @@ def rubbed(machine: Machine, joints: list[str], rng: np.random.Generator, size: 
             given |= {"radius": rng.uniform(0.01, 0.05) * size}
             given |= {"torsional_damping": 0.002 * force * size / pace}
             given |= {"drag_torque": 0.002 * force * size}
-        found.append(JointProperties(f"joints.{name}", **given))
-    return replace(machine, joints=tuple(found), balance=None)
+        actual.append(JointProperties(f"joints.{name}", **given))
+    return replace(machine, joints=tuple(actual), balance=None)
 
 
 def solve(
@@ -65,11 +65,11 @@ def solve(
     before, rubbing = np.zeros(1), dict[str, Rubbing]()
     for _ in range(ROUNDS):
         solved = free_bodies.solve(machine, poses, pairs, acting=acting)
-        rubbing = {name: of_joint(given[name], one, poses, machine, sliders.get(name))
-                   for name, one in solved.joints.items() if name in given}  # fmt: skip
-        acting = [end for name, one in rubbing.items()
-                  for end in ends(one, machine, poses, sliders.get(name))]  # fmt: skip
-        now = np.array([one.effort for one in rubbing.values()])
+        rubbing = {name: of_joint(given[name], value, poses, machine, sliders.get(name))
+                   for name, value in solved.joints.items() if name in given}  # fmt: skip
+        acting = [end for name, value in rubbing.items()
+                  for end in ends(value, machine, poses, sliders.get(name))]  # fmt: skip
+        now = np.array([value.effort for value in rubbing.values()])
         if now.shape == before.shape and np.max(np.abs(now - before)) <= CLOSE * np.max(
             np.abs(now)
         ):
@@ -117,14 +117,14 @@ def of_joint(
     return Rubbing(on, by, effort, pressing, rate)
 
 
-def ends(one: Rubbing, machine: Machine, poses: Poses, slider: Slider | None) -> list[Acting]:
+def ends(item: Rubbing, machine: Machine, poses: Poses, slider: Slider | None) -> list[Acting]:
     """Return what friction exerts on both bodies of a joint."""
     if slider is None:
-        nothing = np.zeros((len(one.effort), 2))
-        return [(one.on, nothing, nothing, one.effort), (one.by, nothing, nothing, -one.effort)]
+        nothing = np.zeros((len(item.effort), 2))
+        return [(item.on, nothing, nothing, item.effort), (item.by, nothing, nothing, -item.effort)]
     at = poses.place(slider.link, machine.links[slider.link].points[slider.point])
-    force = one.effort[:, None] * line(slider, poses)
-    return [(one.on, at, force, 0.0), (one.by, at, -force, 0.0)]
+    force = item.effort[:, None] * line(slider, poses)
+    return [(item.on, at, force, 0.0), (item.by, at, -force, 0.0)]
 
 
 def line(slider: Slider, poses: Poses) -> Array:

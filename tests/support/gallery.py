@@ -46,15 +46,15 @@ def keep(source: str, pictures: Iterable[Kept]) -> None:
     folder = FOLDER / re.sub(r"\W+", "-", source)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    told = []
+    texts = []
     for picture in pictures:
         (folder / f"{picture.name}.svg").write_text(picture.svg, encoding="utf-8")
-        told.append(
+        texts.append(
             {**asdict(picture), "svg": f"{folder.name}/{picture.name}.svg", "source": source}
         )
-        told[-1]["size"] = SIZE.search(picture.svg).groups()  # type: ignore[union-attr]
+        texts[-1]["size"] = SIZE.search(picture.svg).groups()  # type: ignore[union-attr]
     whole = folder / f"{LIST}.tmp"  # another session may read it to make its page
-    whole.write_text(json.dumps(told), encoding="utf-8")
+    whole.write_text(json.dumps(texts), encoding="utf-8")
     whole.replace(folder / LIST)
 
 
@@ -74,8 +74,8 @@ def write_page() -> None:
     kinds: dict[str, list[str]] = {}
     for path in sorted(FOLDER.glob(f"*/{LIST}")):
         with suppress(FileNotFoundError):  # another session draws them anew
-            for one in json.loads(path.read_text(encoding="utf-8")):
-                kinds.setdefault(one["kind"], []).append(_item(one))
+            for load in json.loads(path.read_text(encoding="utf-8")):
+                kinds.setdefault(load["kind"], []).append(_item(load))
     if not kinds:
         return
     count = sum(map(len, kinds.values()))
@@ -107,9 +107,9 @@ def write_page() -> None:
     (FOLDER / "index.html").write_text(page, encoding="utf-8")
 
 
-def _item(one: dict[str, str]) -> str:
-    width, height = one["size"]
-    told = f"{one['name']} · {one['source']}"
+def _item(item: dict[str, str]) -> str:
+    width, height = item["size"]
+    text = f"{item['name']} · {item['source']}"
     size = f'width="{width}" height="{height}"'
-    picture = f'<img src="{one["svg"]}" alt="" {size} loading="lazy">'
-    return f'<li><a href="{one["svg"]}">{picture}{escape(told)}</a></li>\n'
+    picture = f'<img src="{item["svg"]}" alt="" {size} loading="lazy">'
+    return f'<li><a href="{item["svg"]}">{picture}{escape(text)}</a></li>\n'

@@ -23,8 +23,8 @@ def hostile_text(name: str = "yamashita-1") -> str:
 
     def changed(value: Any) -> Any:
         if isinstance(value, dict):
-            return {text(key): changed(one) for key, one in value.items()}
-        return [changed(one) for one in value] if isinstance(value, list) else text(value)
+            return {text(key): changed(item) for key, item in value.items()}
+        return [changed(item) for item in value] if isinstance(value, list) else text(value)
 
     def text(value: Any) -> Any:
         return f"{value}{HOSTILE}" if isinstance(value, str) and value in names else value

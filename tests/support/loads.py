@@ -71,13 +71,13 @@ def tabulated(load: Load, table: LoadTable, crank_angle: Array) -> list[Array]:
     last = nodes[-1] - nodes[0]
     cycle = TURN * max(1, np.ceil(last / TURN - 1e-6))
     since = (crank_angle - nodes[0]) % cycle
-    found = []
+    actual = []
     for column in table.values:
         ahead = {"zero": 0.0, "hold": column[-1], "wrap": np.nan, None: np.nan}[load.outside]
         across = column[-1] + (column[0] - column[-1]) * (since - last) / max(cycle - last, 1e-300)
         ahead = np.where(np.isnan(ahead), across, ahead)
-        found.append(np.where(since > last, ahead, np.interp(since, nodes - nodes[0], column)))
-    return found
+        actual.append(np.where(since > last, ahead, np.interp(since, nodes - nodes[0], column)))
+    return actual
 
 
 def has_soil(machine: Machine) -> bool:

@@ -114,9 +114,9 @@ class Draft:
         offset = -self.turns[link] if level else float(self.rng.uniform(-np.pi, np.pi))
         self.sliders.append(Slider(link, point, on, through, self.line(on, angle), offset))
 
-    def either(self, one: str, other: str) -> str:
+    def either(self, item: str, other: str) -> str:
         """Draw one of two words."""
-        return one if self.rng.random() < 0.5 else other
+        return item if self.rng.random() < 0.5 else other
 
     def side(
         self,
@@ -272,14 +272,14 @@ class FourBar:
         return np.unwrap(np.arctan2(*(c - self.pivot).T[::-1]))
 
 
-def meeting(one: Array, r1: float, other: Array, r2: float, side: str) -> Array:
+def meeting(item: Array, r1: float, other: Array, r2: float, side: str) -> Array:
     """Return where two circles meet, on one side of the line between their centres."""
-    d = other - one
+    d = other - item
     square = np.sum(d * d, -1, keepdims=True)
     along = (square + r1**2 - r2**2) / (2 * square)
     height = np.sqrt(r1**2 / square - along**2)
     normal = np.stack([-d[..., 1], d[..., 0]], -1)
-    return one + along * d + (height if side == "left" else -height) * normal
+    return item + along * d + (height if side == "left" else -height) * normal
 
 
 def _four_bar(
@@ -329,24 +329,24 @@ class _Again(Exception):
     """The draw does not turn fully; draw again."""
 
 
-def _hang(draft: Draft, one: tuple[str, str, Array], other: tuple[str, str, Array]) -> None:
+def _hang(draft: Draft, item: tuple[str, str, Array], other: tuple[str, str, Array]) -> None:
     """Close a chain by two more links, `arm` and `lever`, between points of two bodies."""
     rng = draft.rng
-    distance = np.linalg.norm(one[2] - other[2], axis=-1)
+    distance = np.linalg.norm(item[2] - other[2], axis=-1)
     low, high = float(distance.min()), float(distance.max())
     if low < 0.15 * high or high < 0.3 * draft.size:
         raise _Again
     total, difference = high * rng.uniform(1.1, 1.6), low * rng.uniform(-0.85, 0.85)
     arm, lever = (total + difference) / 2, (total - difference) / 2
     bodies = [
-        ("arm", {one[1]: (0, 0), "G": (arm, 0), "T": _scaled(rng, draft)}),
+        ("arm", {item[1]: (0, 0), "G": (arm, 0), "T": _scaled(rng, draft)}),
         ("lever", {other[1]: (0, 0), "G": (lever, 0)}),
     ]
     if rng.random() < 0.5:
         bodies.reverse()
     for name, points in bodies:
         draft.add(name, **points)
-    ends = {"arm": one[:2], "lever": other[:2]}
+    ends = {"arm": item[:2], "lever": other[:2]}
     first, second = (ends[name] for name, _ in bodies)
     draft.side("G", first, second, ("arm", "G"))
 
@@ -400,11 +400,11 @@ def watt(rng: np.random.Generator) -> Case:
 @_insist
 def floating_watt(rng: np.random.Generator) -> Case:
     """Six-bar whose second dyad hangs on a coupler point and a rocker point."""
-    one, other = _spot(rng), _spot(rng)
-    four = _four_bar(rng, one, other)
+    first, other = _spot(rng), _spot(rng)
+    four = _four_bar(rng, first, other)
     paths = [
         path(_pair(np.array(spot) * four.crank))
-        for path, spot in ((four.on_coupler, one), (four.on_rocker, other))
+        for path, spot in ((four.on_coupler, first), (four.on_rocker, other))
     ]
     _hang(four.draft, ("coupler", "P", paths[0]), ("rocker", "Q", paths[1]))
     return four.draft.case()
@@ -417,13 +417,13 @@ def shared_pin(rng: np.random.Generator) -> Case:
     four = _four_bar(rng, spot)
     ground = {"A": np.zeros(2), "D": four.pivot}
     if rng.random() < 0.5:
-        one = ("coupler", "C", four.joints()[1])
+        first = ("coupler", "C", four.joints()[1])
         other = _pivot_somewhere(four) if rng.random() < 0.5 else (FRAME, "A", ground["A"])
     else:
-        one = ("coupler", "P", four.on_coupler(_pair(np.array(spot) * four.crank)))
+        first = ("coupler", "P", four.on_coupler(_pair(np.array(spot) * four.crank)))
         label = str(rng.choice(["A", "D"]))
         other = (FRAME, label, ground[label])
-    _hang(four.draft, one, other)
+    _hang(four.draft, first, other)
     return four.draft.case()
 
 

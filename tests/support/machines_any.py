@@ -98,10 +98,10 @@ class Growing:
     # -- what it can grow by -----------------------------------------------------------------------
 
     def two_bars(self) -> None:
-        one, other = self.body(moving=True), self.body()
-        first, second = self.joint(one), self.joint(other)
-        p, q = self.bodies[one][first], self.bodies[other][second]
-        apart, far = abs(q - p), 1.2 * (self.far[one] + self.far[other])
+        single, other = self.body(moving=True), self.body()
+        first, second = self.joint(single), self.joint(other)
+        p, q = self.bodies[single][first], self.bodies[other][second]
+        apart, far = abs(q - p), 1.2 * (self.far[single] + self.far[other])
         total = (apart + far) * self.chance.uniform(1.02, 1.7)
         difference = max(apart - far, 0.0) * self.chance.uniform(-0.9, 0.9)
         long, short = (total + difference) / 2, (total - difference) / 2
@@ -116,13 +116,13 @@ class Growing:
         self.entry(name, "left" if sense > 0 else "right")
 
     def rod_and_block(self) -> None:
-        one, other = self.body(moving=True), self.body()
-        first = self.joint(one)
-        p, angle = self.bodies[one][first], self.chance.uniform(-pi, pi)
+        single, other = self.body(moving=True), self.body()
+        first = self.joint(single)
+        p, angle = self.bodies[single][first], self.chance.uniform(-pi, pi)
         through = self.joint(other, p)
         along, base = exp(1j * angle), self.bodies[other][through]
         offset = ((p - base) / along).imag
-        far = 1.2 * (self.far[one] + self.far[other])
+        far = 1.2 * (self.far[single] + self.far[other])
         rod = (abs(offset) + far) * self.chance.uniform(1.1, 3)
         sense = self.chance.choice((1, -1))
         way = sense * float(np.sqrt(max(rod**2 - offset**2, 0.0)))
@@ -135,15 +135,15 @@ class Growing:
         self.entry(name, "forward" if sense > 0 else "backward")
 
     def block_on_arm(self) -> None:
-        one, other = self.body(moving=True), self.body()
-        first, second = self.joint(one), self.joint(other)
-        p, q = self.bodies[one][first], self.bodies[other][second]
+        single, other = self.body(moving=True), self.body()
+        first, second = self.joint(single), self.joint(other)
+        p, q = self.bodies[single][first], self.bodies[other][second]
         if p == q or first == second:
             return
         angle = phase(p - q)
         block = self.link("block", **{first: p})
         arm = self.link("arm", **{second: q})
-        far = 1.2 * (self.far[one] + self.far[other])
+        far = 1.2 * (self.far[single] + self.far[other])
         self.far[block] = self.far[arm] = far
         if self.chance.random() < 0.7:
             self.slide(block, first, arm, second, angle)
@@ -156,17 +156,17 @@ class Growing:
         self.entry(own if taken else slider["point"], sense)
 
     def two_blocks(self) -> None:
-        one, other = self.body(moving=True), self.body()
+        first, other = self.body(moving=True), self.body()
         angle = self.chance.uniform(-pi, pi)
-        through, second = self.joint(one), self.joint(other)
-        p, q = self.bodies[one][through], self.bodies[other][second]
+        through, second = self.joint(first), self.joint(other)
+        p, q = self.bodies[first][through], self.bodies[other][second]
         other_angle = angle + self.chance.uniform(0.5, 2.6)
         along, across = exp(1j * angle), exp(1j * other_angle)
         way = ((q - p) / across).imag / (along / across).imag
         name = f"J{len(self.bodies)}"
-        far = 1.5 * (self.far[one] + self.far[other])
+        far = 1.5 * (self.far[first] + self.far[other])
         for kind, on, base, line in (
-            ("shoe", one, through, angle),
+            ("shoe", first, through, angle),
             ("block", other, second, other_angle),
         ):
             link = self.link(kind, **{name: p + along * way})
@@ -174,15 +174,15 @@ class Growing:
             self.slide(link, name, on, base, line)
 
     def yoke(self) -> None:
-        one = self.body(moving=True)
-        first = self.joint(one)
-        p, angle = self.bodies[one][first], self.chance.uniform(-pi, pi)
+        single = self.body(moving=True)
+        first = self.joint(single)
+        p, angle = self.bodies[single][first], self.chance.uniform(-pi, pi)
         through = self.joint("frame")
         block, yoke = (
             self.link("block", **{first: p}),
             self.link("yoke", **{f"Y{len(self.bodies)}": p}),
         )
-        self.far[block] = self.far[yoke] = self.far[one]
+        self.far[block] = self.far[yoke] = self.far[single]
         (point,) = self.bodies[yoke]
         self.slide(block, first, yoke, point, angle + self.chance.uniform(0.4, 2.7))
         self.slide(yoke, point, "frame", through, angle)
@@ -213,28 +213,28 @@ class Growing:
 
     def triad(self) -> None:
         """A plate on three bars, which no dyad solves."""
-        one = self.body(moving=True)
-        first, chance = self.joint(one), self.chance
-        p = self.bodies[one][first]
+        single = self.body(moving=True)
+        first, chance = self.joint(single), self.chance
+        p = self.bodies[single][first]
         corners = [
             p + rect(self.size * chance.uniform(2, 4), chance.uniform(-pi, pi)) for _ in range(3)
         ]
         names = [f"{letter}{len(self.bodies)}" for letter in "KLM"]
         pins = [first, self.joint("frame", p), self.joint("frame", p)]
         ends = [p, *(self.bodies["frame"][pin] for pin in pins[1:])]
-        self.far[self.link("plate", **dict(zip(names, corners, strict=True)))] = self.far[one]
+        self.far[self.link("plate", **dict(zip(names, corners, strict=True)))] = self.far[single]
         for name, corner, pin, end in zip(names, corners, pins, ends, strict=True):
-            self.far[self.link("bar", **{pin: end, name: corner})] = self.far[one]
+            self.far[self.link("bar", **{pin: end, name: corner})] = self.far[single]
         self.loops = True
 
     def bar_in_slot(self) -> None:
         """A bar whose pin runs in a slot of another body, a circle, an arc or any curve round."""
-        chance, one = self.chance, self.body(moving=True)
+        chance, single = self.chance, self.body(moving=True)
         other = "frame" if chance.random() < 0.6 else self.body()
-        first, middle = self.joint(one), self.joint(other)
-        p, q = self.bodies[one][first], self.bodies[other][middle]
-        apart, far = abs(q - p), 1.2 * (self.far[one] + self.far[other])
-        if not apart or one == other:
+        first, middle = self.joint(single), self.joint(other)
+        p, q = self.bodies[single][first], self.bodies[other][middle]
+        apart, far = abs(q - p), 1.2 * (self.far[single] + self.far[other])
+        if not apart or single == other:
             return
         radius, sense = (apart + far) * chance.uniform(0.6, 1.2), chance.choice((1, -1))
         rod = (apart + far) * chance.uniform(1.1, 1.7) - chance.choice((0, 1)) * radius / 2
@@ -283,15 +283,15 @@ class Growing:
         ]  # fmt: skip
         for _ in range(chance.choice((1, 1, 2, 2, 3, 3, 4, 6))):
             chance.choice(ways)()
-        found = {name: part for name, part in self.document.items() if part}
+        actual = {name: part for name, part in self.document.items() if part}
         links = {name: points for name, points in self.bodies.items() if name != "frame"}
-        found["frame"] = {"points": {name: pair(at) for name, at in self.bodies["frame"].items()}}
-        found["links"] = {name: self.of_link(points) for name, points in links.items()}
-        found["drive"] = {"link": "crank"}
+        actual["frame"] = {"points": {name: pair(at) for name, at in self.bodies["frame"].items()}}
+        actual["links"] = {name: self.of_link(points) for name, points in links.items()}
+        actual["drive"] = {"link": "crank"}
         if self.loops:
             known = {name: pair(at) for points in links.values() for name, at in points.items()}
-            found["position"] = {"points": known}
-        return found
+            actual["position"] = {"points": known}
+        return actual
 
     def of_link(self, points: dict[str, complex]) -> Document:
         chance = self.chance
@@ -498,7 +498,7 @@ def _bearings(chance: random.Random, document: Document) -> None:
     """Rolling and plain bearings in some pins, some of which a pin in a slot cannot have."""
     held = [name for part in (*document["links"].values(), document["frame"])
             for name in part["points"]]  # fmt: skip
-    joints = {one["joint"]: one for one in document.get("joints", ())}
+    joints = {item["joint"]: item for item in document.get("joints", ())}
     rating = 10 ** chance.uniform(0, 2)
     more = {"static_rating": f"{0.6 * rating:.4g} kN", "kind": chance.choice(("ball", "roller")),
             "load_factor": 1.3, "life": "25000 h", "reliability": 0.95}  # fmt: skip
@@ -506,12 +506,15 @@ def _bearings(chance: random.Random, document: Document) -> None:
         name = f"joints.{point}"
         if chance.random() < 0.4:
             continue
-        one = joints.setdefault(name, {"joint": name})
+        first = joints.setdefault(name, {"joint": name})
         if chance.random() < 0.5:
             chosen = chance.sample([*more.items()], chance.randint(0, len(more)))
-            one["bearing"] = {"dynamic_rating": f"{rating:.4g} kN"} | dict(chosen)
+            first["bearing"] = {"dynamic_rating": f"{rating:.4g} kN"} | dict(chosen)
         else:
-            one |= {"radius": one.get("radius", "5 mm"), "width": mm(10 ** chance.uniform(0, 2))}
+            first |= {
+                "radius": first.get("radius", "5 mm"),
+                "width": mm(10 ** chance.uniform(0, 2)),
+            }
     if joints:
         document["joints"] = [*joints.values()]
 
@@ -713,8 +716,8 @@ def _rubbing(chance: random.Random, document: Document) -> None:
         if "friction" in part and chance.random() < 0.4:
             part |= {"static_friction": 0.3 + part["friction"], "stribeck_speed": "5 mm/s"}
         document["joints"] = [*document.get("joints", ()), part]
-    meshes = [f"{kind}.{' to '.join(one['between'])}" for kind in ("gears", "belts")
-              for one in document.get(kind, ()) if "shape" not in one]  # fmt: skip
+    meshes = [f"{kind}.{' to '.join(item['between'])}" for kind in ("gears", "belts")
+              for item in document.get(kind, ()) if "shape" not in item]  # fmt: skip
     if meshes and len(held) % 3 == 0:  # no further chance is taken, so that other parts stay
         loss: Document = {"joint": meshes[0], "mesh_loss": 0.02}
         document["joints"] = [*document.get("joints", ()), loss]
@@ -819,23 +822,23 @@ def beside_the_machine(chance: random.Random, document: Document) -> Document:
 
     Drawn by themselves, so that the machine is what it would be without.
     """
-    found: Document = {}
+    actual: Document = {}
     bodies = [[*body["points"]] for body in (document["frame"], *document["links"].values())]
     lines = [points for points in bodies if len(points) > 1]
     if len(lines) > 1 and chance.random() < 0.15:
-        one, other = chance.sample(lines, 2)
-        line, to = chance.sample(one, 2), chance.sample(other, 2)
+        first, other = chance.sample(lines, 2)
+        line, to = chance.sample(first, 2), chance.sample(other, 2)
         if {*line} != {*to}:
-            found["constraints"] = [{"kind": "equal", "line": line, "to": to}]
+            actual["constraints"] = [{"kind": "equal", "line": line, "to": to}]
     if chance.random() < 0.15:
         turns = chance.choice((0.4, 2, 7))
-        found["run"] = {"turns": turns, "speed": f"{chance.choice((-1, 0, 1, 9)) * 10} rpm"}
+        actual["run"] = {"turns": turns, "speed": f"{chance.choice((-1, 0, 1, 9)) * 10} rpm"}
         if chance.random() < 0.3:
-            found["run"] |= {"angle": "40 deg", "off_turns": turns / 2}
+            actual["run"] |= {"angle": "40 deg", "off_turns": turns / 2}
             if "support" in document:
-                found["run"]["support"] = True
-    if any("bearing" in one for one in document.get("joints", ())) and chance.random() < 0.5:
-        found["duty"] = [{"share": 2}, {"share": 0.3, "speed": "31 rpm", "load_factor": 0.6}]
+                actual["run"]["support"] = True
+    if any("bearing" in item for item in document.get("joints", ())) and chance.random() < 0.5:
+        actual["duty"] = [{"share": 2}, {"share": 0.3, "speed": "31 rpm", "load_factor": 0.6}]
     if chance.random() < 0.15:
         name, link = chance.choice([*document["links"].items()])
         load: Document = {"link": name, "times": ["0 s", "0.3 s"], "factors": [0, 1.5]}
@@ -847,8 +850,8 @@ def beside_the_machine(chance: random.Random, document: Document) -> Document:
         others = [other for other in document["links"] if other != name]
         if others and chance.random() < 0.5:
             load["on"] = chance.choice(others)
-        found["timed_loads"] = [load]
-    return found
+        actual["timed_loads"] = [load]
+    return actual
 
 
 def parameters_of(chance: random.Random, document: Document) -> Document:
@@ -856,11 +859,11 @@ def parameters_of(chance: random.Random, document: Document) -> Document:
 
     Drawn by itself, so that the machine is what it would be without.
     """
-    masses = [one for one in document["links"].values() if isinstance(one.get("mass"), str)]
+    masses = [value for value in document["links"].values() if isinstance(value.get("mass"), str)]
     speed = document["drive"].get("speed")
     if not masses or not isinstance(speed, str) or chance.random() > 0.15:
         return {}
     link = chance.choice(masses)
-    found = {"speed": speed, "weight": link["mass"], "half": "=weight/2"}
+    actual = {"speed": speed, "weight": link["mass"], "half": "=weight/2"}
     document["drive"]["speed"], link["mass"] = "=speed", "=2*half"
-    return {"parameters": found}
+    return {"parameters": actual}

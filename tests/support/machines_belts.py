@@ -43,9 +43,9 @@ def _belt(
     return belt
 
 
-def _apart(draft: machines.Draft, body: str, one: str, other: str) -> float:
+def _apart(draft: machines.Draft, body: str, item: str, other: str) -> float:
     points = draft.frame if body == FRAME else draft.links[body].points
-    return float(np.hypot(*np.subtract(points[one], points[other])))
+    return float(np.hypot(*np.subtract(points[item], points[other])))
 
 
 def _with(case: machines.Case, *belts: Belt, racks: tuple[Rack, ...] = ()) -> machines.Case:

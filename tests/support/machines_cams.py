@@ -86,10 +86,17 @@ def _followed(
         draft.add("tappet", H=(0, 0), K=rng.normal(size=2) * 0.2 * size, T=_scaled(rng, draft))
         draft.slide("tappet", "H", carrier, axis[1], axis[0], level=True)
         if rng.random() < 0.3:  # the same guide, told by the other body
-            one = draft.sliders.pop()
-            turned = replace(one, link=one.on, point=one.through, on=one.link, through=one.point,
-                             direction=-one.angle, angle=-one.direction)  # fmt: skip
-            draft.sliders.append(turned if one.on != FRAME else one)
+            first = draft.sliders.pop()
+            turned = replace(
+                first,
+                link=first.on,
+                point=first.through,
+                on=first.link,
+                through=first.point,
+                direction=-first.angle,
+                angle=-first.direction,
+            )
+            draft.sliders.append(turned if first.on != FRAME else first)
         lean = float(rng.uniform(-0.6, 0.6)) * bool(rng.random() < 0.5)
         normal = draft.turns["tappet"] + lean
     else:
@@ -222,7 +229,7 @@ def looped_lever(rng: np.random.Generator) -> Case:
 
 LOOPED = {"looped_tappet": looped_tappet, "looped_lever": looped_lever}
 """Kinds that Newton's method has to solve."""
-KINDS = {one.__name__: one for one in (camshaft_tappet, camshaft_lever, fixed_cam_tappet,
+KINDS = {item.__name__: item for item in (camshaft_tappet, camshaft_lever, fixed_cam_tappet,
                                        fixed_cam_lever, pusher_tappet, pusher_lever)}  # fmt: skip
 ALL = {**KINDS, **LOOPED}
 

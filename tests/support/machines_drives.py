@@ -59,7 +59,7 @@ def steps(rng: np.random.Generator) -> AngleLaw:
     turns, phase = int(rng.integers(1, 3)), float(rng.uniform(-3, 3))
     low, high = map(float, rng.uniform(-4, 4, 2))
     shares = rng.uniform(0.5, 1.0, 4)
-    overs = [float(one) for one in TURN * turns * shares / shares.sum()]
+    overs = [float(item) for item in TURN * turns * shares / shares.sum()]
     overs[-1] = TURN * turns - sum(overs[:-1])
     middle = float(rng.uniform(-4, 4))
     last = low + float(rng.choice([-TURN, 0.0, TURN]))

@@ -32,8 +32,8 @@ def set_apart(machine: Machine, rng: np.random.Generator, flat: bool = False) ->
         if not flat:
             given |= _in_two_planes(link, rng, size)
             label = str(rng.choice(list(link.points)))
-            told = (label in other.planes for other in links.values())
-            if rng.random() < 0.3 and not any(told):
+            texts = (label in other.planes for other in links.values())
+            if rng.random() < 0.3 and not any(texts):
                 given["planes"] = {label: float(rng.normal()) * size}
         links[name] = link.altered(**given)
     shafts = [name for name, k in links.items() if len(k.points.keys() & machine.frame.keys()) == 1]
@@ -51,8 +51,8 @@ def _in_two_planes(link: Link, rng: np.random.Generator, size: float) -> dict[st
         return {}
     half, (x, y) = link.mass / 2, link.center_of_mass or (0.0, 0.0)
     z = float(rng.normal()) * size
-    one = Body("point", at=(x, y), mass=half, inertia=link.inertia / 2)
-    return {"bodies": (one, replace(one, at=(x + size / 7, y - size / 5), plane=z))}
+    first = Body("point", at=(x, y), mass=half, inertia=link.inertia / 2)
+    return {"bodies": (first, replace(first, at=(x + size / 7, y - size / 5), plane=z))}
 
 
 # -- free bodies in space --------------------------------------------------------------------------
@@ -106,10 +106,10 @@ def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:
     held |= {joint.by for joint in flat.joints.values() if joint.on == FRAME}
     planes = {}
     coupled = {**flat.gears, **flat.racks, **flat.pulls}
-    for name, one in chain(flat.joints.items(), coupled.items()):
-        planes[name] = joint_plane(machine, name, one.on, one.by, held)
-        moment = about_axes(planes[name], one.force)
-        for body, sign in ((one.on, 1.0), (one.by, -1.0)):
+    for name, first in chain(flat.joints.items(), coupled.items()):
+        planes[name] = joint_plane(machine, name, first.on, first.by, held)
+        moment = about_axes(planes[name], first.force)
+        for body, sign in ((first.on, 1.0), (first.by, -1.0)):
             if body != FRAME:
                 asked[body] = asked[body] - sign * moment
     for body, moment in thrusts(machine, poses, flat, planes):
@@ -134,7 +134,7 @@ def thrusts(
         plane = planes.get(drive.slider, 0.0)
         if drive.between is not None:
             each = [(k, drive.between[end]) for k, end in ends.items() if k != FRAME]
-            plane = float(np.mean([point_plane(machine, *one) for one in each]))
+            plane = float(np.mean([point_plane(machine, *item) for item in each]))
         moment = about_axes(plane, flat.drives[drive.link][:, None] * line.directions[0])
         yield from ((k, (1.0, -1.0)[k == line.by] * moment) for k in ends if k != FRAME)
 
@@ -150,10 +150,10 @@ def rocking_of(machine: Machine, poses: Poses, name: str) -> tuple[Array, Array]
 
 def _of_loads(machine: Machine) -> list[float]:
     """Planes of loads and of the soil."""
-    found = [point_plane(machine, load.link, load.point or "") for load in loads_by_end(machine)]
+    actual = [point_plane(machine, load.link, load.point or "") for load in loads_by_end(machine)]
     if has_soil(machine):
-        found += [point_plane(machine, link, point) for link, point, _ in tips_of(machine)]
-    return found
+        actual += [point_plane(machine, link, point) for link, point, _ in tips_of(machine)]
+    return actual
 
 
 def _of_springs(machine: Machine) -> list[float]:
@@ -191,27 +191,27 @@ def tilted(
     """Let the links that nothing holds tilt, and give the rest to the joints in the frame."""
     loose = [name for name in machine.links if name not in held]
     stiffness = np.zeros((len(loose), len(loose)))
-    for one in flat.joints.values():
-        at = [loose.index(body) for body in (one.on, one.by) if body in loose]
+    for joint in flat.joints.values():
+        at = [loose.index(body) for body in (joint.on, joint.by) if body in loose]
         for row in at:
             stiffness[row, row] += 1.0
         if len(at) == 2:
             stiffness[at[0], at[1]] -= 1.0
             stiffness[at[1], at[0]] -= 1.0
-    tilts = {name: np.zeros_like(one) for name, one in asked.items()}
+    tilts = {name: np.zeros_like(value) for name, value in asked.items()}
     if loose:
         moments = np.stack([asked[name] for name in loose])
-        found = np.linalg.solve(stiffness, moments.reshape(len(loose), -1)).reshape(moments.shape)
-        tilts |= dict(zip(loose, found, strict=True))
+        result = np.linalg.solve(stiffness, moments.reshape(len(loose), -1)).reshape(moments.shape)
+        tilts |= dict(zip(loose, result, strict=True))
     left, couples = dict(asked), {}
-    for name, one in flat.joints.items():
-        if FRAME not in (one.on, one.by):
-            couples[name] = tilts[one.on] - tilts[one.by]
-            left[one.on] = left[one.on] - couples[name]
-            left[one.by] = left[one.by] + couples[name]
-    for name, one in flat.joints.items():
-        if FRAME in (one.on, one.by):
-            couples[name] = left[one.on] if one.by == FRAME else -left[one.by]
+    for name, joint in flat.joints.items():
+        if FRAME not in (joint.on, joint.by):
+            couples[name] = tilts[joint.on] - tilts[joint.by]
+            left[joint.on] = left[joint.on] - couples[name]
+            left[joint.by] = left[joint.by] + couples[name]
+    for name, joint in flat.joints.items():
+        if FRAME in (joint.on, joint.by):
+            couples[name] = left[joint.on] if joint.by == FRAME else -left[joint.by]
     return couples
 
 
@@ -223,13 +223,13 @@ def borne(
     couples: Mapping[str, Array],
 ) -> dict[str, Array]:
     """Return the forces of both bearings of a shaft on it, which make up for those of its pin."""
-    pin, one = next(
-        (name, one)
-        for name, one in flat.joints.items()
-        if {one.on, one.by} == {shaft, FRAME} and " on " not in name
+    pin, single = next(
+        (name, value)
+        for name, value in flat.joints.items()
+        if {value.on, value.by} == {shaft, FRAME} and " on " not in name
     )
-    sign = 1.0 if one.on == shaft else -1.0
-    force = sign * one.force
+    sign = 1.0 if single.on == shaft else -1.0
+    force = sign * single.force
     moment = about_axes(planes[pin], force) + sign * couples[pin]
     names = [name for name, bearing in machine.bearings.items() if bearing.link == shaft]
     first, second = (machine.bearings[name].plane for name in names)
@@ -237,5 +237,5 @@ def borne(
     both = np.array(
         [[1, 0, 1, 0], [0, 1, 0, 1], [0, -first, 0, -second], [first, 0, second, 0]], dtype=float
     )
-    found = np.linalg.solve(both, np.column_stack([force, moment])[..., None])[..., 0]
-    return {names[0]: found[:, :2], names[1]: found[:, 2:]}
+    solution = np.linalg.solve(both, np.column_stack([force, moment])[..., None])[..., 0]
+    return {names[0]: solution[:, :2], names[1]: solution[:, 2:]}

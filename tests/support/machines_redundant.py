@@ -27,12 +27,12 @@ class Laid(Case):
 
     def start(self, seed: int = 0) -> Array:
         """Return coordinates of all links at crank angle 0."""
-        found = []
+        actual = []
         for name, link in self.machine.links.items():
             angle, label, place = self.laid[name]
             arm = complex(*link.points[label]) * np.exp(1j * angle)
-            found += [place[0] - arm.real, place[1] - arm.imag, angle]
-        return closed(Constraints(self.machine), np.array(found), 0.0)
+            actual += [place[0] - arm.real, place[1] - arm.imag, angle]
+        return closed(Constraints(self.machine), np.array(actual), 0.0)
 
 
 @dataclass
@@ -59,11 +59,11 @@ class Laying:
 def _spread(rng: np.random.Generator, count: int) -> Array:
     """Draw places, none near another, of which the first three make a wide triangle."""
     while True:
-        found = rng.uniform(-4, 4, (count, 2))
-        apart = [np.linalg.norm(a - b) for k, a in enumerate(found) for b in found[:k]]
-        (a, b), (c, d) = found[1] - found[0], found[2] - found[0]
+        result = rng.uniform(-4, 4, (count, 2))
+        apart = [np.linalg.norm(a - b) for k, a in enumerate(result) for b in result[:k]]
+        (a, b), (c, d) = result[1] - result[0], result[2] - result[0]
         if min(apart) > 1.5 and abs(a * d - b * c) > 4:
-            return found
+            return result
 
 
 def parallel_cranks(rng: np.random.Generator) -> Case:
@@ -215,4 +215,4 @@ def crossed_yokes(rng: np.random.Generator) -> Case:
 
 MAKERS = (parallel_cranks, straw_walker, double_guide, planet_train, planet_differential,
           rocking_screen, crossed_yokes)  # fmt: skip
-REDUNDANT = {one.__name__: one for one in MAKERS}
+REDUNDANT = {maker.__name__: maker for maker in MAKERS}

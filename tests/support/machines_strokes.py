@@ -38,12 +38,14 @@ def lengths(machine: Machine, drive: Drive) -> Array:
     """Length that a drive has over a turn of the crank, (N,)."""
     poses = from_motion(machine, move(machine, CYCLE))
     if drive.slider:
-        one = next(slider for slider in machine.sliders if slider.name == drive.slider)
-        point = machine.links[one.link].points[one.point]
-        way = poses.place(one.link, point) - poses.place(
-            one.on, machine.points_of(one.on)[one.through]
+        first = next(slider for slider in machine.sliders if slider.name == drive.slider)
+        point = machine.links[first.link].points[first.point]
+        way = poses.place(first.link, point) - poses.place(
+            first.on, machine.points_of(first.on)[first.through]
         )
-        line = poses.turned(one.on, (float(np.cos(one.direction)), float(np.sin(one.direction))))
+        line = poses.turned(
+            first.on, (float(np.cos(first.direction)), float(np.sin(first.direction)))
+        )
         return np.asarray(np.sum(way * line, -1))
     assert drive.between is not None
     ends = zip(drive.ends(machine.bodies), drive.between, strict=True)
@@ -67,7 +69,7 @@ def law(rng: np.random.Generator, first: float, last: float) -> LengthLaw:
     ends = (last, last, first, first)
     laws = ("cycloidal", "cycloidal", "modified sine", "cycloidal")
     each = zip(parts.tolist(), ends, laws, strict=True)
-    return LengthLaw(start=first, segments=tuple(LengthSegment(*one) for one in each))
+    return LengthLaw(start=first, segments=tuple(LengthSegment(*item) for item in each))
 
 
 def pushed(machine: Machine, drive: Drive, share: float, rng: np.random.Generator) -> Machine:
@@ -100,12 +102,12 @@ def drives(machine: Machine, by_slider: bool) -> list[dict[str, Any]]:
         return [{"slider": slider.name} for slider in machine.sliders if slider.link not in moved]
     bodies = machine.bodies
     ends = [(body, point) for body in (FRAME, *machine.links) for point in bodies[body]]
-    found = []
-    for (one, a), (other, b) in permutations(ends, 2):
+    actual = []
+    for (first, a), (other, b) in permutations(ends, 2):
         drive = Drive(machine.drive.link, 1.0, between=(a, b))
-        if a != b and one != other and drive.ends(bodies) == (one, other):
-            found.append({"between": (a, b)})
-    return found
+        if a != b and first != other and drive.ends(bodies) == (first, other):
+            actual.append({"between": (a, b)})
+    return actual
 
 
 def stroked(kind: str, seed: int, by_slider: bool = False) -> Case:
@@ -114,10 +116,10 @@ def stroked(kind: str, seed: int, by_slider: bool = False) -> Case:
     rng = np.random.default_rng([seed, by_slider, *kind.encode()])
     own = replace(case.machine.drive, flywheel=0.0, motor=None)
     machine = replace(case.machine, drive=own)
-    found = drives(machine, by_slider)
-    for share, k in product(SHARES, rng.permutation(len(found))):
+    result = drives(machine, by_slider)
+    for share, k in product(SHARES, rng.permutation(len(result))):
         try:
-            drive = replace(own, **found[k], stroke=LengthLaw(between=(0.0, 1.0)))
+            drive = replace(own, **result[k], stroke=LengthLaw(between=(0.0, 1.0)))
             pushing = pushed(machine, drive, share, rng)
             move(pushing, [0.0])
         except EquipoiseError:  # the points hang on gears, whose start is another one then
@@ -162,10 +164,10 @@ def pushed_arm(rng: np.random.Generator) -> Machine:
         held = complex(*points[before][f"J{k}"]) + turned
         points[before][f"V{k}"] = (held.real, held.imag)
         points[body][f"U{k}"] = (own.real, own.imag)
-        found = abs(own * np.exp(1j * seen) - turned)
+        result = abs(own * np.exp(1j * seen) - turned)
         pair = (f"V{k}", f"U{k}") if rng.random() < 0.5 else (f"U{k}", f"V{k}")
         start = float(angles[-1][0]) + float(rng.uniform(-NEAR, NEAR))
-        stroke: dict[str, Any] = {"between": pair, "stroke": through(found), "start": start}
+        stroke: dict[str, Any] = {"between": pair, "stroke": through(result), "start": start}
         if k == 0 and rng.random() < 0.3:
             swing = (middle - amplitude, middle + amplitude)
             stroke = {"motion": AngleLaw(between=swing, phase=np.pi / 2 - phase)}
@@ -191,16 +193,16 @@ def pushed_five_bar(rng: np.random.Generator) -> Machine:
     other = FurtherDrive(gear.driven, motion=swings[1])
     machine = replace(case.machine, gears=(), drive=drive, drives=(other,), loads=())
     motion = move(machine, KNOTS)
-    found = drives(machine, by_slider=False)
-    both = rng.permutation(len(found))[:2]
+    result = drives(machine, by_slider=False)
+    both = rng.permutation(len(result))[:2]
     pushing: list[Any] = []
-    for one, k in zip((drive, other), both, strict=True):
+    for item, k in zip((drive, other), both, strict=True):
         if pushing == [drive] or rng.random() < 0.7:
-            whole = lengths(machine, replace(drive, motion=None, **found[k]))
+            whole = lengths(machine, replace(drive, motion=None, **result[k]))
             length = np.interp(KNOTS, CYCLE, whole)
-            start = float(motion.links[one.link].angle[0])
-            one = replace(one, motion=None, stroke=through(length), start=start, **found[k])  # noqa: PLW2901
-        pushing.append(one)
+            start = float(motion.links[item.link].angle[0])
+            item = replace(item, motion=None, stroke=through(length), start=start, **result[k])  # noqa: PLW2901
+        pushing.append(item)
     return replace(machine, drive=pushing[0], drives=(pushing[1],))
 
 
@@ -237,5 +239,5 @@ def together(kind: str, seed: int) -> Case:
 
 
 FIRST = {kind: make(kind, 0).machine for kind in KINDS}
-TURNING = [kind for kind, one in FIRST.items() if one.drive.motion is None and not one.drives]
+TURNING = [kind for kind, value in FIRST.items() if value.drive.motion is None and not value.drives]
 SLIDING = [kind for kind in TURNING if drives(FIRST[kind], by_slider=True)]

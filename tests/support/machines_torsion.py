@@ -53,12 +53,12 @@ def _spring(
 
 def torsion_on_links(machine: Machine, poses: Poses) -> list[tuple[str, Array]]:
     """Link and torque at every end of a torsion spring on a link."""
-    found = []
+    actual = []
     for spring in machine.torsion_springs:
         turned = poses.angle_of(spring.link) - poses.angle_of(spring.on)
         torque = torque_of(spring, turned)
-        found += [(spring.link, torque), (spring.on, -torque)]
-    return [(link, torque) for link, torque in found if link != FRAME]
+        actual += [(spring.link, torque), (spring.on, -torque)]
+    return [(link, torque) for link, torque in actual if link != FRAME]
 
 
 def torque_of(spring: TorsionSpring, turned: Array) -> Array:

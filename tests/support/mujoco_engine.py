@@ -86,18 +86,20 @@ def demands(model: mujoco.MjModel, machine: Machine, poses: Poses, gravity: Vect
     model.opt.gravity[:2] = gravity
     data = mujoco.MjData(model)
     states = np.stack([coordinate(model, poses, joint) for joint in range(model.njnt)], -1)
-    told: list[list[Array]] = []
+    texts: list[list[Array]] = []
     for data.qpos[:], data.qvel[:], data.qacc[:] in zip(*states, strict=True):
         mujoco.mj_inverse(model, data)
         mujoco.mj_rnePostConstraint(model, data)
         work = data.qfrc_inverse @ data.qvel / machine.drive.speed
-        told.append([data.cfrc_int.copy(), data.subtree_com.copy(), data.xpos.copy(), work])
-    *bodies, work = map(np.array, zip(*told, strict=True))
+        texts.append([data.cfrc_int.copy(), data.subtree_com.copy(), data.xpos.copy(), work])
+    *bodies, work = map(np.array, zip(*texts, strict=True))
     links = {name: asked(model, name, *bodies) for name in machine.links}
     arms = {name: poses.origin[name] - machine.frame[drive_pivot(machine)] for name in links}
-    base = sum(one[:, :3] + about(cross(arms[name], one[:, :2])) for name, one in links.items())
+    base = sum(
+        value[:, :3] + about(cross(arms[name], value[:, :2])) for name, value in links.items()
+    )
     across = sum(link[:, 3:] for link in links.values())
-    flat = {name: one[:, :3] for name, one in links.items()}
+    flat = {name: value[:, :3] for name, value in links.items()}
     return Demands(np.asarray(base), np.asarray(across), flat, work)
 
 
@@ -145,4 +147,4 @@ def coordinate(model: mujoco.MjModel, poses: Poses, number: int) -> Array:
     change = change - alpha[:, None] * quarter(way) + w[:, None] ** 2 * way
     change = change - 2 * w[:, None] * quarter(rate)
     way = way - poses.turned(parent, (body.pos[0], body.pos[1]))
-    return np.stack([np.sum(along * one, -1) for one in (way, rate, change)])
+    return np.stack([np.sum(along * item, -1) for item in (way, rate, change)])

@@ -73,8 +73,8 @@ class Constraints:
         rows += [self._gear(q, rate, gear) for gear in self.machine.gears]
         rows += [self._belt(q, belt) for belt in self.machine.belts]
         rows += [self._rack(q, rate, rack) for rack in self.machine.racks]
-        rows += [self._driven(q, rate, one, self.commanded(one, crank_angle)[0])
-                 for one in self.machine.driven]  # fmt: skip
+        rows += [self._driven(q, rate, item, self.commanded(item, crank_angle)[0])
+                 for item in self.machine.driven]  # fmt: skip
         return Row(
             np.concatenate([row.residual for row in rows]),
             np.concatenate([row.jacobian for row in rows]),
@@ -93,8 +93,8 @@ class Constraints:
         if drive.stroke is None:
             return self._turn({drive.link: 1.0}, q, -wanted)
         if drive.slider:
-            one = next(slider for slider in self.machine.sliders if slider.name == drive.slider)
-            way = self._travel(q, rate, one)
+            single = next(slider for slider in self.machine.sliders if slider.name == drive.slider)
+            way = self._travel(q, rate, single)
             return Row(way.residual - wanted, way.jacobian, way.bend)
         assert drive.between is not None
         ends = zip(drive.ends(self.machine.bodies), drive.between, strict=True)
@@ -117,8 +117,8 @@ class Constraints:
         jacobian[:, k + 2] = quarter(arm)
         return Row(q[k : k + 2] + arm, jacobian, -(rate[k + 2] ** 2) * arm)
 
-    def _pin(self, q: Array, rate: Array, label: str, one: str, other: str) -> Row:
-        a = self._place(q, rate, one, self.machine.points_of(one)[label])
+    def _pin(self, q: Array, rate: Array, label: str, item: str, other: str) -> Row:
+        a = self._place(q, rate, item, self.machine.points_of(item)[label])
         b = self._place(q, rate, other, self.machine.points_of(other)[label])
         return Row(b.residual - a.residual, b.jacobian - a.jacobian, a.bend - b.bend)
 
@@ -315,12 +315,12 @@ def trace(machine: Machine, angles: Array, start: Array) -> Poses:
     constraints = Constraints(machine)
     q = closed(constraints, start, 0.0)
     constraints.mesh(q)
-    found, here = [], 0.0
+    actual, here = [], 0.0
     for angle in map(float, angles):
         q = followed(constraints, q, here, angle)
         here = angle
-        found.append(q)
-    return moving(constraints, angles, found)
+        actual.append(q)
+    return moving(constraints, angles, actual)
 
 
 def followed(constraints: Constraints, q: Array, here: float, there: float) -> Array:
@@ -358,21 +358,21 @@ def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
     return solved(row.jacobian, asked)
 
 
-def moving(constraints: Constraints, angles: Array | list[float], found: list[Array]) -> Poses:
+def moving(constraints: Constraints, angles: Array | list[float], result: list[Array]) -> Poses:
     """Return poses with the velocities and accelerations that the drive forces on them."""
     drive = constraints.machine.drive
     drives = constraints.machine.driven
     rates, changes = [], []
-    for angle, q in zip(angles, found, strict=True):
+    for angle, q in zip(angles, result, strict=True):
         rate = slope(constraints, q, angle) * drive.speed
         row = constraints.at(q, rate, angle)
         rates.append(rate)
         asked = np.zeros(len(row.jacobian))
-        for number, one in enumerate(drives, -len(drives)):
-            _, first, second = constraints.commanded(one, angle)
+        for number, item in enumerate(drives, -len(drives)):
+            _, first, second = constraints.commanded(item, angle)
             asked[number] = first * drive.acceleration + second * drive.speed**2
         changes.append(solved(row.jacobian, row.bend + asked))
-    q, v, a = np.array(found), np.array(rates), np.array(changes)
+    q, v, a = np.array(result), np.array(rates), np.array(changes)
     columns = constraints.columns.items()
     return Poses(
         np.array(angles, float),

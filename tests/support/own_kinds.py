@@ -123,10 +123,10 @@ def designs_by_numbers(
 def scripted(machine: Machine, names: Sequence[str], folder: Path) -> None:
     """Scripts have these outputs."""
     linkage = assemble(machine)
-    script, found = javascript(linkage, names), eq.analyze(machine, 24)
-    got = run(script, script.numbers(linkage), found.motion.crank_angle, folder)
+    script, actual = javascript(linkage, names), eq.analyze(machine, 24)
+    got = run(script, script.numbers(linkage), actual.motion.crank_angle, folder)
     for name, values in zip(names, got, strict=True):
-        wanted = found.outputs[name].values
+        wanted = actual.outputs[name].values
         np.testing.assert_allclose(values, wanted, atol=1e-13 * np.max(np.abs(wanted)))
 
 
@@ -139,14 +139,14 @@ def drawn(machine: Machine, role: str) -> tuple[Scene, list[Any]]:
 def on_the_page(machine: Machine, table: str, keys: Sequence[str], numbers: Sequence[str]) -> None:
     """The page has a form of its keys, an entry, and these of its numbers."""
     tables = tables_of(machine)
-    (kind,) = {type(one).__name__ for one in getattr(machine, table)}
-    assert {one["key"] for one in tables["forms"][kind]["controls"]} == {*keys}
-    (group,) = (one for one in tables["groups"] if one["place"] == table)
+    (kind,) = {type(item).__name__ for item in getattr(machine, table)}
+    assert {item["key"] for item in tables["forms"][kind]["controls"]} == {*keys}
+    (group,) = (item for item in tables["groups"] if item["place"] == table)
     assert len(group["entries"]) == 1
-    found = fields_of(Design("mine", machine))
+    result = fields_of(Design("mine", machine))
     for number in numbers:
         value = getattr(getattr(machine, table)[0], number)
-        assert found[f"{table}[1].{number}"].value == value
+        assert result[f"{table}[1].{number}"].value == value
 
 
 def exported(machine: Machine, name: str, folder: Path) -> None:
@@ -158,14 +158,14 @@ def exported(machine: Machine, name: str, folder: Path) -> None:
     assert name in {item.get("name") for item in ET.fromstring(description).iter("ScalarVariable")}
 
 
-def found_in_the_gallery(machine: Machine, words: str) -> None:
+def is_searched_in_the_gallery(machine: Machine, words: str) -> None:
     """The words that the gallery finds the machine by have those of its kind, and of no other."""
     base = Machine(**{field.name: getattr(machine, field.name) for field in fields(Machine)})
     assert words in search_words(machine)
     assert words not in search_words(base)
 
 
-BY_KIND = [one.name for one in FORMATS.values() if one.by_kind]
+BY_KIND = [value.name for value in FORMATS.values() if value.by_kind]
 """Formats that have code for each kind."""
 
 

@@ -167,14 +167,14 @@ def modulo(points: Sequence[float], low: float, high: float) -> list[float]:
 
 def roots(function: Of, grid: Real) -> list[float]:
     """Roots of a continuous function, one for every change of sign on the grid."""
-    below, found = function(grid) < 0, []
+    below, actual = function(grid) < 0, []
     for i in np.flatnonzero(below[1:] != below[:-1]):
         low, high = float(grid[i]), float(grid[i + 1])
         if function(low) * function(high) > 0:  # a root on the grid, to rounding
-            found.append(min(low, high, key=lambda s: abs(function(s))))
+            actual.append(min(low, high, key=lambda s: abs(function(s))))
         else:
-            found.append(brentq(function, low, high, xtol=1e-15, rtol=1e-15))
-    return found
+            actual.append(brentq(function, low, high, xtol=1e-15, rtol=1e-15))
+    return actual
 
 
 def flats(function: Of, slope: Of, grid: Real) -> list[float]:
@@ -217,8 +217,8 @@ class Path:
     @cached_property
     def slow(self) -> list[float]:
         """Local minima of the rate of travel."""
-        found = flats(self.speed, lambda s: dot(self.rate(s), self.tip(s, 2)), between(0, TURN))
-        return [s for s in found if self.speed(s) < self.speed(s + np.array([-1e-4, 1e-4])).min()]
+        result = flats(self.speed, lambda s: dot(self.rate(s), self.tip(s, 2)), between(0, TURN))
+        return [s for s in result if self.speed(s) < self.speed(s + np.array([-1e-4, 1e-4])).min()]
 
     @cached_property
     def cusps(self) -> list[float]:
@@ -264,7 +264,7 @@ class Path:
             grid = between(low, high, crowd)
             way = 1 if self.tip(low).imag < self.tip(high).imag else -1
             pieces.append((grid[::way], self.at(grid[::way])))
-        found = []
+        actual = []
         for i, (s, p) in enumerate(pieces[: len(tops)]):
             for t, q in pieces[i + 1 : i + len(tops)]:
                 y = np.unique(np.concatenate([p.imag, q.imag]))
@@ -273,8 +273,8 @@ class Path:
                 for k in np.flatnonzero(gap[1:] * gap[:-1] < 0):
                     level = y[k] + (y[k + 1] - y[k]) * gap[k] / (gap[k] - gap[k + 1])
                     seed = np.interp(level, p.imag, s), np.interp(level, q.imag, t)
-                    found += self._polished(float(seed[0]), float(seed[1]))
-        return found
+                    actual += self._polished(float(seed[0]), float(seed[1]))
+        return actual
 
     def _polished(self, low: float, high: float) -> list[tuple[float, float]]:
         """The crossing near a seed, at which the mean rate in between vanishes; none if false."""
@@ -357,7 +357,7 @@ class Planter:
             part = (self.surface - tip.imag) / (foot.imag - tip.imag)
             return self.ground.at(s).real + part * (foot - tip).real
 
-        found = list(self.ground.at(np.array([low, high])).real)
+        result = list(self.ground.at(np.array([low, high])).real)
         for start, stop in pairwise([low, *roots(above, between(low, high)), high]):
             if above((start + stop) / 2) <= 0:
                 continue
@@ -368,8 +368,8 @@ class Planter:
                 best = minimize_scalar(
                     lambda s, sign=sign: sign * pierced(s), bounds=span, options={"xatol": 1e-12}
                 )
-                found += [float(pierced(grid[k])), sign * float(best.fun)]
-        return float(np.ptp(found))
+                result += [float(pierced(grid[k])), sign * float(best.fun)]
+        return float(np.ptp(result))
 
     def sharpest(self, low: float, high: float) -> float:
         """Largest |z''| in a range of crank angles."""
@@ -389,12 +389,12 @@ class Planter:
         def slope(s: Any) -> Any:
             return dot(self.tip(s, order), self.tip(s, order + 1))
 
-        flat, found = flats(size, slope, between(0, TURN)), []
+        flat, actual = flats(size, slope, between(0, TURN)), []
         for s in (flat[0], flat[-1]):
             there = vector(self.tip(s, order) * self.case.omega**order)
             keep = {"value": there["size"], "crank_angle": wrap(s)}
-            found.append(keep | {"direction": there["direction"]})
-        return found
+            actual.append(keep | {"direction": there["direction"]})
+        return actual
 
     def ratio(self, which: int) -> dict[str, float]:
         """Extremes of the angular speed of the coupler (0) or rocker (1), by that of the crank."""
@@ -407,8 +407,8 @@ class Planter:
             return cross(arm(s), arm(s, 1))
 
         flat = flats(ratio, lambda s: cross(arm(s), arm(s, 2)), between(0, TURN))
-        found = {"min": float(ratio(flat[0])), "max": float(ratio(flat[-1]))}
-        return found | {"min_at": wrap(flat[0]), "max_at": wrap(flat[-1])}
+        actual = {"min": float(ratio(flat[0])), "max": float(ratio(flat[-1]))}
+        return actual | {"min_at": wrap(flat[0]), "max_at": wrap(flat[-1])}
 
     def loop(self, low: float, high: float) -> dict[str, float]:
         """A loop of the ground path, from one pass through its crossing to the next."""

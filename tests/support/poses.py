@@ -98,7 +98,7 @@ def drive_pivot(machine: Machine) -> str:
     return next(label for label in points if label in machine.frame)
 
 
-def pin_between(machine: Machine, one: str, other: str) -> str:
+def pin_between(machine: Machine, item: str, other: str) -> str:
     """Return the name of the point that two bodies share."""
     others = machine.points_of(other)
-    return next(label for label in machine.points_of(one) if label in others)
+    return next(label for label in machine.points_of(item) if label in others)

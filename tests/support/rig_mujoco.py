@@ -99,20 +99,22 @@ class Engine:
 
     def _closed(self) -> tuple[Series, Series]:
         """Close the first row at many crank angles; coupler against crank, and rocker."""
-        crank, *passive = (self._column(f"{one}{self.rows[0]}") for one in BARS)
+        crank, *passive = (self._column(f"{bar}{self.rows[0]}") for bar in BARS)
         self.data.qpos[:] = 0.0
-        found = [np.zeros(2)]
+        actual = [np.zeros(2)]
         for angle in np.linspace(0.0, TURN, PLACES, endpoint=False):
             self.data.qpos[crank] = angle
-            found.append(self._newton(passive, found[-1]))
-        return Series.through(np.array(found)[1:, 0]), Series.through(np.array(found)[1:, 1])
+            actual.append(self._newton(passive, actual[-1]))
+        return Series.through(np.array(actual)[1:, 0]), Series.through(np.array(actual)[1:, 1])
 
     def _newton(self, passive: list[int], guess: Real) -> Real:
         for _ in range(30):
             self.data.qpos[passive] = guess
             self._forward_places()
-            (one, j_one), (two, j_two) = (self._site(f"{bar}{self.rows[0]} C") for bar in BARS[1:])
-            step = np.linalg.solve((j_two - j_one)[:, passive], one - two)
+            (first, j_one), (two, j_two) = (
+                self._site(f"{bar}{self.rows[0]} C") for bar in BARS[1:]
+            )
+            step = np.linalg.solve((j_two - j_one)[:, passive], first - two)
             guess = guess + step
             if np.max(np.abs(step)) < 1e-14:
                 break
@@ -170,7 +172,7 @@ class Engine:
 
     def pushes(self) -> tuple[Real, Real]:
         """Return the push of each mount and the generalized force of all on the joints."""
-        found, total = [], np.zeros(self.model.nv)
+        actual, total = [], np.zeros(self.model.nv)
         for k, (mount, preload) in enumerate(zip(self.rig.mounts, self.preloads, strict=True)):
             place, jacobian = self._site(f"mount {k}")
             along = np.array([mount.direction.real, mount.direction.imag])
@@ -178,14 +180,14 @@ class Engine:
             push = preload - mount.stiffness * float(along @ (place - drawn))
             push -= mount.damping * float(along @ jacobian @ self.data.qvel)
             push = max(push, 0.0) if mount.one_sided else push
-            found.append(push)
+            actual.append(push)
             total += push * (along @ jacobian)
         tilt = self.rig.freedoms - 1
         for torsion in self.rig.torsions:
             turned, turning = self.data.qpos[tilt], self.data.qvel[tilt]
             total[tilt] -= torsion.stiffness * turned + torsion.damping * turning
         total[tilt] += self.moment
-        return np.array(found), total
+        return np.array(actual), total
 
     def solve(
         self, coordinates: Real, rates: Real, angle: float, rate: float

@@ -392,17 +392,17 @@ def balance(rig: Rig, now: Instant) -> Balance:
         set_row(rig, posed, now, equations, 3 + 9 * number)
         for tie in rig.ties:
             set_tie(rig, row, tie, posed, now, equations, 3 + 9 * number)
-    found = np.linalg.solve(equations.matrix, equations.known[..., None])[..., 0]
-    rows = found[:, 3:-1].reshape(count, len(rig.rows), 9)
-    acceleration = found[:, :3].copy()
+    solution = np.linalg.solve(equations.matrix, equations.known[..., None])[..., 0]
+    rows = solution[:, 3:-1].reshape(count, len(rig.rows), 9)
+    acceleration = solution[:, :3].copy()
     if rig.support.pivoted:
         acceleration[:, :2] = 0.0
     even = rig.drive is None
     return Balance(
         acceleration,
-        np.zeros(count) if even else found[:, -1],
+        np.zeros(count) if even else solution[:, -1],
         rows[..., 8],
-        found[:, -1] if even else torque_of(rig, now),
+        solution[:, -1] if even else torque_of(rig, now),
         rows[..., 0:8:2] + 1j * rows[..., 1:8:2],
     )
 
@@ -854,10 +854,10 @@ def reduced_steady(rig: Rig, speed: float, step: int = 59, samples_per_turn: int
 
     steps = difference_steps(rig, speed)
     start = fixed_point(flow, np.zeros(2), steps)
-    found = slope_and_miss(flow, start, steps)[0] if step == 54 else None
+    actual = slope_and_miss(flow, start, steps)[0] if step == 54 else None
     tilt, rate = followed(derivative, start[:, None], travel)[:-1, :, 0].T
     lever = mount_lever(rig, rig.gauge, rig.gauge_direction)[2]
-    eigenvalues = None if found is None else np.linalg.eigvals(found).astype(complex)
+    eigenvalues = None if actual is None else np.linalg.eigvals(actual).astype(complex)
     return Reduced(np.sign(speed) * travel[:-1], tilt, rate, lever * tilt, eigenvalues)
 
 

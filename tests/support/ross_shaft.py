@@ -82,8 +82,8 @@ def response(
     turning: ross.Rotor, node: int, unbalance: float, speeds: np.ndarray, at: int
 ) -> np.ndarray:
     """Displacement (2, S), m, of a node under an unbalance (kg m) on another, at speeds, rad/s."""
-    found = turning.run_unbalance_response(
+    result = turning.run_unbalance_response(
         node=node, unbalance_magnitude=unbalance, unbalance_phase=0.0, frequency=speeds
     )
     first = turning.number_dof * at
-    return found.forced_resp[first : first + 2].copy()
+    return result.forced_resp[first : first + 2].copy()

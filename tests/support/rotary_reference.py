@@ -80,12 +80,12 @@ class Rotary:
 
     def moving(self, theta: Array) -> list[tuple[Body, Array, Array]]:
         """Every body with the place of its origin and its angle."""
-        found = [(self.carrier, 0j * theta, theta)]
+        actual = [(self.carrier, 0j * theta, theta)]
         for arm in self.arms:
             bodies = (self.wheel, self.finger)
             for body, axis, angle in zip(bodies, arm.axes, self.angles(arm, theta), strict=True):
-                found.append((body, axis * np.exp(1j * theta), angle))
-        return found
+                actual.append((body, axis * np.exp(1j * theta), angle))
+        return actual
 
     def shaking(self, speed: float) -> tuple[Array, Array]:
         """Force, complex, and moment about the pivot, at `CYCLE`, of a crank that turns evenly."""

@@ -24,6 +24,6 @@ def reach(
     Each is taken off to the side to which the number falls, or rises, by central differences.
     """
     at, by = np.array(data, float), np.array(halves, float)
-    slopes = [value(at + by * one) - value(at - by * one) for one in np.eye(len(at))]
+    slopes = [value(at + by * item) - value(at - by * item) for item in np.eye(len(at))]
     off = by * np.sign(slopes)
     return [value(at - off), value(at + off)]

@@ -34,21 +34,21 @@ def in_time(machine: eq.Machine, output: str, about: str | None = None, count: i
     theta = np.arange(count * turns) * (2 * pi / count)
     total: Array = np.zeros(len(theta))
     for row in machine.rows:
-        found = eq.analyze(machine, theta + row.phase, acceleration=0.0, about=about).forces
+        forces = eq.analyze(machine, theta + row.phase, acceleration=0.0, about=about).forces
         x, y = row.offset
-        force = found.shaking_force.value
-        whole = found.frame_force.value
+        force = forces.shaking_force.value
+        whole = forces.frame_force.value
         signal = {
             "shaking_force": force,
             "shaking_force.x": force.real,
             "shaking_force.y": force.imag,
-            "shaking_moment": found.shaking_moment + x * force.imag - y * force.real,
-            "drive_torque": found.drive_torque,
+            "shaking_moment": forces.shaking_moment + x * force.imag - y * force.real,
+            "drive_torque": forces.drive_torque,
             "roll_moment": -row.lateral * force.imag,
             "yaw_moment": row.lateral * force.real,
             "frame_force": whole,
             "frame_force.y": whole.imag,
-            "frame_moment": found.frame_moment + x * whole.imag - y * whole.real,
+            "frame_moment": forces.frame_moment + x * whole.imag - y * whole.real,
         }[output]
         total = total + signal
     return total

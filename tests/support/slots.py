@@ -50,10 +50,10 @@ def foot(slot: CurvedSlot, place: Array) -> tuple[Array, Array, float]:
     s = np.linspace(low, high, 4001)
     away = np.hypot(*(curve(s) - place).T)
     at, wide = s[int(np.argmin(away))], s[1] - s[0]
-    found = minimize_scalar(lambda x: float(np.sum((curve(x) - place) ** 2)),
+    result = minimize_scalar(lambda x: float(np.sum((curve(x) - place) ** 2)),
                             bounds=(at - wide, at + wide), method="bounded",
                             options={"xatol": 1e-9})  # fmt: skip
-    at = float(found.x)
+    at = float(result.x)
     for _ in range(4):  # to rounding
         way, first, second = curve(at) - place, curve(at, 1), curve(at, 2)
         at -= float(way @ first / (first @ first + way @ second))
@@ -93,6 +93,6 @@ def normal_of(slot: CircularSlot | CurvedSlot, machine: Machine, poses: Poses) -
     if isinstance(slot, CurvedSlot):
         on = np.zeros(len(way)) if slot.on == FRAME else poses.angle[slot.on]
         lean = on + slot.direction
-        return np.array([turned(a, foot(slot, turned(-a, one))[1])
-                         for a, one in zip(lean, way, strict=True)])  # fmt: skip
+        return np.array([turned(a, foot(slot, turned(-a, item))[1])
+                         for a, item in zip(lean, way, strict=True)])  # fmt: skip
     return np.asarray(way / np.linalg.norm(way, axis=-1, keepdims=True))

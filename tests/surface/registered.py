@@ -22,32 +22,32 @@ def functions() -> dict[str, Callable[..., Any]]:
 def _below(group: App, before: str = "") -> Iterator[tuple[str, Callable[..., Any]]]:
     for word in group.resolved_commands():
         if not word.startswith("-"):
-            name, found = f"{before}{word}", group[word]
-            assert found.default_command is not None
-            yield name, found.default_command
-            yield from _below(found, f"{name} ")
+            name, actual = f"{before}{word}", group[word]
+            assert actual.default_command is not None
+            yield name, actual.default_command
+            yield from _below(actual, f"{name} ")
 
 
 def options(name: str) -> list[str]:
     """What a command takes: names of files and values first, then its options."""
-    return [one for each, kind, hint in _taken(name) for one in _named(each, kind, hint)]
+    return [item for each, kind, hint in _taken(name) for item in _named(each, kind, hint)]
 
 
 def _taken(name: str) -> Iterator[tuple[str, Any, Any]]:
     function = functions()[name]
     hints = get_type_hints(function, include_extras=True)
-    for one in signature(function).parameters.values():
-        yield one.name, one, hints[one.name]
+    for parameter in signature(function).parameters.values():
+        yield parameter.name, parameter, hints[parameter.name]
 
 
-def _named(name: str, one: Any, hint: Any) -> Iterator[str]:
+def _named(name: str, item: Any, hint: Any) -> Iterator[str]:
     if is_dataclass(hint):
         inner = get_type_hints(hint, include_extras=True)
         for part in fields(hint):
             yield from _named(part.name, None, inner[part.name])
         return
     given = [mark.name for mark in _marks(hint, Parameter) if mark.name]
-    typed = one is None or one.kind is one.KEYWORD_ONLY
+    typed = item is None or item.kind is item.KEYWORD_ONLY
     yield given[-1][0] if given else f"--{name.replace('_', '-')}" if typed else name.upper()
 
 
@@ -66,13 +66,13 @@ def line_of(name: str, file: str = "") -> list[str]:
     file : instead of a bundled one.
     """
     words = name.split()
-    for _, one, hint in _taken(name) if declared_of(functions()[name]) else ():
-        if one.default is not one.empty or one.kind is one.KEYWORD_ONLY:
+    for _, first, hint in _taken(name) if declared_of(functions()[name]) else ():
+        if first.default is not first.empty or first.kind is first.KEYWORD_ONLY:
             continue
         examples = [mark.example for mark in _marks(hint, LoadedFile)]
-        examples = [file or one for one in examples if one]
+        examples = [file or example for example in examples if example]
         wanted = [mark.metavar or "" for mark in _marks(hint, Parameter)]
-        examples += [one.strip('"') for one in wanted if one.startswith('"')]
+        examples += [item.strip('"') for item in wanted if item.startswith('"')]
         if not examples:
             return []
         words.append(examples[0])

@@ -62,8 +62,10 @@ LINKS = len(load_linkage("yamashita-1").links)
 
 def test_it_is_in_the_help() -> None:
     assert "heft" in succeeded(equipoise("--help"))
-    told = succeeded(equipoise("heft", "--help"))
-    assert all(one in told for one in ("FILE", "--times", "--units", "--json", "--csv", "--plot"))
+    printed = succeeded(equipoise("heft", "--help"))
+    assert all(
+        name in printed for name in ("FILE", "--times", "--units", "--json", "--csv", "--plot")
+    )
 
 
 @pytest.mark.exhaustive(but=["man.py-page"])
@@ -98,8 +100,8 @@ def test_it_prints_below_the_title_of_what_it_has_loaded() -> None:
 def test_it_speaks_the_language_that_is_asked_for() -> None:
     with speaking("ko"):  # of whoever calls it
         assert heft("yamashita-1", times=2).text.endswith(f"crank angle, {2 * LINKS} links\n")
-    told = succeeded(equipoise("heft", "yamashita-1", "--language", "ja"))
-    assert told.splitlines()[-1] == f"クランク角, {LINKS} links"
+    printed = succeeded(equipoise("heft", "yamashita-1", "--language", "ja"))
+    assert printed.splitlines()[-1] == f"クランク角, {LINKS} links"
 
 
 def test_its_values_are_json_and_its_columns_a_csv_file() -> None:

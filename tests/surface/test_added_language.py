@@ -67,13 +67,13 @@ def run(package: Path, *arguments: str) -> str:
 
 
 def test_a_language_is_one_file(package: Path) -> None:
-    told = json.loads(run(package, "-c", ASKED))
-    assert told["languages"]["la"] == "Latin"
-    spoken = told["spoken"]
+    content = json.loads(run(package, "-c", ASKED))
+    assert content["languages"]["la"] == "Latin"
+    spoken = content["spoken"]
     assert (spoken["language"], spoken["decimal"]) == ("la", ",")
     assert spoken["words"]["Undo"] == "Revocare"
-    assert spoken["languages"] == told["languages"]
-    assert '"la": {' in json.dumps(told["schema"])
+    assert spoken["languages"] == content["languages"]
+    assert '"la": {' in json.dumps(content["schema"])
     report = (package / "a.html").read_text(encoding="utf-8")
     assert '<html lang="la">' in report and "celeritas" in report
 

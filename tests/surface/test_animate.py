@@ -21,7 +21,7 @@ from surface.running import (
 )
 
 
-def test_an_svg_is_written_beside_you_unless_told_otherwise() -> None:
+def test_an_svg_is_written_to_the_current_folder_by_default() -> None:
     result = equipoise("animate", "yamashita-1", "--force", "--speed", "240 rpm")
     assert succeeded(result) == ""
     assert result.err == "wrote yamashita-1.svg\n"
@@ -78,9 +78,9 @@ def test_the_same_bytes_on_every_run(name: str) -> None:
     assert Path(name).read_bytes() == Path(f"again-{name}").read_bytes()
 
 
-def test_the_movement_of_the_support_is_drawn_and_told() -> None:
+def test_the_movement_of_the_support_is_drawn_and_reported() -> None:
     succeeded(equipoise("animate", "yamashita-1"))
-    for name, words, told in (
+    for name, words, text in (
         ("chosen", [], "movement of the support 2 times as large"),
         ("twenty", ["--exaggerate", "20"], "movement of the support 20 times as large"),
         ("true", ["--exaggerate", "1", "--speed", "150 rpm"], "movement of the support to scale"),
@@ -88,7 +88,7 @@ def test_the_movement_of_the_support_is_drawn_and_told() -> None:
         ("still", ["--exaggerate", "0"], "</svg>"),
     ):
         succeeded(equipoise("animate", "yamashita-rig", "-o", f"{name}.svg", *words))
-        assert told in Path(f"{name}.svg").read_text(encoding="utf-8")
+        assert text in Path(f"{name}.svg").read_text(encoding="utf-8")
     assert Path("chosen.svg").read_bytes() != Path("yamashita-1.svg").read_bytes()
 
 

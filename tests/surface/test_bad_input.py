@@ -332,13 +332,13 @@ def test_a_crank_that_cannot_turn(text: str) -> None:
     Path("bad.toml").write_text(text)
     Path("bad-study.toml").write_text(STUDY)
     before = set(os.listdir())
-    told = [equipoise(*words.split()) for words in REFUSING]
-    said = {re.split("bad.toml: |compute the model: ", refused(one))[-1] for one in told}
+    texts = [equipoise(*words.split()) for words in REFUSING]
+    said = {re.split("bad.toml: |compute the model: ", refused(item))[-1] for item in texts}
     assert len(said) == 1, said
     (line,) = said
     assert line.startswith(("the crank cannot turn fully: it stops at", "change point at crank"))
     assert set(os.listdir()) == before
-    below = {one.err.partition("\n")[2].strip() for one in told}
+    below = {item.err.partition("\n")[2].strip() for item in texts}
     (lines_to_paste,) = {lines.partition("\n# more: equipoise explain ")[0] for lines in below}
     assert len(below) == 1
     with pytest.raises(MotionError) as caught:
@@ -382,8 +382,8 @@ def test_a_study_of_designs_that_turn_may_begin_with_one_that_does_not() -> None
     vary = '{ path = "links.crank.points.B[1]", range = ["30 mm", "120 mm"], steps = 4 }'
     Path("lengths.toml").write_text(re.sub(r"vary = \[.*\]", f"vary = [{vary}]", STUDY))
     Path("x").mkdir()
-    told = succeeded(equipoise("sweep", "lengths.toml", "-o", "x/designs.zarr"))
-    assert re.search(r"does not turn fully", told)
+    printed = succeeded(equipoise("sweep", "lengths.toml", "-o", "x/designs.zarr"))
+    assert re.search(r"does not turn fully", printed)
 
 
 def test_missing_sides_can_be_pasted() -> None:
@@ -405,7 +405,7 @@ def test_byte_order_mark_and_windows_lines_are_fine() -> None:
     assert succeeded(equipoise("check", "good.toml")).endswith(f"{READY}\n")
 
 
-def test_every_angle_is_told_that_a_rocking_crank_does_not_reach() -> None:
+def test_every_angle_reports_that_a_rocking_crank_does_not_reach() -> None:
     changed(FOUR_BAR, ('points.B = ["33.5 mm", "0 mm"]', 'points.B = ["120 mm", "0 mm"]'))
     line = refuses("analyze model.toml --angles '180 deg'", "180 deg")
     assert line.startswith("model.toml: the crank cannot turn fully")

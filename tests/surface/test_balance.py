@@ -48,7 +48,7 @@ def run(*words: str | Path) -> str:
     return succeeded(equipoise("balance", *words, *full))
 
 
-def told(*words: str | Path) -> dict[str, Any]:
+def as_json(*words: str | Path) -> dict[str, Any]:
     return read("balance", *words)
 
 
@@ -80,9 +80,9 @@ def test_tables_of_the_papers_counterweight() -> None:
 
 def test_what_to_look_at_next_is_what_was_not_done(tmp_path: Path) -> None:
     out = tmp_path / "two words.toml"
-    told = unfolded(succeeded(equipoise("balance", "balance-crank")))
+    reported = unfolded(succeeded(equipoise("balance", "balance-crank")))
     written = unfolded(succeeded(equipoise("balance", "balance-crank", "--out", out)))
-    assert "Look at next: balance --out FILE; balance --full." in told
+    assert "Look at next: balance --out FILE; balance --full." in reported
     assert f"Look at next: report '{out}'; balance --full." in written
 
 
@@ -102,9 +102,9 @@ def test_limits_and_their_prices() -> None:
         *("3.487", "3.487", "0.9613 N per N")
     ]
     assert cells(text.partition("Limits")[2], "force in joint A, peak")[-1] == "nothing"
-    content = told(*words)
+    content = as_json(*words)
     price = content["prices"]["rms of shaking_force.x"]
-    again = told(*words[:-1], "shaking_force.x <= 3.497 N")
+    again = as_json(*words[:-1], "shaking_force.x <= 3.497 N")
     key = "rms of shaking_force.y"
     fall = content["objectives"][key]["after"] - again["objectives"][key]["after"]
     step = 3.497 - price["at_most"]
@@ -132,7 +132,7 @@ def test_shapes(shape: str) -> None:
     words = (*CRANK, *FORCE, "--shape", shape, *plate)
     made = f"{shape} of" if shape in {"disc", "sector"} else "point mass of"
     assert f"made as: {made}" in run(*words)
-    content = told(*words)
+    content = as_json(*words)
     (change,) = content["changes"]
     assert sum(piece["mass"] for piece in change["pieces"]) == pytest.approx(change["mass"])
     assert change["mass"] == pytest.approx(content["added_mass"])
@@ -158,7 +158,7 @@ def test_everything_else_that_may_be_freed() -> None:
 
 def test_several_objectives() -> None:
     words = ("--objective", "peak shaking_force weight 2", "--objective", "rms drive_torque")
-    content = told(*CRANK, *words)
+    content = as_json(*CRANK, *words)
     assert list(content["objectives"]) == ["peak of shaking_force", "rms of drive_torque"]
     before_after = content["objectives"].values()
     cost = sum(w * x["after"] / x["before"] for w, x in zip((2, 1), before_after, strict=True))
@@ -182,7 +182,7 @@ def test_several_objectives() -> None:
     ],
 )
 def test_objectives_in_words(asked: str, name: str) -> None:
-    content = told("yamashita-1", "--move-cm", "coupler", "--objective", asked)
+    content = as_json("yamashita-1", "--move-cm", "coupler", "--objective", asked)
     assert list(content["objectives"]) == [name]
     values = content["objectives"][name]
     assert values["after"] < values["before"]
@@ -216,10 +216,10 @@ def test_an_objective_is_named_also_where_no_figure_is_large() -> None:
 
 
 def test_another_speed() -> None:
-    slow, fast = (told("balance-crank", "--speed", speed) for speed in ("-100 rpm", "200 rpm"))
+    slow, fast = (as_json("balance-crank", "--speed", speed) for speed in ("-100 rpm", "200 rpm"))
     assert fast["speed"] == pytest.approx(200 * math.pi / 30)
-    (one,), (other,) = slow["objectives"].values(), fast["objectives"].values()
-    assert other["after"] == pytest.approx(4 * one["after"])
+    (first,), (other,) = slow["objectives"].values(), fast["objectives"].values()
+    assert other["after"] == pytest.approx(4 * first["after"])
 
 
 # Several speeds: tests/unit/balancing/test_effects.py.
@@ -231,7 +231,7 @@ def test_gauges_at_several_speeds() -> None:
     assert cells(text, "reading at gauge, peak to peak, mm")
     assert "note: added mass increases the mass of the support" in text
     words = ("peak gauges.gauge speeds 100 rpm, 193 rpm", "--at-most", "500 g")
-    content = told("yamashita-rig", "--crank-counterweight", "--objective", *words)
+    content = as_json("yamashita-rig", "--crank-counterweight", "--objective", *words)
     (values,) = content["objectives"].values()
     assert values["after"] < values["before"]
 
@@ -242,7 +242,7 @@ def test_a_balanced_machine_has_no_speed_at_which_it_shakes_as_before() -> None:
     speeds = text.partition("Speed at which it shakes as before")[2]
     assert "shaking_force" not in speeds
     assert "shaking moment, RMS" in speeds
-    content = told("exudyn-slider-crank")
+    content = as_json("exudyn-slider-crank")
     assert not any(name.startswith("shaking_force") for name in content["equivalent_speeds"])
 
 
@@ -309,7 +309,7 @@ def test_phases_of_rows() -> None:
     assert cells(speeds, "all rows: shaking force, RMS") == ["501.4"]
     phases = [math.degrees(row.phase) for row in eq.load("rows.toml").rows]
     assert phases == pytest.approx([0, 180, 270, 90])
-    content = told("four-row-transplanter")
+    content = as_json("four-row-transplanter")
     assert 0 <= content["gap"] < 1e-3
     assert content["rows"]["remaining_orders"][:2] == [4, 8]
     assert [math.degrees(phase) for phase in content["rows"]["phases"]] == pytest.approx(phases)
@@ -324,11 +324,11 @@ def test_phases_by_an_option() -> None:
 
 
 def test_json_is_the_result_of_the_function() -> None:
-    content = told("balance-crank")
-    found = eq.balance(eq.load("balance-crank"))
-    assert list(content) == list(found.to_dict())
+    content = as_json("balance-crank")
+    balanced = eq.balance(eq.load("balance-crank"))
+    assert list(content) == list(balanced.to_dict())
     for key in ("before", "after", "equivalent_speeds", "objectives", "gap", "prices", "bound"):
-        assert content[key] == found.to_dict()[key], key
+        assert content[key] == balanced.to_dict()[key], key
     assert content["changes"][0]["pieces"][0]["shape"] == "point"
     assert content["changes"][0]["radius"] == pytest.approx(0.0357, abs=5e-5)
     assert content["planting_kept"] is None
@@ -346,7 +346,7 @@ def test_csv() -> None:
     assert "drive_torque.after [N m]" in header
     values = dict(zip(header, np.array(rows, float).T, strict=True))
     assert len(rows) == 720
-    content = told("balance-crank")
+    content = as_json("balance-crank")
     for when in ("before", "after"):
         force = values[f"shaking_force.y.{when} [N]"]
         assert measured(force, "rms") == pytest.approx(content[when]["shaking_force.y.rms"])
@@ -390,7 +390,7 @@ def test_the_new_model_does_what_was_printed(name: str) -> None:
 def test_planting_figures_are_kept() -> None:
     text = run("kim-chung-a", "--crank-counterweight", *FORCE)
     assert "The planting figures stay as they are." in text
-    assert told("kim-chung-a", "--crank-counterweight", *FORCE)["planting_kept"] is True
+    assert as_json("kim-chung-a", "--crank-counterweight", *FORCE)["planting_kept"] is True
 
 
 # -- other questions -------------------------------------------------------------------------------
@@ -409,10 +409,10 @@ def test_front() -> None:
         np.array([[2.809, 5.109], [5.018, 3.016]]), rel=1e-3
     )
     assert "Every point is as good as any can be, to" in text
-    content = told(*FRONT)
+    content = as_json(*FRONT)
     assert content["before"]["rms of shaking_force.x"] == pytest.approx(8.718, abs=5e-4)
-    found = [[p["first"], p["second"], 1e3 * p["added_mass"]] for p in content["points"]]
-    np.testing.assert_allclose(found, values, rtol=6e-4)
+    actual = [[p["first"], p["second"], 1e3 * p["added_mass"]] for p in content["points"]]
+    np.testing.assert_allclose(actual, values, rtol=6e-4)
     assert all(point["gap"] < 1e-7 and point["changes"] for point in content["points"])
     succeeded(equipoise("balance", *FRONT, "--csv", "x.csv"))
     lines = Path("x.csv").read_text(encoding="utf-8").splitlines()
@@ -421,14 +421,14 @@ def test_front() -> None:
 
 
 def test_front_has_21_points() -> None:
-    assert len(told(*FRONT[:-2])["points"]) == 21
+    assert len(as_json(*FRONT[:-2])["points"]) == 21
 
 
 def test_conditions() -> None:
     text = run("conditions", "yamashita-1")
     assert "mass*x of coupler / 71.5 mm + mass*x of rocker / 80 mm = 0" in text
     assert "The shaking force can be made zero, with every mass as it is." in text
-    content = told("conditions", "yamashita-1")
+    content = as_json("conditions", "yamashita-1")
     assert [len(content[kind]["conditions"]) for kind in ("zero", "sine")] == [4, 2]
     assert content["zero"]["conditions"][3]["condition"].startswith("coupler.moment_y / 71.5 mm")
     assert content["verdict"]["shaking_force"]["possible"] is True
@@ -442,7 +442,7 @@ def test_sensitivities() -> None:
     row = cells(text, "coupler  centre of mass, x")
     assert row[1] == "mm"
     assert [float(part) for part in row[3].split(",")] == pytest.approx([6.7, 265.8])
-    content = told(*words)
+    content = as_json(*words)
     assert content["output"] == "shaking_force.y"
     at = np.degrees(content["sensitivities"]["coupler.center_x"]["no_effect_at"]) + 100
     assert at % 360 == pytest.approx([265.8, 6.7], abs=0.05)
@@ -462,8 +462,8 @@ def test_arrangements() -> None:
     wide = run("arrangements", "yamashita-2", "4", "--spacing", "600 mm")
     row = cells(wide.partition("Figures")[2], "4 quarter turns")
     assert [float(part) for part in row] == pytest.approx([13.80, 2 * 9.556, 2 * 6.522], rel=1e-3)
-    content = told("arrangements", "yamashita-2", "6")
-    assert [one["source"] for one in content["patterns"]][:1] == ["Table 5, 6 claws (a)"]
+    content = as_json("arrangements", "yamashita-2", "6")
+    assert [entry["source"] for entry in content["patterns"]][:1] == ["Table 5, 6 claws (a)"]
 
 
 # -- plans that cannot be -------------------------------------------------------------------------
@@ -527,9 +527,9 @@ def test_a_file_that_is_there_is_not_overwritten() -> None:
 @pytest.mark.exhaustive
 def test_the_drawing_of_each_counterweight_is_written_with_the_new_model(tmp_path: Path) -> None:
     new, drawing = tmp_path / "new.toml", tmp_path / "new.pdf"
-    told = equipoise("balance", "balance-rig", "--out", new, "--drawing", drawing)
-    succeeded(told)
-    assert [x for x in told.err.splitlines() if x.startswith("wrote")] == [
+    process = equipoise("balance", "balance-rig", "--out", new, "--drawing", drawing)
+    succeeded(process)
+    assert [x for x in process.err.splitlines() if x.startswith("wrote")] == [
         f"wrote {new}",
         f"wrote {drawing}",
     ]
@@ -539,8 +539,8 @@ def test_the_drawing_of_each_counterweight_is_written_with_the_new_model(tmp_pat
 def test_what_a_drawing_cannot_have_is_said(tmp_path: Path) -> None:
     """And neither file is written where there is nothing to draw."""
     new, drawing = tmp_path / "p.toml", tmp_path / "p.dxf"
-    told = equipoise("balance", "balance-crank", "--out", new, "--drawing", drawing)
-    assert told.status == 0 and "note: the drawing leaves out" in told.err
+    process = equipoise("balance", "balance-crank", "--out", new, "--drawing", drawing)
+    assert process.status == 0 and "note: the drawing leaves out" in process.err
     assert new.is_file() and drawing.is_file()
     other = ("balance", "balance-crank", "--out", tmp_path / "q.toml")
     sentence = refused(equipoise(*other, "--drawing", tmp_path / "q.pdf"))
@@ -578,7 +578,7 @@ def test_outputs_of_several_rows_are_taken_by_the_names_that_results_have(row: s
 def test_a_file_names_outputs_of_several_rows_as_results_do() -> None:
     machine = eq.load("four-row-transplanter")
     aims = Objective("rows.drive_torque"), Objective("drive_torque")
-    plans = [Balance(objectives=(one,), limits=(Limit(one, ratio=1.0),)) for one in aims]
+    plans = [Balance(objectives=(aim,), limits=(Limit(aim, ratio=1.0),)) for aim in aims]
     assert plans[0] == plans[1] and machine.with_balance(plans[0]).balance == plans[1]
 
 

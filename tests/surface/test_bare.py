@@ -42,19 +42,19 @@ def normal(name: str) -> str:
 
 def installed_with(name: str) -> set[str]:
     """Distributions that a distribution brings, itself among them, without any of its extras."""
-    found: set[str] = set()
+    result: set[str] = set()
     left = deque([normal(name)])
     while left:
-        one = left.popleft()
-        if one in found:
+        first = left.popleft()
+        if first in result:
             continue
-        found.add(one)
+        result.add(first)
         try:
-            wanted = requires(one) or []
+            wanted = requires(first) or []
         except PackageNotFoundError:  # of another system or version of Python
             continue
         left += (normal(re.split(r"[^\w.-]", w, maxsplit=1)[0]) for w in wanted if "extra" not in w)
-    return found
+    return result
 
 
 @cache
@@ -78,8 +78,8 @@ def bare(folder: Path, commands: list[list[str]]) -> subprocess.CompletedProcess
 
 def statuses(done: subprocess.CompletedProcess[str]) -> dict[str, int]:
     """Exit status of each command."""
-    found = re.findall(r"^status (\d+) (.*)$", done.stdout, re.MULTILINE)
-    return {command: int(status) for status, command in found}
+    matches = re.findall(r"^status (\d+) (.*)$", done.stdout, re.MULTILINE)
+    return {command: int(status) for status, command in matches}
 
 
 def test_what_is_left_out_is_what_extras_bring() -> None:
@@ -96,15 +96,15 @@ def test_bundled_files_of_every_kind_are_checked(tmp_path: Path) -> None:
     names = (*EXAMPLES[::12], *TOOLS, *STUDIES)
     done = bare(tmp_path, [["check", name] for name in names])
     assert statuses(done) == {f"check {name}": 0 for name in names}
-    told = done.stdout
-    assert told.count("computed many at once, by NumPy\n") == len(STUDIES)
-    assert told.count("a sweep needs zarr, which is not installed") == len(STUDIES)
-    searched = told.count("a search needs pymoo, which is not installed")
+    printed = done.stdout
+    assert printed.count("computed many at once, by NumPy\n") == len(STUDIES)
+    assert printed.count("a sweep needs zarr, which is not installed") == len(STUDIES)
+    searched = printed.count("a search needs pymoo, which is not installed")
     assert searched == len(STUDIES) - 1
-    needed = told.count('install it with: pip install "equipoise[studies]"')
+    needed = printed.count('install it with: pip install "equipoise[studies]"')
     assert needed == len(STUDIES) + searched
-    assert "ready for: equipoise tolerance study-of-tolerances\n" in told
-    assert told.count("ready for: equipoise tolerance") == 1
+    assert "ready for: equipoise tolerance study-of-tolerances\n" in printed
+    assert printed.count("ready for: equipoise tolerance") == 1
 
 
 WORKS = [

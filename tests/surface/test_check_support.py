@@ -24,7 +24,7 @@ def test_nothing_of_them_where_there_are_none() -> None:
 
 def test_support() -> None:
     lines = checked(SUPPORT)
-    told = [
+    texts = [
         "support: 60.00 kg; it can heave and pitch",
         "  mount front: pushes along 90.00 deg at (400.0, -200.0, 0) mm, 50000 N/m, 400.0 N s/m",
         "  mount float: pushes along (0.5000, 2.000, 0) at (-400.0, -200.0, 30.00) mm, 9807 N/m, "
@@ -33,7 +33,7 @@ def test_support() -> None:
         "  handle: a gauge that reads along -30.00 deg at (-707.1, 707.1, 0) mm",
         "  nod: a gauge that reads about the pitch axis",
     ]
-    assert unfolded("\n".join(told)) in unfolded("\n".join(lines))
+    assert unfolded("\n".join(texts)) in unfolded("\n".join(lines))
 
 
 def test_pivot_without_mounts() -> None:

@@ -62,16 +62,16 @@ def analyzed(*arguments: str | Path) -> dict[str, Any]:
     return read("analyze", *arguments)
 
 
-def test_outputs_and_dwells_are_told_by_name(tmp_path: Path) -> None:
+def test_outputs_and_dwells_are_reported_by_name(tmp_path: Path) -> None:
     """A vector by its components; with --csv alone, with --json beside all else."""
     table, name = tmp_path / "out.csv", "centers.coupler/frame"
-    found = analyzed("yamashita-1", "--output", name, "--dwell", "0.5 mm")
+    result = analyzed("yamashita-1", "--output", name, "--dwell", "0.5 mm")
     succeeded(equipoise("analyze", "--full", "yamashita-1", "--output", name, "--csv", table))
-    assert list(found["outputs"]) == [f"{name}.x", f"{name}.y"]
+    assert list(result["outputs"]) == [f"{name}.x", f"{name}.y"]
     header = table.read_text().splitlines()[0]
     assert header == f"crank_angle [rad],{name}.x [m],{name}.y [m]"
-    assert list(found["dwells"]) == ["C", "P"]
-    assert found["dwells"]["P"]["tolerance"] == pytest.approx(0.5e-3)
+    assert list(result["dwells"]) == ["C", "P"]
+    assert result["dwells"]["P"]["tolerance"] == pytest.approx(0.5e-3)
     text = succeeded(equipoise("analyze", "--full", "stephenson-six-bar", "--dwell", "0.5 deg"))
     assert re.search(r"^output +0.5000 +120.0 at 128.5$", text, re.MULTILINE)
     assert "Force in each joint" not in text
@@ -89,7 +89,7 @@ def test_outputs_and_dwells_are_told_by_name(tmp_path: Path) -> None:
         (("--dwell", "P"), "--dwell: got 'P'; give a length of more than 0, such as"),
     ],
 )
-def test_outputs_and_dwells_that_cannot_be_told(options: tuple[str, ...], told: str) -> None:
+def test_outputs_and_dwells_that_cannot_be_reported(options: tuple[str, ...], told: str) -> None:
     assert told in refused(equipoise("analyze", "yamashita-1", *options))
 
 
@@ -129,7 +129,7 @@ OPTIONS = {name: options(name) for name in functions()}
 
 
 @pytest.mark.parametrize("name", OPTIONS)
-def test_help_of_a_command_tells_each_option(name: str) -> None:
+def test_help_of_a_command_reports_each_option(name: str) -> None:
     text = helps()[f"{name} --help"]
     assert text.startswith(f"Usage: equipoise {name}")
     shown = re.findall(r"^[│|] [* ]{0,3}([A-Z]+|--[a-z-]+) +\S", text, re.MULTILINE)
@@ -139,17 +139,17 @@ def test_help_of_a_command_tells_each_option(name: str) -> None:
 
 def test_help_says_what_an_option_wants() -> None:
     """In words or by an example, not by a type of Python; what is not asked for is not done."""
-    told = "".join(helps().values())
-    assert re.findall(r"\b(?:STR|INT|FLOAT|ANY|BOOL)\b|default: (?:False|None)", told) == []
-    assert '--speed "250 rpm"' in told and "--csv FILE" in told and "--orders NUMBER" in told
+    text = "".join(helps().values())
+    assert re.findall(r"\b(?:STR|INT|FLOAT|ANY|BOOL)\b|default: (?:False|None)", text) == []
+    assert '--speed "250 rpm"' in text and "--csv FILE" in text and "--orders NUMBER" in text
 
 
 def test_help_has_lines_of_its_own_and_no_markup() -> None:
     """Whatever lines the text has in the source."""
-    told = helps()["balance --help"]
+    reported = helps()["balance --help"]
     assert (
         "Its table  │\n│          [balance] has the permitted changes and the objectives; the"
-        in told
+        in reported
     )
     assert "`" not in "".join(helps().values())
 
@@ -171,16 +171,18 @@ def test_a_shell_completes_commands_options_and_values(shell: str) -> None:
 
 # The man page is made by tests/surface/test_added_command.py.
 @pytest.mark.exhaustive
-def test_the_man_page_tells_every_option(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_man_page_reports_every_option(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", ["equipoise"])  # by which the program is called
     page = runpy.run_path(str(ROOT / "docs" / "man.py"))["page"]().decode().replace("\\-", "-")
-    told = re.split(r"(?m)^equipoise ((?!-)[a-z -]+?)(?: [A-Z\[].*)?$", page)[1:]
-    parts = dict(zip(told[::2], told[1::2], strict=True))
+    reported = re.split(r"(?m)^equipoise ((?!-)[a-z -]+?)(?: [A-Z\[].*)?$", page)[1:]
+    parts = dict(zip(reported[::2], reported[1::2], strict=True))
     assert parts.keys() == OPTIONS.keys()
     for name, listed in OPTIONS.items():
         heads = re.findall(r"(?m)^\.B \\fB(.*)\\fP$", parts[name])
         assert [
-            one for one in listed if not any(one in head.replace(",", "").split() for head in heads)
+            item
+            for item in listed
+            if not any(item in head.replace(",", "").split() for head in heads)
         ] == [], name
 
 
@@ -206,7 +208,7 @@ def test_check_of_an_example(name: str) -> None:
     )
 
 
-def test_check_tells_the_build_up() -> None:
+def test_check_reports_the_build_up() -> None:
     text = succeeded(equipoise("check", "watt-six-bar"))
     assert "  coupler and rocker: dyad; joints B (pin on crank), D (pin on frame)" in text
     assert "by Newton's method" in succeeded(equipoise("check", "class-three"))
@@ -241,7 +243,7 @@ def test_tables_of_an_example(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["check", "analyze"])
-def test_a_model_without_masses_is_told_of(name: str) -> None:
+def test_a_model_without_masses_is_reported_of(name: str) -> None:
     full = ["--full"] if name == "analyze" else []
     text = succeeded(equipoise(name, written(massless()), *full))
     assert re.search(r"^ *coupler[ :]", text, re.MULTILINE)
@@ -433,13 +435,13 @@ def test_angles_by_list() -> None:
 
 
 def test_forces_of_inertia_grow_with_the_square_of_the_speed() -> None:
-    one, two = (
+    first, two = (
         analyzed("yamashita-1", "--angles", "12", "--speed", speed)
         for speed in ("100 rpm", "-200 rpm")
     )
-    assert two["speed"] == pytest.approx(-2 * one["speed"])
+    assert two["speed"] == pytest.approx(-2 * first["speed"])
     for place in ("shaking_force.x", "shaking_force.y", "shaking_moment", "points.P.ax"):
-        slow, fast = (np.array(split_by_dots(content, place)) for content in (one, two))
+        slow, fast = (np.array(split_by_dots(content, place)) for content in (first, two))
         np.testing.assert_allclose(fast, 4 * slow, rtol=0, atol=1e-12 * np.max(np.abs(fast)))
 
 
@@ -483,9 +485,9 @@ def schema() -> dict[str, Any]:
 def test_schema_is_the_shipped_file(kind: str) -> None:
     shipped = Path(package.__file__).with_name("schema") / f"{kind}.schema.json"
     option = () if kind == "model" else (f"--{kind}",)
-    found = json.loads(succeeded(equipoise("schema", *option)))
-    assert found == json.loads(shipped.read_text(encoding="utf-8"))
-    jsonschema.Draft202012Validator.check_schema(found)
+    content = json.loads(succeeded(equipoise("schema", *option)))
+    assert content == json.loads(shipped.read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator.check_schema(content)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -735,14 +737,14 @@ def test_a_full_disk_leaves_nothing() -> None:
 
 
 def test_a_command_that_takes_long_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    told = threading.Event()
+    reported = threading.Event()
 
     def slowly(*_: object) -> None:
-        assert told.wait(300)
+        assert reported.wait(300)
 
     class Heard(io.StringIO):
         def write(self, text: str) -> int:
-            told.set()
+            reported.set()
             return super().write(text)
 
     monkeypatch.delenv("EQUIPOISE_PROGRESS")
@@ -756,18 +758,18 @@ def test_a_command_that_takes_long_says_so(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_long_work_between_two_steps_says_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     """A line that was told long ago does not count."""
-    told = threading.Event()
+    reported = threading.Event()
 
     class Heard(io.StringIO):
         def write(self, text: str) -> int:
             done = super().write(text)
             if "step 3 of 40" in self.getvalue():
-                told.set()
+                reported.set()
             return done
 
     def balanced(*_: object, progress: Any, **__: object) -> None:
         progress(3, 40)
-        assert told.wait(300)
+        assert reported.wait(300)
 
     monkeypatch.delenv("EQUIPOISE_PROGRESS")
     monkeypatch.setattr("equipoise.cli.SIGN", 0.05)
@@ -817,10 +819,10 @@ def test_linear_algebra_takes_no_thread_beside_its_own(monkeypatch: pytest.Monke
         monkeypatch.setattr(f"equipoise.cli.{name}", lambda: None)
     monkeypatch.setattr(signal, "signal", lambda *_: None)
     monkeypatch.setattr(sys, "stdout", io.StringIO())
-    told = []
-    monkeypatch.setattr("equipoise.cli.run", lambda: told.extend(map(os.getenv, ONE_THREAD)))
+    texts = []
+    monkeypatch.setattr("equipoise.cli.run", lambda: texts.extend(map(os.getenv, ONE_THREAD)))
     kept = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
     there = mock.patch.dict(os.environ, {**kept, ONE_THREAD[0]: "3"}, clear=True)
     with there, pytest.raises(SystemExit):
         main()
-    assert told == ["3", "1", "1"]
+    assert texts == ["3", "1", "1"]

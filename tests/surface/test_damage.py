@@ -49,7 +49,7 @@ def run(words: tuple[str, ...]) -> Result:
     return equipoise(words[0], STORE, *words[1:])
 
 
-def told(result: Result) -> None:
+def works_or_is_refused(result: Result) -> None:
     """It worked, or one sentence said why not."""
     if result.status:
         assert len(refused(result)) < 1000
@@ -110,7 +110,7 @@ def test_attributes_that_do_not_fit(change: Callable[[Any], Any], words: str) ->
 def test_damage_at_random(made: Path, data: Any, words: tuple[str, ...]) -> None:
     shutil.rmtree(STORE, ignore_errors=True)
     shutil.copytree(made, STORE)
-    file = data.draw(st.sampled_from([one for one in sorted(STORE.rglob("*")) if one.is_file()]))
+    file = data.draw(st.sampled_from([path for path in sorted(STORE.rglob("*")) if path.is_file()]))
     if file.name == "zarr.json":
         content = json.loads(file.read_text(encoding="utf-8"))
         where = data.draw(st.sampled_from(("whole", "attributes", "study")))
@@ -129,7 +129,7 @@ def test_damage_at_random(made: Path, data: Any, words: tuple[str, ...]) -> None
         kept = file.read_bytes()
         cut = data.draw(st.integers(0, len(kept)))
         file.write_bytes(kept[:cut] + data.draw(st.binary(max_size=4)))
-    told(run(words))
+    works_or_is_refused(run(words))
 
 
 # -- checksums -------------------------------------------------------------------------------------
@@ -142,7 +142,7 @@ def test_a_bit_that_flips_changes_no_figure(made: Path, seed: int) -> None:
     """Each file in turn: what is read is refused, or what was written; computing again mends it."""
     random = Random(seed)
     expected, whole = run(("best", "--json")).out, contents(STORE)
-    chunks = [one for one in sorted(STORE.rglob("*")) if one.is_file() and one.name != ".lock"]
+    chunks = [path for path in sorted(STORE.rglob("*")) if path.is_file() and path.name != ".lock"]
     for file in chunks:
         kept = bytearray(file.read_bytes())
         kept[random.randrange(len(kept))] ^= 1 << random.randrange(8)
@@ -187,7 +187,7 @@ def test_reasons_that_have_changed_places_are_refused(folder: Path) -> None:
     for words in COMMANDS[:3]:
         assert "reason of designs 0 to " in refused(run(words))
     succeeded(run(("resume",)))
-    told(run(("best",)))
+    works_or_is_refused(run(("best",)))
 
 
 def test_a_store_without_checksums_is_read_and_gone_on_with_as_it_was(made: Path) -> None:

@@ -38,7 +38,7 @@ def records(folder: Path) -> None:
     Path("angle.csv").write_text(GOOD.replace("displacement [mm]", "angle [deg]"), encoding="utf-8")
 
 
-def found(*words: str) -> dict[str, Any]:
+def as_json(*words: str) -> dict[str, Any]:
     return read("decay", *words)
 
 
@@ -74,7 +74,7 @@ def test_tables_with_a_stiffness() -> None:
 
 
 def test_json() -> None:
-    content = found("decay.csv", "--stiffness", "2 N/mm")
+    content = as_json("decay.csv", "--stiffness", "2 N/mm")
     assert {"kind", "samples", "duration", "confidence", "stiffness"} < set(content)
     assert content["kind"] == "length"
     assert content["stiffness"] == 2000
@@ -96,13 +96,13 @@ def test_json() -> None:
 def test_arms() -> None:
     """The paper's rig: read 1.5 m from the pivot, its spring at 1.35 m."""
     words = ("--arm", "1.5 m", "--stiffness", "182 kgf/m", "--spring-arm", "1.35 m")
-    content = found("decay.csv", *words)
+    content = as_json("decay.csv", *words)
     assert content["kind"] == "angle"
     assert content["stiffness"] == pytest.approx(182 * 9.80665 * 1.35**2)
-    plain = found("decay.csv")
+    plain = as_json("decay.csv")
     heights = [height / 1.5 for height in plain["half_swings"]["heights"]]
     assert content["half_swings"]["heights"] == pytest.approx(heights)
-    torsional = found(
+    torsional = as_json(
         "decay.csv", "--arm", "1.5 m", "--stiffness", f"{content['stiffness']!r} N m/rad"
     )
     for name, quantity in content["by_record"].items():
@@ -110,18 +110,18 @@ def test_arms() -> None:
 
 
 def test_confidence() -> None:
-    wide, narrow = (found("decay.csv", "--confidence", share) for share in ("0.99", "0.5"))
+    wide, narrow = (as_json("decay.csv", "--confidence", share) for share in ("0.99", "0.5"))
     for name in ("damping_ratio", "natural_frequency"):
-        one, other = wide["by_record"][name], narrow["by_record"][name]
-        assert one["value"] == other["value"]
-        assert one["low"] < other["low"]
+        first, other = wide["by_record"][name], narrow["by_record"][name]
+        assert first["value"] == other["value"]
+        assert first["low"] < other["low"]
     assert "99 % interval" in succeeded(equipoise("decay", "decay.csv", "--confidence", "0.99"))
 
 
 def test_three_half_swings_have_no_interval_by_the_line() -> None:
     part = TIME < 0.8
     Path("short.csv").write_text(text(TIME[part], RECORD.displacement[part]), encoding="utf-8")
-    content = found("short.csv")
+    content = as_json("short.csv")
     assert content["by_line"]["damping_ratio"]["low"] is None
     shown = succeeded(equipoise("decay", "short.csv"))
     assert re.search(r"^damping ratio +\S+ +none +\S+ +\S+ to \S+", shown, re.M)
@@ -136,7 +136,7 @@ def test_notes_are_printed() -> None:
     Path("long.csv").write_text(text(time, record.displacement), encoding="utf-8")
     shown = succeeded(equipoise("decay", "long.csv"))
     assert "\nnote: Coulomb friction cannot be told from noise" in shown
-    assert found("long.csv")["notes"]
+    assert as_json("long.csv")["notes"]
 
 
 def test_odd_file_names() -> None:

@@ -191,8 +191,8 @@ def test_the_message_is_printed_and_its_cure_accepted(section: str) -> None:
 def below(of: type[EquipoiseError]) -> Iterator[type[EquipoiseError]]:
     """A class of errors, and all that are made of it."""
     yield of
-    for one in of.__subclasses__():
-        yield from below(one)
+    for item in of.__subclasses__():
+        yield from below(item)
 
 
 def test_every_class_of_errors_has_a_page() -> None:
@@ -213,9 +213,9 @@ def test_every_topic_of_a_sentence_is_on_the_page_and_every_page_is_reached() ->
     """Wherever one is named in the package."""
     package = Path(equipoise.__file__).parent
     topics = {
-        "".join(found)
+        "".join(result)
         for file in package.rglob("*.py")
-        for found in NAMED.findall(file.read_text(encoding="utf-8"))
+        for result in NAMED.findall(file.read_text(encoding="utf-8"))
     }
     assert topics == {*errors()}
 
@@ -230,7 +230,7 @@ def test_the_command_line_leads_to_the_page(heading: str) -> None:
     assert more.startswith("more: equipoise explain ")
     page = succeeded(equipoise_runs(*more.split()[2:]))
     assert page.startswith(f"{heading}\n\n")
-    section = next(one for one in SECTIONS if one.startswith(f"{heading}\n"))
+    section = next(item for item in SECTIONS if item.startswith(f"{heading}\n"))
     message = re.findall(r"```text\n(.*?)\n```", section, re.DOTALL)[0]
     assert " ".join(message.split()) in " ".join(page.split())
     assert "](" not in page and "```" not in page

@@ -60,13 +60,13 @@ def test_results_are_written_anew_and_models_never(tmp_path: Path) -> None:
 
 @pytest.mark.exhaustive(but=["mat"])
 @pytest.mark.parametrize("ending", ["fmu", "xlsx", "mat"])
-def test_forces_that_are_left_out_are_told(ending: str, tmp_path: Path) -> None:
+def test_forces_that_are_left_out_are_reported(ending: str, tmp_path: Path) -> None:
     model = tmp_path / "m.toml"
     model.write_text(FOUR_BAR, "utf-8")
-    told = equipoise("export", model, "-o", tmp_path / f"m.{ending}").err
-    assert "note: the file leaves out all forces: forces need mass, center_of_mass and" in told
+    printed = equipoise("export", model, "-o", tmp_path / f"m.{ending}").err
+    assert "note: the file leaves out all forces: forces need mass, center_of_mass and" in printed
 
 
 def test_a_tree_of_joints_lacks_the_soil(tmp_path: Path) -> None:
-    told = equipoise("export", "transplanter", "-o", tmp_path / "t.urdf").err
-    assert "note: the file leaves out the soil's force\n" in told
+    printed = equipoise("export", "transplanter", "-o", tmp_path / "t.urdf").err
+    assert "note: the file leaves out the soil's force\n" in printed

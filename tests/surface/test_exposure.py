@@ -39,7 +39,7 @@ def measured(folder: Path) -> None:
         Path(name).write_text(text, encoding="utf-8")
 
 
-def found(*words: str) -> dict[str, Any]:
+def as_json(*words: str) -> dict[str, Any]:
     return read("exposure", *words)
 
 
@@ -65,7 +65,7 @@ def test_tasks_in_a_file_and_in_words_are_the_same() -> None:
         "felling: 6 m/s^2 for 60 min",
         "stripping: 3.6 m/s^2 for 2 h",
     )
-    by_file, by_words = found("tasks.csv"), found(*words)
+    by_file, by_words = as_json("tasks.csv"), as_json(*words)
     assert by_file == by_words
     assert by_file["a8"] == pytest.approx(3.6097, abs=1e-4)
     assert [task["name"] for task in by_file["tasks"]] == ["brush saw", "felling", "stripping"]
@@ -92,7 +92,7 @@ def test_plain_words(value: str, words: tuple[str, ...]) -> None:
 
 
 def test_idling_and_racing() -> None:
-    content = found("--idle", "1 m/s^2", "--racing", "7 m/s^2", "--duration", "8 h")
+    content = as_json("--idle", "1 m/s^2", "--racing", "7 m/s^2", "--duration", "8 h")
     assert content["a_hv"] == pytest.approx(5.0)
     assert content["tasks"][0]["name"] == "idling and racing"
 
@@ -109,7 +109,7 @@ def test_a_signal() -> None:
     assert re.search(rf"^total value a_hv, root of the sum of squares +{a_hv:.3f}$", shown, re.M)
     assert "Most of it: band of 80 Hz, 100 % of the weighted mean square; axis x" in shown
     assert f"A(8) = {a_hv / 2:.3f} m/s^2, below the action value" in shown
-    content = found("signal.csv", "--duration", "2 h")
+    content = as_json("signal.csv", "--duration", "2 h")
     assert content["a8"] == pytest.approx(a_hv / 2, rel=1e-4)
     (file,) = content["measured"]
     assert (file["name"], file["kind"], file["axes"]) == ("signal.csv", "signal", ["x", "y", "z"])
@@ -119,7 +119,7 @@ def test_a_signal() -> None:
 
 
 def test_a_spectrum_without_a_time() -> None:
-    content = found("lines.csv")
+    content = as_json("lines.csv")
     assert content["a8"] is None and content["measured"][0]["kind"] == "spectrum"
     assert content["a_hv"] == content["measured"][0]["a_hv"]
     (task,) = content["tasks"]
@@ -133,7 +133,7 @@ def test_a_spectrum_without_a_time() -> None:
 
 def test_options_on_spectra() -> None:
     plain, bands, already, single = (
-        found("bands.csv", *more)["measured"][0]
+        as_json("bands.csv", *more)["measured"][0]
         for more in ((), ("--bands",), ("--weighted", "--bands"), ("--single-axis", "--bands"))
     )
     assert bands["kind"] == "bands" and "say so (bands)" in plain["notes"][0]
@@ -151,7 +151,7 @@ def test_a_periodic_signal() -> None:
     text = columns("time [s],z [m/s^2]", TIME[part][::10], WAVE[part][::10])
     Path("period.csv").write_text(text, encoding="utf-8")
     assert "sampled at 400 Hz; give at least" in refused(equipoise("exposure", "period.csv"))
-    (file,) = found("period.csv", "--periodic")["measured"]
+    (file,) = as_json("period.csv", "--periodic")["measured"]
     assert file["a_hw"] == pytest.approx([float(factor(80.0))], rel=1e-5)
     assert file["axes"] == ["z"]
     assert "nothing above half its sampling rate, 200 Hz" in file["notes"][0]
@@ -162,21 +162,21 @@ def test_a_response_is_weighed() -> None:
     period, so that both have the same lines.
     """
     succeeded(equipoise("respond", "yamashita-rig", "--csv", "r.csv"))
-    by_file = found("r.csv")["measured"][0]  # the file itself says that it is whole periods
+    by_file = as_json("r.csv")["measured"][0]  # the file itself says that it is whole periods
     response = eq.respond(eq.load("yamashita-rig"))
     orders = response.gauges["gauge"].acceleration.amplitudes[1:]
     speed = eq.load("yamashita-rig").drive.speed
     by_orders = weigh_orders(speed, np.arange(1, len(orders) + 1), orders)
     # 360 samples fold orders above 180 back, which are below a millionth of the first here
     assert by_file["a_hv"] == pytest.approx(by_orders.a_hv, rel=1e-6)
-    assert found("r.csv", "--periodic", "--gauge", "gauge")["measured"][0] == by_file
+    assert as_json("r.csv", "--periodic", "--gauge", "gauge")["measured"][0] == by_file
     assert "no gauge is called 'guage'; did you mean 'gauge'?" in refused(
         equipoise("exposure", "r.csv", "--gauge", "guage")
     )
     text = Path("r.csv").read_text(encoding="utf-8")
     assert text.startswith(f"{TIME_IN_PERIOD} [s],")
     Path("old.csv").write_text(text.replace(TIME_IN_PERIOD, "time", 1), encoding="utf-8")
-    assert found("old.csv", "--periodic")["measured"][0] == by_file | {"name": "old.csv"}
+    assert as_json("old.csv", "--periodic")["measured"][0] == by_file | {"name": "old.csv"}
 
 
 def test_gauges_of_a_response_are_axes_where_they_are_named() -> None:
@@ -185,9 +185,9 @@ def test_gauges_of_a_response_are_axes_where_they_are_named() -> None:
     Path("r.csv").write_text(columns(heads, *rows), encoding="utf-8")
     several = refused(equipoise("exposure", "r.csv", "--periodic"))
     assert "there are the gauges 'a b', 'c'; name that of the hand" in several
-    both = found("r.csv", "--periodic", "--gauge", "c", "--gauge", "a b")["measured"][0]
+    both = as_json("r.csv", "--periodic", "--gauge", "c", "--gauge", "a b")["measured"][0]
     Path("x.csv").write_text(columns("time [s],y [m/s^2],x [m/s^2]", *rows), encoding="utf-8")
-    axes = found("x.csv", "--periodic")["measured"][0]
+    axes = as_json("x.csv", "--periodic")["measured"][0]
     assert both["a_hv"] == pytest.approx(axes["a_hv"], rel=1e-12)
     Path("r.csv").write_text(f"{heads}\n0,1,2\n0.1,2\n", encoding="utf-8")
     short = refused(equipoise("exposure", "r.csv", "--gauge", "c"))
@@ -201,9 +201,9 @@ def test_a_spectrum_of_nothing() -> None:
 
 
 def test_durations_of_several_files() -> None:
-    both = found("signal.csv", "mowing: 3 m/s^2 for 1 h", "lines.csv", "--duration", "30 min")
+    both = as_json("signal.csv", "mowing: 3 m/s^2 for 1 h", "lines.csv", "--duration", "30 min")
     assert [task["duration"] for task in both["tasks"]] == [1800, 3600, 1800]
-    each = found("signal.csv", "lines.csv", "--duration", "30 min", "--duration", "2 h")
+    each = as_json("signal.csv", "lines.csv", "--duration", "30 min", "--duration", "2 h")
     assert [task["duration"] for task in each["tasks"]] == [1800, 7200]
     assert [file["name"] for file in each["measured"]] == ["signal.csv", "lines.csv"]
 
@@ -213,8 +213,8 @@ def test_odd_names() -> None:
     Path(name).write_text(LINES, encoding="utf-8")
     assert succeeded(equipoise("exposure", name, "--plot", "p")).startswith(f"{name}\n")
     Path("3 m/s^2 for 2 h".replace("/", "")).write_text(LINES, encoding="utf-8")
-    assert found("3 ms^2 for 2 h")["measured"][0]["kind"] == "spectrum"
-    content = found(f"{'long ' * 100}: 3 m/s^2 for 2 h", "\x1b[1m: 3 m/s^2 for 2 h")
+    assert as_json("3 ms^2 for 2 h")["measured"][0]["kind"] == "spectrum"
+    content = as_json(f"{'long ' * 100}: 3 m/s^2 for 2 h", "\x1b[1m: 3 m/s^2 for 2 h")
     assert len(content["tasks"]) == 2
     shown = succeeded(equipoise("exposure", f"{'long ' * 100}\x1b: 3 m/s^2 for 2 h"))
     assert "\x1b" not in shown and max(map(len, shown.splitlines())) < 130

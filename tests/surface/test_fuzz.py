@@ -248,25 +248,25 @@ class Draft:
 
     def grow(self) -> None:
         inner = f"J{len(self.points)}"
-        one, other = self.body(), self.body()
+        single, other = self.body(), self.body()
         match self.draw(st.sampled_from("ppppssrrggxy")):
             case "p":  # a dyad of two links
-                self.link(self.place(one), inner)
+                self.link(self.place(single), inner)
                 self.link(self.place(other), inner)
                 self.assembly[inner] = self.draw(sides)
             case "s":  # a rod and a block
-                self.link(self.place(one), inner)
+                self.link(self.place(single), inner)
                 self.slide(self.link(inner), other)
                 self.assembly[inner] = self.draw(sides)
             case "r":  # a block on a link
-                link = self.link(self.place(one))
+                link = self.link(self.place(single))
                 self.slide(link, self.link(self.place(other)))
             case "g":  # a geared link
-                self.mesh(one, self.link(self.place(other)), other)
+                self.mesh(single, self.link(self.place(other)), other)
             case "x":  # anything
                 self.link(*(self.place(self.body()) for _ in range(self.draw(st.integers(0, 3)))))
             case _:
-                self.slide(one, other)
+                self.slide(single, other)
 
     def masses(self) -> Document:
         if self.draw(st.integers(0, 4)) == 0:

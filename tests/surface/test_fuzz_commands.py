@@ -353,8 +353,8 @@ def open_page(file: str) -> None:
     opened, *_ = session.receive(read(json.dumps(
         {"type": "open", "name": file, "text": Path(file).read_text(encoding="utf-8")}
     )))  # fmt: skip
-    told = str(opened.content.get("message", ""))
-    assert "Traceback" not in told
+    text = str(opened.content.get("message", ""))
+    assert "Traceback" not in text
     move = {"move": "B", "to": [0.01, 0.02], "at": 3}
     edit = {"type": "edit", "seq": 2, "edits": [move], "label": "move"}
     for reply in session.receive(read(json.dumps(edit))):
@@ -438,9 +438,9 @@ def _memory(of: str) -> int:
     """Bytes of this process: VmRSS what it holds, VmHWM the most since that was set back, VmData
     what counts towards its limit.
     """
-    found = re.search(rf"{of}:\s+(\d+) kB", PROCESS.joinpath("status").read_text(encoding="ascii"))
-    assert found is not None
-    return 1024 * int(found[1])
+    match = re.search(rf"{of}:\s+(\d+) kB", PROCESS.joinpath("status").read_text(encoding="ascii"))
+    assert match is not None
+    return 1024 * int(match[1])
 
 
 @pytest.mark.parametrize("part", range(4))
@@ -492,9 +492,11 @@ def motor_of(document: dict[str, Any]) -> dict[str, Any]:
 
 MADE: dict[str, Callable[[dict[str, Any]], list[dict[str, Any]]]] = {
     "JointProperties": joints_of,
-    "RollingBearing": lambda made: [one["bearing"] for one in joints_of(made) if "bearing" in one],
+    "RollingBearing": lambda made: [
+        item["bearing"] for item in joints_of(made) if "bearing" in item
+    ],
     "LinkSection": lambda made: [
-        one["section"] for one in made["links"].values() if "section" in one
+        value["section"] for value in made["links"].values() if "section" in value
     ],
     "Motor": lambda made: [motor_of(made)],
     "DcMotor": lambda made: [*filter(None, [motor_of(made).get("dc")])],
@@ -547,5 +549,5 @@ def test_every_command_is_tried() -> None:
     """A new command of a file joins the fuzz by itself, or by a line where it takes more."""
     assert [name for name in functions() if loads(name) and not trying(name)] == []
     lines = (*OF_MACHINES, *chain(*OF_EACH.values()))
-    ends = {one.ending for one in FORMATS.values()}
+    ends = {value.ending for value in FORMATS.values()}
     assert ends == {f".{end}" for end in re.findall(r"export \S+ -o \w+\.(\w+)", "\n".join(lines))}

@@ -71,12 +71,12 @@ def general(path: Path_) -> str:
 @cache
 def places() -> list[tuple[int, Path_]]:
     """A machine and a path for every key, the first of each."""
-    found: dict[str, tuple[int, Path_]] = {}
+    actual: dict[str, tuple[int, Path_]] = {}
     for seed in SEEDS:
         for path in paths(document(seed)):
             if TABLES.match(name := general(path)):
-                found.setdefault(name, (seed, path))
-    return [*found.values()]
+                actual.setdefault(name, (seed, path))
+    return [*actual.values()]
 
 
 @cache

@@ -35,9 +35,9 @@ def test_a_drawing_becomes_a_model_that_passes_check(
     monkeypatch.chdir(tmp_path)
     Path("four-bar.svg").write_text(SVG)
     done = equipoise("import", "four-bar.svg", "--speed", "100 rpm")
-    told = succeeded(done)
-    assert "3 links, 4 pins; mobility 1" in told
-    assert "missing: masses, for forces, of crank, coupler, rocker" in told
+    printed = succeeded(done)
+    assert "3 links, 4 pins; mobility 1" in printed
+    assert "missing: masses, for forces, of crank, coupler, rocker" in printed
     assert done.err == "wrote four-bar.toml\n"
     assert "ready to be analysed" in succeeded(equipoise("check", "four-bar.toml"))
     assert "is there already" in refused(equipoise("import", "four-bar.svg"))
@@ -51,4 +51,4 @@ def test_a_drawing_becomes_a_model_that_passes_check(
     assert "there is no such folder" in refused(away)
     named = equipoise("import", "four-bar.svg", "-o", "b.txt")
     assert "--out: got 'b.txt'; give a name that ends in .toml" in refused(named)
-    assert sorted(one.name for one in Path().iterdir()) == ["four-bar.svg", "four-bar.toml"]
+    assert sorted(path.name for path in Path().iterdir()) == ["four-bar.svg", "four-bar.toml"]

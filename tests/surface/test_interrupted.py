@@ -83,7 +83,7 @@ def test_all_is_written_or_nothing(name: str, tmp_path: Path) -> None:
             assert written == whole, f"interrupted at call {moment} of {calls}"
         else:
             assert status == 130
-            assert written in ({}, {one: whole[one] for one in whole if one != "printed"})
+            assert written in ({}, {item: whole[item] for item in whole if item != "printed"})
     assert 130 in statuses
 
 

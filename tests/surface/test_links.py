@@ -89,9 +89,9 @@ def outside(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     (there / "model.toml").write_text(MODEL, encoding="utf-8")
     (there / "load.csv").write_text("crank_angle [deg],torque [N m]\n0,1\n180,2\n")
     (there / "folder").mkdir()
-    found = Outside(there, everything(there))
-    yield found
-    found.unchanged()
+    result = Outside(there, everything(there))
+    yield result
+    result.unchanged()
 
 
 named = cache(tools)
@@ -387,9 +387,9 @@ def test_what_is_written_goes_through_no_link_that_leads_out(
     words = WRITING[name]
     inputs()
     succeeded(equipoise("export", "mine.toml", "-o", "mine.mjcf.xml"))
-    place = next(one for one in words if "{}" in one).format("out")
+    place = next(word for word in words if "{}" in word).format("out")
     Path(place).symlink_to(outside.folder / target)
-    refused(equipoise(*(one.format("out") for one in words)))
+    refused(equipoise(*(word.format("out") for word in words)))
     assert Path(place).is_symlink()
 
 
@@ -404,15 +404,19 @@ DRAWN = ("svg", "pdf")
 """Formats of outlines alone."""
 KINDS_OF_FILES = [
     *(
-        ("export", str(STORE) if name in TABLES else "mine.toml", "-o", f"out{one.ending}")
-        for name, one in FORMATS.items()
-        if name not in DRAWN and not one.of_link  # this machine has neither outlines nor sections
+        ("export", str(STORE) if name in TABLES else "mine.toml", "-o", f"out{value.ending}")
+        for name, value in FORMATS.items()
+        if name not in DRAWN and not value.of_link  # this machine has neither outlines nor sections
     ),
     *(
         ("export", "yamashita-1", "--balanced", "-o", f"out{FORMATS[name].ending}")
         for name in DRAWN
     ),
-    *(("export", "rod.toml", "-o", f"out{one.ending}") for one in FORMATS.values() if one.of_link),
+    *(
+        ("export", "rod.toml", "-o", f"out{value.ending}")
+        for value in FORMATS.values()
+        if value.of_link
+    ),
     *(("animate", "mine.toml", "--width", "100", "-o", f"out.{end}") for end in ("gif", "mp4")),
     ("report", "mine.toml", "--pdf", "-o", "out.pdf"),
 ]
@@ -513,7 +517,7 @@ def test_what_is_written_goes_through_no_link_that_comes_meanwhile(
     """A link is put in the place of the file, or of its folder, once writing has begun."""
     inputs()
     succeeded(equipoise("export", "mine.toml", "-o", "mine.mjcf.xml"))
-    place = next(one for one in words if "{}" in one).format("here/out")
+    place = next(word for word in words if "{}" in word).format("here/out")
     Path("here").mkdir()
     opened, planted_there = Folder.open, []
 
@@ -529,7 +533,7 @@ def test_what_is_written_goes_through_no_link_that_comes_meanwhile(
         return descriptor
 
     monkeypatch.setattr(Folder, "open", open_late)
-    equipoise(*(one.format("here/out") for one in words))
+    equipoise(*(word.format("here/out") for word in words))
     assert planted_there
 
 
@@ -585,8 +589,8 @@ def test_a_folder_that_is_named_may_be_a_link_and_what_is_in_it_not(
     inputs()
     succeeded(equipoise("export", "mine.toml", "-o", "mine.mjcf.xml"))
     Path("way").symlink_to(elsewhere)
-    place = Path(next(one for one in words if "{}" in one).format("way/out"))
-    named = [one.format("way/out") for one in words]
+    place = Path(next(word for word in words if "{}" in word).format("way/out"))
+    named = [word.format("way/out") for word in words]
     place.symlink_to(outside.folder / "secret.txt")
     refused(equipoise(*named))
     assert place.is_symlink()
@@ -606,7 +610,7 @@ def test_pictures_below_a_link_that_is_named_go_through_none(
 ) -> None:
     inputs()
     Path("way").symlink_to(tmp_path_factory.mktemp("elsewhere"))
-    words = [f"way/{one}" if one == "pictures" else one for one in DRAWING[name]]
+    words = [f"way/{item}" if item == "pictures" else item for item in DRAWING[name]]
     succeeded(equipoise(*words))
     first = min(Path("way/pictures").iterdir())
     planted(first, outside.folder / "secret.txt")
@@ -657,11 +661,11 @@ def test_no_tool_opens_or_writes_what_leads_out_of_the_fence(outside: Outside) -
                 continue
             for place in ("way/model.toml", "way.toml", *away):
                 given = [place] if schema["properties"][key]["type"] == "array" else place
-                told = in_agents_server(name, **needed | {key: given, "overwrite": True})
+                reported = in_agents_server(name, **needed | {key: given, "overwrite": True})
                 if not tool.writes:
-                    told = in_agents_server(name, **needed | {key: given})
+                    reported = in_agents_server(name, **needed | {key: given})
                 said = "without .. and not from the root" if place in away else "leads out of the f"
-                assert said in told, (name, key, place, told)
+                assert said in reported, (name, key, place, reported)
                 tried.add((name, key))
     assert len(tried) > 60
 

@@ -107,7 +107,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
     (folder / "way").symlink_to(around)
     with chdir(folder):
         yield anyio.run(partial(talk, folder))
-    assert {one.name for one in around.iterdir()} == {"folder", "outside.toml", "load.csv"}
+    assert {path.name for path in around.iterdir()} == {"folder", "outside.toml", "load.csv"}
 
 
 class Here(Workers):
@@ -122,15 +122,15 @@ async def talk(folder: Path) -> Session:
     limiter = anyio.CapacityLimiter(1)
     server = server_of(Here(folder.resolve(), limiter, limiter))
     async with Client(server, read_timeout_seconds=300) as client:
-        known = {one.name: one for one in (await client.list_tools()).tools}
-        told = {key: await client.call_tool(*call) for key, call in CALLS.items()}
-    return Session(known, told, folder)
+        known = {tool.name: tool for tool in (await client.list_tools()).tools}
+        content = {key: await client.call_tool(*call) for key, call in CALLS.items()}
+    return Session(known, content, folder)
 
 
 def text(answer: CallToolResult) -> str:
-    found = answer.content[0]
-    assert found.type == "text"
-    return found.text
+    content = answer.content[0]
+    assert content.type == "text"
+    return content.text
 
 
 def values(answer: CallToolResult) -> dict[str, Any]:
@@ -165,15 +165,15 @@ def test_a_machine_is_made_analysed_balanced_and_drawn(session: Session) -> None
     answers, folder = session.answers, session.folder
     assert text(answers["made"]).startswith("wrote mine.toml; next: equipoise analyze")
     machine = eq.load(folder / "mine.toml").with_drive(speed=250 * 2 * 3.141592653589793 / 60)
-    told = values(answers["analysed"])
+    reported = values(answers["analysed"])
     summary = eq.analyze(machine).summary["shaking_force"]
-    assert told["values"]["summary"]["shaking_force"]["peak"] == pytest.approx(summary.peak)
-    assert told["units"]["force"] == told["units"]["shaking_force"] == "N"
-    assert told["units"]["drive_torque"] == "N m"
-    assert told["values"]["joints"]["B"] == {"on": "coupler", "by": "crank"}
-    assert "links" not in told["values"], "of which long lists are all"
-    assert told["files"] == ["all.csv"]
-    assert "lists of more than" in told["values"]["left_out"]
+    assert reported["values"]["summary"]["shaking_force"]["peak"] == pytest.approx(summary.peak)
+    assert reported["units"]["force"] == reported["units"]["shaking_force"] == "N"
+    assert reported["units"]["drive_torque"] == "N m"
+    assert reported["values"]["joints"]["B"] == {"on": "coupler", "by": "crank"}
+    assert "links" not in reported["values"], "of which long lists are all"
+    assert reported["files"] == ["all.csv"]
+    assert "lists of more than" in reported["values"]["left_out"]
     assert "Look at next" in text(answers["analysed"])
     whole = values(answers["whole"])["values"]
     assert len(whole["crank_angle"]) == 90 and "by_order" in whole
@@ -238,20 +238,22 @@ def test_nothing_outside_of_the_folder_is_read_or_written(
     session: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """By the server, and by what it calls."""
-    told = {key: wrong(session, key) for key in OUTSIDE.keys() & CALLS.keys()}
+    content = {key: wrong(session, key) for key in OUTSIDE.keys() & CALLS.keys()}
     monkeypatch.chdir(session.folder)
     for key, (name, given) in OUTSIDE.items():
         with pytest.raises(EquipoiseError) as caught:
             tools()[name].answer(given, session.folder.resolve())
-        told[f"{key}, here"] = str(caught.value)
-    assert len(told) == len(OUTSIDE) + 2
-    assert {key: one for key, one in told.items() if "folder that is served" not in one} == {}
+        content[f"{key}, here"] = str(caught.value)
+    assert len(content) == len(OUTSIDE) + 2
+    assert {
+        key: value for key, value in content.items() if "folder that is served" not in value
+    } == {}
 
 
 def test_a_folder_that_is_not_there() -> None:
     assert "give a folder that is there" in refused(equipoise("mcp", "--folder", "none"))
 
 
-def test_what_is_not_installed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_not_installed_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mcp.server.stdio", None)
     assert 'pip install "equipoise[mcp]"' in refused(equipoise("mcp"))

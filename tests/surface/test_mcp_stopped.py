@@ -82,16 +82,16 @@ def _parents() -> dict[int, int]:
 def _below(pid: int) -> list[int]:
     """Processes that a process has started, and those that these have."""
     parents = _parents()
-    found, new = list[int](), [pid]
+    actual, new = list[int](), [pid]
     while new:
-        new = [one for one, parent in parents.items() if parent in new]
-        found += new
-    return found
+        new = [key for key, parent in parents.items() if parent in new]
+        actual += new
+    return actual
 
 
 def _children(pid: int) -> list[int]:
     """Processes that a process has started itself."""
-    return [one for one, parent in _parents().items() if parent == pid]
+    return [key for key, parent in _parents().items() if parent == pid]
 
 
 def _ticks(pid: int) -> int:
@@ -115,10 +115,10 @@ def until(done: Callable[[], bool]) -> None:
 def session(folder: Path) -> Iterator[Session]:
     (folder / "slow.toml").write_text(SLOW)
     (folder / "machine.toml").write_text(example_text("yamashita-1"))
-    found = Session(folder)
-    with found.process:
-        yield found
-        found.process.kill()
+    result = Session(folder)
+    with result.process:
+        yield result
+        result.process.kill()
 
 
 def test_a_call_that_is_cancelled_ends_and_others_do_not_wait(
@@ -162,7 +162,7 @@ def test_the_end_of_the_input_ends_everything(session: Session, folder: Path) ->
 
 # Processes that die at each design: tests/unit/studies/test_executors.py.
 @pytest.mark.exhaustive
-def test_a_worker_that_dies_is_told(session: Session, folder: Path) -> None:
+def test_a_worker_that_dies_is_reported(session: Session, folder: Path) -> None:
     session.call(1, "sweep", study="slow.toml", out="1.zarr")
     until((folder / "1.zarr").exists)
     for pid in _children(session.process.pid):  # those below it are only started again

@@ -41,9 +41,9 @@ def peak_of(*arguments: str | Path, **variables: str) -> tuple[Result, int]:
     words = [sys.executable, "-c", PEAK, *command(*arguments)[3:]]
     environment = {**os.environ, **variables}
     done = subprocess.run(words, capture_output=True, text=True, check=False, env=environment)
-    found = re.search(r"peak (\d+) MB\n$", done.stderr)
-    assert found, done.stderr
-    return Result(done.returncode, done.stdout, done.stderr), int(found[1])
+    match = re.search(r"peak (\d+) MB\n$", done.stderr)
+    assert match, done.stderr
+    return Result(done.returncode, done.stdout, done.stderr), int(match[1])
 
 
 STUDY = """
@@ -221,8 +221,8 @@ def test_a_terminal_of_a_thousand_million_columns(command_line: str) -> None:
 
 def test_an_option_that_is_repeated_ten_thousand_times() -> None:
     result = equipoise("analyze", "yamashita-1", *["--output=joints.B"] * 10_000)
-    told = refused(result)
-    assert "--output: given 10000 times; give it 200 times at most" in told
+    refusal = refused(result)
+    assert "--output: given 10000 times; give it 200 times at most" in refusal
 
 
 def test_a_study_of_more_outputs_than_usual(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -232,9 +232,9 @@ def test_a_study_of_more_outputs_than_usual(folder: Path, monkeypatch: pytest.Mo
     text = example_text("study-of-lengths").partition("[[outputs]]")[0]
     text += "".join(f'[[outputs]]\nname = "o{k}"\nvalue = "shaking_force.peak"\n' for k in range(3))
     (folder / "many.toml").write_text(text, encoding="utf-8")
-    told = refused(equipoise("check", "many.toml"))
-    assert "outputs: got 3; at most 2 are computed" in told
-    (setting,) = re.findall(r"EQUIPOISE_OUTPUTS=\d+", told)
+    refusal = refused(equipoise("check", "many.toml"))
+    assert "outputs: got 3; at most 2 are computed" in refusal
+    (setting,) = re.findall(r"EQUIPOISE_OUTPUTS=\d+", refusal)
     monkeypatch.setenv(*setting.split("="))
     assert equipoise("check", "many.toml").status == 0
     monkeypatch.setenv("EQUIPOISE_OUTPUTS", "many")

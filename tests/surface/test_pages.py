@@ -68,21 +68,21 @@ def commands(text: str) -> Iterator[list[str]]:
 @cache
 def options() -> set[str]:
     """Names of all options of all commands."""
-    found: set[str] = set()
+    result: set[str] = set()
 
-    def of(one: cyclopts.App) -> None:
-        if one.default_command:
-            for argument in one.assemble_argument_collection():
-                found.update((*argument.names, *argument.negatives))
-        for name in one:
+    def of(item: cyclopts.App) -> None:
+        if item.default_command:
+            for argument in item.assemble_argument_collection():
+                result.update((*argument.names, *argument.negatives))
+        for name in item:
             if name.startswith("-"):
-                found.add(name)
+                result.add(name)
             else:
-                of(one[name])
+                of(item[name])
 
     _ = app.resolved_commands()
     of(app)
-    return found
+    return result
 
 
 @EACH_PAGE
@@ -95,13 +95,13 @@ def test_commands_are_understood(page: Path) -> None:
 def test_named_commands_and_options_are_there(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     code = re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL))
-    named = [one for one in code if one.startswith(("equipoise ", "--"))]
-    for one in named:
-        words = one.split()
+    named = [item for item in code if item.startswith(("equipoise ", "--"))]
+    for entry in named:
+        words = entry.split()
         if words[0] == "equipoise" and words[1].islower() and words[1][0] != "-":
-            assert words[1] in COMMANDS, one
-        for option in re.findall(r"(?<![\w-])--[a-z][\w-]*", one):
-            assert option in {*options(), *ELSEWHERE} or STYLE.match(option), one
+            assert words[1] in COMMANDS, entry
+        for option in re.findall(r"(?<![\w-])--[a-z][\w-]*", entry):
+            assert option in {*options(), *ELSEWHERE} or STYLE.match(option), entry
 
 
 @EACH_PAGE
@@ -129,21 +129,22 @@ def test_a_wrong_command_would_be_seen() -> None:
 
 # Its commands are run by `make documentation`.
 @pytest.mark.exhaustive
-def test_the_first_hour_tells_what_is_offered_without_a_plan() -> None:
+def test_the_first_hour_reports_what_is_offered_without_a_plan() -> None:
     text = example_text("sieve").partition("\n[balance]")[0]
-    found = read("balance", written(text))
-    crank, left, right = found["tried"]
-    (weight,), (hanger,) = (one["changes"] for one in (crank, left))
-    plates = [1e3 * one["pieces"][0]["thickness"] for one in (weight, hanger)]
-    told = " ".join((TOP / "docs/first-machine.md").read_text(encoding="utf-8").split())
-    assert f"a sector of {plates[0]:.0f} mm plate on the {weight['link']}" in told
+    result = read("balance", written(text))
+    crank, left, right = result["tried"]
+    (weight,), (hanger,) = (item["changes"] for item in (crank, left))
+    plates = [1e3 * item["pieces"][0]["thickness"] for item in (weight, hanger)]
+    reported = " ".join((TOP / "docs/first-machine.md").read_text(encoding="utf-8").split())
+    assert f"a sector of {plates[0]:.0f} mm plate on the {weight['link']}" in reported
     assert (
         f"of {1e3 * weight['mass']:.0f} g, would reduce them by {100 * crank['gain']:.0f} %, and "
-        f"sectors of {plates[1]:.0f} mm plate on the hangers by {100 * left['gain']:.0f} %" in told
+        f"sectors of {plates[1]:.0f} mm plate on the hangers by {100 * left['gain']:.0f} %"
+        in reported
     )
     assert left["gain"] > right["gain"]
-    assert not any(one["worth"] for one in (crank, left, right))
-    assert f"reduces both gauges together by {100 * found['mounts']['gain']:.0f} %" in told
+    assert not any(item["worth"] for item in (crank, left, right))
+    assert f"reduces both gauges together by {100 * result['mounts']['gain']:.0f} %" in reported
 
 
 CLAIMS = {

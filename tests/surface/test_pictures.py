@@ -56,7 +56,7 @@ def test_every_page_on_how_to_do_something_has_a_command_and_the_same_in_python(
     assert alone == IN_PYTHON_ALONE
 
 
-def test_every_recipe_has_a_picture_and_is_told_in_python_too() -> None:
+def test_every_recipe_has_a_picture_and_is_reported_in_python_too() -> None:
     """With the lines of the file, or the command, before them."""
     text = (ROOT / "docs" / "recipes.md").read_text(encoding="utf-8")
     recipes = text.split("\n## ")[1:]

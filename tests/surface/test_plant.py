@@ -214,7 +214,7 @@ def test_every_stay_is_listed() -> None:
     assert "Every stay" not in succeeded(equipoise("plant", "kim-chung-a"))
 
 
-def test_a_cusp_is_told() -> None:
+def test_a_cusp_is_reported() -> None:
     eq.save(spinner(forward_speed=1.0), "cusp.toml")
     text = succeeded(equipoise("plant", "cusp.toml"))
     assert "Cusp of the path over ground at crank angle 90.00 deg" in text.splitlines()

@@ -41,9 +41,9 @@ def test_a_new_model_file_and_a_table(folder: Path) -> None:
     assert "crank, mm" in text
     assert result.err.splitlines()[-1] == "wrote kim-chung-a-fit.toml"
     assert "generation 1 of at most 20" in result.err
-    found = eq.load("kim-chung-a-fit.toml")
-    assert eq.plant(found)["curve.height"] == pytest.approx(0.26, abs=1e-8)
-    assert "plant fit target.toml, seed 1" in found.description
+    actual = eq.load("kim-chung-a-fit.toml")
+    assert eq.plant(actual)["curve.height"] == pytest.approx(0.26, abs=1e-8)
+    assert "plant fit target.toml, seed 1" in actual.description
     assert {path.name for path in folder.iterdir()} == {"target.toml", "kim-chung-a-fit.toml"}
 
 
@@ -118,14 +118,14 @@ def test_a_target_of_0_has_a_tolerance(folder: Path) -> None:
 
 # What gets lost is a figure as others: `test_a_new_model_file_and_a_table`.
 @pytest.mark.exhaustive
-def test_what_gets_lost_is_told(folder: Path) -> None:
+def test_what_gets_lost_is_reported(folder: Path) -> None:
     """A search that is not told of the tray misses it."""
     text = asked(folder, '"curve.height"\ntarget = "40 cm"\n')
     assert "attitude of the finger at pick-up, deg" in text and "-158.15  " in text
-    found = eq.plant(eq.load("transplanter-fit.toml"))
-    for note in found.notes:
+    result = eq.plant(eq.load("transplanter-fit.toml"))
+    for note in result.notes:
         assert f"note: {note}" in text
-    assert found.machine.title.endswith(", fitted")
+    assert result.machine.title.endswith(", fitted")
 
 
 def test_tables_beside_the_new_file_are_not_replaced(folder: Path) -> None:

@@ -18,10 +18,10 @@ DIRECTION = f"{WEIGHT}.direction = 0 deg : 360 deg"
 MAP = (RADIUS, DIRECTION, "ripple shaking_force.y")
 
 
-def test_every_picture_is_written_and_told(folder: Path) -> None:
-    told = succeeded(equipoise("plot", "balance-crank")).splitlines()
+def test_every_picture_is_written_and_reported(folder: Path) -> None:
+    lines = succeeded(equipoise("plot", "balance-crank")).splitlines()
     there = sorted(str(path.relative_to(folder)) for path in folder.rglob("*.svg"))
-    assert sorted(line.split("  ")[0] for line in told) == there
+    assert sorted(line.split("  ")[0] for line in lines) == there
     assert len(there) >= 14
     assert all(
         path.read_text(encoding="utf-8").startswith(("<?xml", "<svg"))
@@ -50,19 +50,19 @@ def test_chosen_pictures(folder: Path, arguments: list[str], written: list[str])
     assert sorted(str(path.relative_to(folder)) for path in there) == written
 
 
-def test_outputs_are_told_by_their_labels(folder: Path) -> None:
+def test_outputs_are_reported_by_their_labels(folder: Path) -> None:
     outputs = ("--output", "shaking_force.y", "--output", "drive_torque")
-    told = succeeded(equipoise("plot", "yamashita-1", *outputs, "-o", "a"))
-    assert told == "a/outputs.svg  shaking force y, drive torque\n"
+    printed = succeeded(equipoise("plot", "yamashita-1", *outputs, "-o", "a"))
+    assert printed == "a/outputs.svg  shaking force y, drive torque\n"
 
 
-def test_a_map_tells_the_best_place(folder: Path) -> None:
+def test_a_map_reports_the_best_place(folder: Path) -> None:
     """Fig. 12 of Yamashita, Ichikawa and Mori: 35.7 mm at 111 deg from the line of pivots."""
     options = ("--points", "9", "--set", f"{WEIGHT}.mass = 1145 g", "-o", "map")
     result = equipoise("plot", "map", "yamashita-1", *MAP, *options)
-    told = succeeded(result)
+    printed = succeeded(result)
     weight = "of the counterweight on the crank"
-    assert f"at radius {weight} = 35.7 mm and direction {weight} = 194 deg" in told
+    assert f"at radius {weight} = 35.7 mm and direction {weight} = 194 deg" in printed
     assert [path.name for path in (folder / "map").iterdir()] == ["landscape.svg"]
     keep_files("plot map yamashita-1", folder / "map")
 

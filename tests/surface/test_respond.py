@@ -166,9 +166,9 @@ def test_a_range(speeds: str) -> None:
     speed = content["speed"]
     assert speed[0] == pytest.approx(20 * RPM) and speed[-1] == pytest.approx(300 * RPM)
     assert speed == sorted(speed)
-    found = content["resonances"]
-    np.testing.assert_allclose(found, [12.43, 6.22, 4.14, 3.11, 2.49], atol=0.006)
-    assert set(np.searchsorted(speed, found)) <= set(range(1, len(speed)))
+    actual = content["resonances"]
+    np.testing.assert_allclose(actual, [12.43, 6.22, 4.14, 3.11, 2.49], atol=0.006)
+    assert set(np.searchsorted(speed, actual)) <= set(range(1, len(speed)))
 
 
 @pytest.mark.exhaustive(but=["coupled", "linear"])
@@ -301,8 +301,8 @@ def test_csv(words: tuple[str, ...], count: int, first: list[str]) -> None:
     assert all(re.fullmatch(r"[a-z_.]+ \[[^\]]+\]", name) for name in header)
     assert values.shape == (count, len(header))
     # A mount that turns the support back hands on no force.
-    told = [k for k, name in enumerate(header) if name != "mounts.bearing.transmissibility [1]"]
-    assert np.all(np.isfinite(values[:, told]))
+    texts = [k for k, name in enumerate(header) if name != "mounts.bearing.transmissibility [1]"]
+    assert np.all(np.isfinite(values[:, texts]))
 
 
 @pytest.mark.parametrize("words", [(), ("--speed", "-193 rpm"), ("--model", "exact"),
@@ -317,8 +317,8 @@ def test_columns_are_derivatives_of_each_other_by_time(words: tuple[str, ...]) -
     signals = [columns[f"gauges.gauge.{name}"] for name in
                ("displacement [m]", "velocity [m/s]", "acceleration [m/s^2]")]  # fmt: skip
     for signal, rate in pairwise(signals):
-        found = np.fft.irfft(order * np.fft.rfft(signal), len(signal))
-        np.testing.assert_allclose(found, rate, rtol=0, atol=1e-8 * np.max(np.abs(rate)))
+        result = np.fft.irfft(order * np.fft.rfft(signal), len(signal))
+        np.testing.assert_allclose(result, rate, rtol=0, atol=1e-8 * np.max(np.abs(rate)))
 
 
 def test_csv_and_json_together() -> None:
@@ -484,21 +484,23 @@ def test_the_louder_of_two_steady_states(drive: list[str]) -> None:
     two = read("respond", WALKING, "--model", "exact", "--speed", "168 rpm", *drive)
     assert two["gauges"]["planting_part"]["peak_to_peak"] == pytest.approx(26.2e-3, abs=0.1e-3)
     assert any("another steady state" in note for note in two["notes"])
-    one = read("respond", WALKING, "--model", "exact", "--speed", "172 rpm", *drive)
-    assert one["gauges"]["planting_part"]["peak_to_peak"] == pytest.approx(25.7e-3, abs=0.1e-3)
-    assert one["stable"]
-    assert not any("another steady state" in note for note in one["notes"])
+    first = read("respond", WALKING, "--model", "exact", "--speed", "172 rpm", *drive)
+    assert first["gauges"]["planting_part"]["peak_to_peak"] == pytest.approx(25.7e-3, abs=0.1e-3)
+    assert first["stable"]
+    assert not any("another steady state" in note for note in first["notes"])
 
 
 @EXHAUSTIVE  # On every change: `test_the_louder_of_two_steady_states`, at two speeds.
 def test_both_branches_of_a_range() -> None:
-    found = read("respond", WALKING, "--model", "exact", "--speed", "160:175 rpm", "--speeds", "16")
-    readings = found["gauges"]["planting_part"]["peak_to_peak"]
+    result = read(
+        "respond", WALKING, "--model", "exact", "--speed", "160:175 rpm", "--speeds", "16"
+    )
+    readings = result["gauges"]["planting_part"]["peak_to_peak"]
     assert max(readings) == pytest.approx(26.2e-3, abs=0.3e-3)
-    assert any(re.search("two steady states at .* rpm", note) for note in found["notes"])
+    assert any(re.search("two steady states at .* rpm", note) for note in result["notes"])
 
 
-def test_what_does_nothing_is_told() -> None:
+def test_what_does_nothing_is_reported() -> None:
     text = example_text(RIG) + '\n[support.gauges.roll]\naxis = "roll"\n'
     speeding = ('speed = "193 rpm"', 'speed = "193 rpm"\nacceleration = "5 rad/s^2"')
     notes = read("respond", written(text, speeding))["notes"]

@@ -33,10 +33,10 @@ def test_json_is_what_python_has() -> None:
     study = written(FRONT)
     result = equipoise("search", study, *QUICK, "--seed", "5", "--json")
     assert result.out.count("\n") == 1
-    found = json.loads(succeeded(result))
+    content = json.loads(succeeded(result))
     own = eq.studies.search(eq.schema.load_study(study), population=12, generations=8, seed=5)
     expected = own.to_dict()
-    assert found == expected
+    assert content == expected
     line = result.err.splitlines()[-1]
     assert re.match(r"\d+ designs computed in .*; best: vertical .* mN, torque", line)
 
@@ -44,9 +44,9 @@ def test_json_is_what_python_has() -> None:
 def test_generations_before_there_is_a_front() -> None:
     """JSON knows no NaN."""
     study = written(FRONT, ("13000 mN", "11700 mN"))
-    found = json.loads(succeeded(equipoise("search", study, *QUICK, "--json")))
-    assert found["volumes"][0] is None
-    assert found["volumes"][-1] > 0
+    content = json.loads(succeeded(equipoise("search", study, *QUICK, "--json")))
+    assert content["volumes"][0] is None
+    assert content["volumes"][-1] > 0
 
 
 def test_the_front_as_a_table() -> None:
@@ -60,10 +60,10 @@ def test_the_front_as_a_table() -> None:
     rows = [line.split() for line in shown.splitlines() if re.match(r"(model|\d+)  +\d", line)]
     assert rows[0][0] == "model"
     assert float(rows[0][3]) == 71.5
-    found = np.array(rows[1:], float)
-    assert found[:, 0].tolist() == list(range(len(own.values)))
-    assert found[:, 1] == pytest.approx(1e3 * own.figures[:, 0], rel=1e-3)
-    assert found[:, 3:] == pytest.approx(1e3 * own.values, rel=1e-3)
+    values = np.array(rows[1:], float)
+    assert values[:, 0].tolist() == list(range(len(own.values)))
+    assert values[:, 1] == pytest.approx(1e3 * own.figures[:, 0], rel=1e-3)
+    assert values[:, 3:] == pytest.approx(1e3 * own.values, rel=1e-3)
     assert "note: the search has not converged; give more generations" in shown
 
 
@@ -150,22 +150,22 @@ def test_lines_in_a_log_grow_fewer(
 ) -> None:
     now = [0.0]
     monkeypatch.setattr(progress_lines, "monotonic", lambda: now[0])
-    told = []
+    texts = []
     with swept({"height": unit_named("mm")}) as tell:
         for second in range(1000):
             now[0] = float(second)
             tell(progress(10 * second, float(second), 10_000))
             if line := capsys.readouterr().err:
-                told.append((second, line))
-    seconds = [second for second, _ in told]
+                texts.append((second, line))
+    seconds = [second for second, _ in texts]
     assert seconds[:4] == [5, 10, 15, 23]
     assert len(seconds) < 25
     assert np.all(np.diff(seconds) >= 5) and np.all(np.diff(seconds) <= 60)
-    assert told[0][1] == (
+    assert texts[0][1] == (
         "0 %, 50 of 10000 designs, 10 designs/s; best so far: height 250.0 mm; "
         "failed: does not turn fully 5\n"
     )
-    assert "24 %, 2400 of 10000 designs, 10 designs/s, 12 min 40 s left; best" in told[9][1]
+    assert "24 %, 2400 of 10000 designs, 10 designs/s, 12 min 40 s left; best" in texts[9][1]
     closing = capsys.readouterr().err
     assert closing.startswith(
         "9990 designs computed in 16 min 39 s, 10 designs/s; best: height 250"
@@ -221,14 +221,14 @@ def test_times(seconds: float, said: str) -> None:
 
 # The number that bounds a search: tests/unit/studies/test_search.py.
 @pytest.mark.exhaustive
-def test_check_tells_what_a_search_computes_at_most() -> None:
+def test_check_reports_what_a_search_computes_at_most() -> None:
     """The estimate and the bound are those of the search itself."""
     study = written(FRONT, ("designs = 200", "designs = 90"))
-    told = succeeded(equipoise("check", study))
-    assert "time for a search of at most 90 designs, 10 generations of 9: " in told
-    found = equipoise("search", study, "--json")
-    assert 8 < json.loads(succeeded(found))["computed"] <= 90
-    told = succeeded(equipoise("check", "study-of-tolerances"))
-    machines = re.search(r"time for equipoise tolerance, of (\d+) machines: ", told)
-    found = equipoise("tolerance", "study-of-tolerances", "--json")
-    assert machines and json.loads(succeeded(found))["computed"] == int(machines[1])
+    printed = succeeded(equipoise("check", study))
+    assert "time for a search of at most 90 designs, 10 generations of 9: " in printed
+    result = equipoise("search", study, "--json")
+    assert 8 < json.loads(succeeded(result))["computed"] <= 90
+    printed = succeeded(equipoise("check", "study-of-tolerances"))
+    machines = re.search(r"time for equipoise tolerance, of (\d+) machines: ", printed)
+    result = equipoise("tolerance", "study-of-tolerances", "--json")
+    assert machines and json.loads(succeeded(result))["computed"] == int(machines[1])

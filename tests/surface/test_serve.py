@@ -16,7 +16,7 @@ from equipoise.web.server import assets
 from surface.running import changed, command, equipoise, refused, refuses, succeeded
 
 
-def test_a_machine_that_cannot_be_joined_is_told_before_a_page_opens() -> None:
+def test_a_machine_that_cannot_be_joined_is_reported_before_a_page_opens() -> None:
     changed("yamashita-1", ('points.B = ["33.5 mm"', 'points.B = ["5 m"'))
     said = "model.toml: 'coupler' and 'rocker' cannot be joined at any crank angle"
     assert refuses("serve model.toml --no-browser", said).startswith(said)

@@ -34,10 +34,10 @@ def source(language: str) -> str:
 
 
 def test_it_has_every_command_and_every_public_name(site: Path) -> None:
-    told = (site / "commands.html").read_text(encoding="utf-8")
-    assert [name for name in COMMANDS if f'id="equipoise-{name}"' not in told] == []
+    text = (site / "commands.html").read_text(encoding="utf-8")
+    assert [name for name in COMMANDS if f'id="equipoise-{name}"' not in text] == []
     names = "".join(page.read_text(encoding="utf-8") for page in site.glob("api/*.html"))
-    ids = {one.rpartition(".")[2] for one in re.findall(r'<dt [^>]*id="([\w.]+)"', names)}
+    ids = {match.rpartition(".")[2] for match in re.findall(r'<dt [^>]*id="([\w.]+)"', names)}
     assert {name.rpartition(".")[2] for name in NAMES} <= ids
 
 
@@ -86,9 +86,9 @@ def test_options_and_values_stand_as_they_are_typed(site: Path) -> None:
     """Two hyphens are no dash, and quotes of a value are those of a shell."""
     for page in site.rglob("*.html"):
         assert re.findall(r".{20}[–—][a-z].{20}", page.read_text(encoding="utf-8")) == [], page.name
-    told = (site / "commands.html").read_text(encoding="utf-8")
-    assert re.findall(r".{20}[“”‘].{20}", told) == []
-    assert "With --json: add the contributions to every force by cause and by link." in told
+    text = (site / "commands.html").read_text(encoding="utf-8")
+    assert re.findall(r".{20}[“”‘].{20}", text) == []
+    assert "With --json: add the contributions to every force by cause and by link." in text
 
 
 def test_the_glossary_has_every_term_and_its_meaning_in_every_language(site: Path) -> None:
@@ -123,10 +123,10 @@ def test_the_gallery_has_every_example_with_its_picture(site: Path, language: st
     body = text[text.index("<article") : text.index("</article")]
     pictures = re.findall(r'<img alt="[^"]+" loading="lazy" src="([^"]+\.svg)"', body)
     assert len(pictures) == len(bundled())
-    assert all((page.parent / one).is_file() for one in pictures)
-    told = lessons(source(language))
-    assert {*told} == {*bundled()}
-    assert [name for name in told if f">{name}<" not in body] == []
+    assert all((page.parent / picture).is_file() for picture in pictures)
+    reported = lessons(source(language))
+    assert {*reported} == {*bundled()}
+    assert [name for name in reported if f">{name}<" not in body] == []
 
 
 def test_every_machine_of_the_gallery_opens_live(site: Path) -> None:
@@ -137,10 +137,10 @@ def test_every_machine_of_the_gallery_opens_live(site: Path) -> None:
         text = page.read_text(encoding="utf-8")
         files = re.findall(r'<a class="open-live" href="([^"]+)"', text)
         assert len(files) == len([*(site / "live" / language).glob("*.html")]) > 10
-        for one in files:
-            live = (page.parent / one).read_text(encoding="utf-8")
+        for file in files:
+            live = (page.parent / file).read_text(encoding="utf-8")
             assert f'<html lang="{language}">' in live and "function states(" in live
-        names |= {Path(one).stem for one in files}
+        names |= {Path(item).stem for item in files}
         top = "../" if language == "en" else "../../"
         pages = re.findall(r'<a class="open-page" hidden href="([^"]+)"', text)
         assert pages == [f"{top}#example={name}" for name in lessons(source(language))]

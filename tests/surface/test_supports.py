@@ -201,7 +201,7 @@ CARRIED = ("planetary-planting-arm", "slider-crank-engine", "class-three", "tran
 
 def every_model(path: str) -> dict[str, Any]:
     """What each model answers; it may say in a sentence why not."""
-    found = {}
+    actual = {}
     for model in MODELS:
         result = equipoise("respond", path, "--model", model, "--json")
         if result.status:
@@ -210,10 +210,10 @@ def every_model(path: str) -> dict[str, Any]:
             content = json.loads(result.out, parse_constant=no_constant)
             assert content["gauges"]
             assert content.get("residual", 0) < 1e-8
-            found[model] = content
+            actual[model] = content
     assert not re.search(r"\b(nan|inf|None)\b", succeeded(equipoise("modes", path)))
     assert read("modes", path)
-    return found
+    return actual
 
 
 ONE_SIDED = ("planetary-planting-arm", "geared-counterweight", "kim-chung-b")
@@ -228,9 +228,9 @@ ONE_SIDED = ("planetary-planting-arm", "geared-counterweight", "kim-chung-b")
 def test_any_linkage_on_a_support(name: str) -> None:
     """Geared ones with cycles of several turns, loads with windows, soil."""
     held = () if name in ONE_SIDED else (("one_sided = true\n", ""),)
-    found = every_model(written(example_text(name) + PLANE, *held))
-    assert set(found) == set(MODELS)
-    exact, moment = found["exact"], found["moment"]
+    result = every_model(written(example_text(name) + PLANE, *held))
+    assert set(result) == set(MODELS)
+    exact, moment = result["exact"], result["moment"]
     assert exact["energy"]["fed_in"] == pytest.approx(exact["energy"]["lost"], rel=1e-6)
     if name == "quick-return":
         return  # it shakes its support too hard for a linear model
@@ -243,9 +243,9 @@ def test_any_linkage_on_a_support(name: str) -> None:
 @pytest.mark.exhaustive
 def test_a_yoke_that_shakes_its_light_support_off_a_mount() -> None:
     light = (('mass = "60 kg"', 'mass = "10 kg"'), ('"4 kg m^2"', '"0.7 kg m^2"'))
-    found = every_model(written(example_text("scotch-yoke") + PLANE, *light))
-    assert set(found) == set(MODELS)
-    exact = found["exact"]
+    result = every_model(written(example_text("scotch-yoke") + PLANE, *light))
+    assert set(result) == set(MODELS)
+    exact = result["exact"]
     assert exact["mounts"]["right"]["lifts_off"] > 0.1
     assert exact["energy"]["fed_in"] == pytest.approx(exact["energy"]["lost"], rel=1e-6)
 
@@ -273,11 +273,11 @@ def test_odd_supports(changes: list[tuple[str, str]]) -> None:
 @pytest.mark.parametrize("eccentric", [0, 10])
 def test_a_wheel_that_shakes_one_way(support: str, eccentric: float) -> None:
     """One freedom, m e w^2 / (k - M w^2); damping hardly counts that far from the resonance."""
-    found = every_model(wheel(support, eccentric))
-    assert set(found) == set(MODELS)
+    result = every_model(wheel(support, eccentric))
+    assert set(result) == set(MODELS)
     square = (193 / 60 * math.tau) ** 2
     wanted = 2 * 4 * 1e-3 * eccentric * square / abs(5000 - 64 * square)
-    for content in found.values():
+    for content in result.values():
         (gauge,) = content["gauges"].values()
         assert gauge["peak_to_peak"] == pytest.approx(wanted, rel=2e-3, abs=1e-12)
 
@@ -285,9 +285,9 @@ def test_a_wheel_that_shakes_one_way(support: str, eccentric: float) -> None:
 def test_links_without_mass_move_nothing() -> None:
     masses = [(f'mass = "{mass} g"', 'mass = "0 g"') for mass in (199, 687, 259)]
     inertias = [(f'inertia = "{own} kg mm^2"', 'inertia = "0 kg mm^2"') for own in (30, 1500, 300)]
-    found = every_model(changed(RIG, *masses, *inertias))
-    assert set(found) == set(MODELS)
-    for content in found.values():
+    result = every_model(changed(RIG, *masses, *inertias))
+    assert set(result) == set(MODELS)
+    for content in result.values():
         assert content["gauges"]["gauge"]["peak_to_peak"] < 1e-12
 
 

@@ -107,9 +107,9 @@ def test_json() -> None:
         "designs": 50,
         "note": None,
     }
-    found = eq.studies.best(eq.studies.open_store("new.zarr"), 3)
-    assert content["kept"] == found.kept
-    assert content["best"] == found.to_dict()
+    actual = eq.studies.best(eq.studies.open_store("new.zarr"), 3)
+    assert content["kept"] == actual.kept
+    assert content["best"] == actual.to_dict()
     assert content["computed_now"] == 50
     assert content["seconds"] > 0
 
@@ -184,7 +184,7 @@ def test_designs_nearest_to_the_limits_are_drawn() -> None:
     assert "Designs nearest to the limits" in shown
     first = re.findall(r"^(\d+) +\d+", shown, re.M)
     everything = best("--count", "3")["designs"]  # of the same designs, with a limit they keep
-    assert first == [str(one["design"]) for one in everything]
+    assert first == [str(item["design"]) for item in everything]
     for folder in ("swept", "drawn"):
         text = (Path(folder) / "designs.svg").read_text(encoding="utf-8")
         assert "all designs, none of which keeps every limit" in text
@@ -238,7 +238,7 @@ def test_an_interrupted_sweep_goes_on() -> None:
     assert 0 < len(store.missing()) < store.chunks
 
 
-def test_an_interrupt_while_designs_are_drawn_tells_how_to_go_on(monkeypatch) -> None:
+def test_an_interrupt_while_designs_are_drawn_reports_how_to_go_on(monkeypatch) -> None:
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
@@ -341,18 +341,18 @@ def test_a_study_of_a_study() -> None:
 
 
 def test_the_best_as_json() -> None:
-    found = best("--count", "4")
-    assert found == {
+    result = best("--count", "4")
+    assert result == {
         "title": "Lengths of type I",
         **eq.studies.best(eq.studies.open_store(STORE), 4).to_dict(),
     }
-    figures = [one["figures"]["vertical"] for one in found["designs"]]
+    figures = [item["figures"]["vertical"] for item in result["designs"]]
     assert figures == sorted(figures)
 
 
 def test_what_to_go_by() -> None:
-    found = best("--by", "torque", "--largest", "links.crank.mass")
-    assert found["by"] == {"torque": "smallest", "links.crank.mass": "largest"}
+    result = best("--by", "torque", "--largest", "links.crank.mass")
+    assert result["by"] == {"torque": "smallest", "links.crank.mass": "largest"}
     shown = succeeded(equipoise("best", STORE, "--by", "torque", "--largest", "links.crank.mass"))
     assert "Pareto-optimal designs; torque smallest, mass of the crank largest" in shown
     assert "\n  mass of the crank: links.crank.mass\n" in shown  # as --by takes it
@@ -372,9 +372,9 @@ def test_designs_as_csv() -> None:
         "vertical [N]",
         "torque [N m]",
     ]
-    found = eq.studies.best(eq.studies.open_store(STORE), 3)
-    assert [int(row[0]) for row in rows] == found.designs.tolist()
-    assert np.array([row[1:3] for row in rows], float).tolist() == found.values.tolist()
+    actual = eq.studies.best(eq.studies.open_store(STORE), 3)
+    assert [int(row[0]) for row in rows] == actual.designs.tolist()
+    assert np.array([row[1:3] for row in rows], float).tolist() == actual.values.tolist()
 
 
 def test_the_best_as_a_model_file() -> None:
@@ -382,22 +382,22 @@ def test_the_best_as_a_model_file() -> None:
     result = equipoise("best", STORE, "--out", "best.toml")
     assert succeeded(result)
     assert result.err == "wrote best.toml\n"
-    found = eq.studies.best(eq.studies.open_store(STORE), 1)
+    actual = eq.studies.best(eq.studies.open_store(STORE), 1)
     machine = eq.load("best.toml")
-    assert machine.links["coupler"].points["C"][0] == found.values[0, 0]
-    assert machine.title.endswith(f", design {found.designs[0]}")
+    assert machine.links["coupler"].points["C"][0] == actual.values[0, 0]
+    assert machine.title.endswith(f", design {actual.designs[0]}")
     assert machine.description.startswith(
-        f'Design {found.designs[0]} of the study "Lengths of type I". Started from: '
+        f'Design {actual.designs[0]} of the study "Lengths of type I". Started from: '
     )
     rms = eq.analyze(machine).summary["shaking_force.y"].rms
-    assert rms == pytest.approx(found.figures[0, 0], rel=1e-4)
+    assert rms == pytest.approx(actual.figures[0, 0], rel=1e-4)
     succeeded(equipoise("check", "best.toml"))
 
 
 def test_another_design_as_a_model_file() -> None:
     store = eq.studies.open_store(STORE)
     reason = store.read(range(200)).outcome.reason
-    good, bad = (int(np.flatnonzero(found)[0]) for found in (reason == 0, reason != 0))
+    good, bad = (int(np.flatnonzero(result)[0]) for result in (reason == 0, reason != 0))
     succeeded(equipoise("best", STORE, "-o", "other.toml", "--design", good))
     values = dict(zip(store.numbers, store.read(range(good, good + 1)).values[0], strict=True))
     assert eq.schema.machine_of(store, good) == study_of(store).model.machine(values)

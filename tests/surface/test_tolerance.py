@@ -28,22 +28,22 @@ def test_json_is_what_python_has() -> None:
     study = written(TOLERANCES)
     result = equipoise("tolerance", study, "--json")
     assert result.out.count("\n") == 1
-    found = json.loads(succeeded(result))
+    content = json.loads(succeeded(result))
     own = eq.studies.tolerance(eq.schema.load_study(study)).to_dict()
-    assert found["within"] == own["within"]
-    assert found["tighten"] == own["tighten"]
-    assert found["outputs"]["vertical"]["percentiles"] == pytest.approx(
+    assert content["within"] == own["within"]
+    assert content["tighten"] == own["tighten"]
+    assert content["outputs"]["vertical"]["percentiles"] == pytest.approx(
         own["outputs"]["vertical"]["percentiles"]
     )
 
 
 def test_figures_in_the_units_of_the_files(shown: str) -> None:
     own = eq.studies.tolerance(eq.schema.load_study(written(TOLERANCES)))
-    one = own.scatters["vertical"]
+    first = own.scatters["vertical"]
     row = next(line for line in shown.splitlines() if re.match(r"vertical, N +\d", line))
     model, mean, deviation = map(float, row.split()[2:5])
-    assert (model, mean) == pytest.approx((one.base, one.mean), rel=1e-3)
-    assert deviation == pytest.approx(one.deviation, rel=1e-3)
+    assert (model, mean) == pytest.approx((first.base, first.mean), rel=1e-3)
+    assert deviation == pytest.approx(first.deviation, rel=1e-3)
     assert own.within is not None
     assert f"\n{100 * own.within.value:.2f} % (" in shown
     mass = r"^mass \+ inertia of the coupler +deviation 15.00 g, cut at 3; deviation "
@@ -64,7 +64,7 @@ def test_what_to_tighten_first(shown: str) -> None:
     lines = shown.replace("–", "-").splitlines()  # the ends of long cells stand in the next ones
     starts = [words for line in lines for words in ranked if line.startswith(words[:12])]
     assert starts == len(starts) // len(ranked) * ranked and len(starts) >= 2 * len(ranked)
-    assert ("links.coupler.mass", "links.coupler.inertia") in [one.numbers for one in own.causes]
+    assert ("links.coupler.mass", "links.coupler.inertia") in [item.numbers for item in own.causes]
 
 
 def test_without_limits() -> None:

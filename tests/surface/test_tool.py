@@ -28,7 +28,7 @@ from surface.running import (
 RPM = np.pi / 30
 
 
-def told(*words: str) -> dict[str, Any]:
+def as_json(*words: str) -> dict[str, Any]:
     return read("tool", *words)
 
 
@@ -37,49 +37,51 @@ def told(*words: str) -> dict[str, Any]:
 
 def test_the_paper_as_json() -> None:
     """Keys and figures of Nagamine and Irie's machine."""
-    found = told("nagamine-irie")
-    assert found["title"] == "Brush cutter of Nagamine and Irie"
+    result = as_json("nagamine-irie")
+    assert result["title"] == "Brush cutter of Nagamine and Irie"
     lambdas = (1.238, 2.413, 4.418, 6.290, 9.400)
-    assert found["eigenvalues"][:5] == pytest.approx(lambdas, abs=5e-4)
+    assert result["eigenvalues"][:5] == pytest.approx(lambdas, abs=5e-4)
     cycles = (127, 481, 1613, 3268, 7300)
-    assert [60 * one for one in found["natural_frequencies"][:5]] == pytest.approx(cycles, abs=0.5)
-    speeds = found["speed"]
+    assert [60 * item for item in result["natural_frequencies"][:5]] == pytest.approx(
+        cycles, abs=0.5
+    )
+    speeds = result["speed"]
     assert speeds == sorted(speeds)
     for station in ("handle", "harness"):
-        part = found["transmission"][station]
+        part = result["transmission"][station]
         assert len(part["ratio"]) == len(part["phase"]) == len(speeds)
-    quiet = np.array(found["transmission"]["handle"]["quiet_speeds"]) / RPM
+    quiet = np.array(result["transmission"]["handle"]["quiet_speeds"]) / RPM
     assert np.min(np.abs(quiet - 6134)) < 1
-    assert len(found["a_hv"]) == len(speeds)
-    assert found["a8"] is None
+    assert len(result["a_hv"]) == len(speeds)
+    assert result["a8"] is None
 
 
 # The JSON of the paper's tool is read on every change.
 @pytest.mark.exhaustive
 def test_json_is_what_python_has() -> None:
     tool = eq.schema.load_tool("brush-cutter")
-    found = told("brush-cutter", "--respond", "6000 : 9000 rpm", "--exposure")
-    speeds = np.array(found["speed"])
+    result = as_json("brush-cutter", "--respond", "6000 : 9000 rpm", "--exposure")
+    speeds = np.array(result["speed"])
     exposure = eq.handheld.expose_tool(tool, speeds)
-    assert found["a_hv"] == pytest.approx(exposure.a_hv.tolist())
-    assert found["a8"] == pytest.approx(exposure.a8)
+    assert result["a_hv"] == pytest.approx(exposure.a_hv.tolist())
+    assert result["a8"] == pytest.approx(exposure.a8)
     swept = eq.handheld.sweep_tool(tool, speeds)
-    handle = found["stations"]["front-handle"]
+    handle = result["stations"]["front-handle"]
     forces = swept.force("front-handle")["hand"]
     assert handle["forces"]["hand"] == pytest.approx(forces.tolist())
-    assert found["equivalents"].keys() == {"rear-grip", "front-handle"}
+    assert result["equivalents"].keys() == {"rear-grip", "front-handle"}
 
 
 @pytest.mark.exhaustive(but=["nagamine-irie"])
 @pytest.mark.parametrize("name", few(TOOLS, {*TOOLS} - {"brush-cutter"}))
-def test_every_bundled_tool_is_told(name: str) -> None:
+def test_every_bundled_tool_is_reported(name: str) -> None:
     shown = succeeded(equipoise("tool", "--full", name))
     for words in ("Natural frequencies", "Force at", "Largest forces", "a_hv"):
         assert words in shown
     assert not re.search(r"\b(nan|inf)\b", shown)
 
 
-def test_two_planes_are_told_apart() -> None:
+def test_two_planes_are_distinguished() -> None:
     shown = succeeded(equipoise("tool", "brush-cutter", "--modes", "--number", "3"))
     assert "without damping, vertical plane" in shown
     assert "with damping, lateral plane" in shown
@@ -93,9 +95,9 @@ def test_other_places_and_units() -> None:
     assert header
     places = re.findall(r"^ +(300000|1\.200e\+06) ", shown, re.MULTILINE)
     assert places == ["300000", "1.200e+06"]
-    found = told(*words[1:], "--at", "300 mm")
-    assert found["further"][0]["position"] == 0.3
-    assert len(found["further"][0]["moment"]) == len(found["speed"])
+    result = as_json(*words[1:], "--at", "300 mm")
+    assert result["further"][0]["position"] == 0.3
+    assert len(result["further"][0]["moment"]) == len(result["speed"])
 
 
 def test_unrestrained_shaft_names_its_rigid_modes() -> None:
@@ -104,7 +106,7 @@ def test_unrestrained_shaft_names_its_rigid_modes() -> None:
     shown = succeeded(equipoise("tool", "--full", file, "--number", "5"))
     assert "rigid: moves to and fro" in shown
     assert "rigid: turns about its left end" in shown
-    assert told(file, "--number", "5")["eigenvalues"] == pytest.approx(
+    assert as_json(file, "--number", "5")["eigenvalues"] == pytest.approx(
         [0, 0, 4.730040745, 7.853204624, 10.99560784], abs=1e-8
     )
     text = example_text("nagamine-irie").replace("harness = {", "# harness = {", 1)
@@ -117,9 +119,9 @@ def test_unrestrained_shaft_names_its_rigid_modes() -> None:
 @pytest.mark.exhaustive
 def test_variation() -> None:
     words = ("vary", "nagamine-irie", "harness position = 0 mm : 154.4 mm", "--number", "5")
-    found = told(*words)["variation"]
-    assert len(found["values"]) == len(found["eigenvalues"])
-    first, last = found["eigenvalues"][0], found["eigenvalues"][-1]
+    result = as_json(*words)["variation"]
+    assert len(result["values"]) == len(result["eigenvalues"])
+    first, last = result["eigenvalues"][0], result["eigenvalues"][-1]
     assert first == pytest.approx((1.650, 3.105, 4.326, 6.169, 9.359), abs=5e-4)
     assert last == pytest.approx((1.497, 2.631, 4.364, 6.221, 9.387), abs=5e-4)
     shown = succeeded(equipoise("tool", *words))
@@ -127,12 +129,12 @@ def test_variation() -> None:
 
 
 def test_sensitivities_are_those_of_python() -> None:
-    found = told("sensitivities", "pole-saw", "--speeds", "5000 rpm : 6000 rpm")
+    result = as_json("sensitivities", "pole-saw", "--speeds", "5000 rpm : 6000 rpm")
     speeds = np.linspace(5000 * RPM, 6000 * RPM, 201)
     slopes = eq.handheld.tool_sensitivities(eq.schema.load_tool("pole-saw"), speeds)
-    one = {(s, k): v for s, part in found["sensitivities"].items() for k, v in part.items()}
-    assert one.keys() == slopes.keys()
-    assert list(one.values()) == pytest.approx(list(slopes.values()))
+    first = {(s, k): v for s, part in result["sensitivities"].items() for k, v in part.items()}
+    assert first.keys() == slopes.keys()
+    assert list(first.values()) == pytest.approx(list(slopes.values()))
     assert "mm/s^2" in succeeded(equipoise("tool", "sensitivities", "pole-saw"))
 
 
@@ -146,8 +148,8 @@ def test_a_file_to_start_from() -> None:
 
 
 def test_a_check_shows_what_tubes_are_made_of() -> None:
-    told = " ".join(succeeded(equipoise("check", "brush-cutter")).split())
-    assert "0.9926 kg, aluminium, 2700 kg/m^3, 70.00 GPa, bending stiffness" in told
+    text = " ".join(succeeded(equipoise("check", "brush-cutter")).split())
+    assert "0.9926 kg, aluminium, 2700 kg/m^3, 70.00 GPa, bending stiffness" in text
 
 
 # -- a better tool ---------------------------------------------------------------------------------
@@ -170,17 +172,17 @@ def test_design_is_written_and_read_back(folder: Path) -> None:
     damped = hand.replace("stiffness", 'damping = "60 N s/m", stiffness')
     file = written(text + SMALL, (hand, damped), to="tool.toml")
     result = equipoise("tool", "design", file, "-o", "better.toml", "--json")
-    found = json.loads(succeeded(result))["design"]
+    content = json.loads(succeeded(result))["design"]
     assert result.err == "wrote better.toml; next: equipoise tool better.toml\n"
     assert {path.name for path in folder.iterdir()} == {"tool.toml", "better.toml"}
-    place = found["variables"]["harness position"]
+    place = content["variables"]["harness position"]
     better = eq.schema.load_tool("better.toml")
     assert better.station("harness").position == pytest.approx(place["after"], rel=1e-12)
-    measure = found["figures"]["a_hv of the worst hand, RMS over the band"]
+    measure = content["figures"]["a_hv of the worst hand, RMS over the band"]
     assert measure["after"] < measure["before"]
-    speeds = np.array(found["speed"])
+    speeds = np.array(content["speed"])
     a_hv = eq.handheld.expose_tool(better, speeds).a_hv
-    assert a_hv.tolist() == pytest.approx(found["a_hv_after"])
+    assert a_hv.tolist() == pytest.approx(content["a_hv_after"])
     weights = np.ones(len(speeds))
     weights[[0, -1]] = 0.5
     assert np.sqrt(np.average(a_hv**2, weights=weights)) == pytest.approx(
@@ -269,7 +271,7 @@ def test_table_of_a_hand_that_ends_too_soon() -> None:
     assert "known by its impedance" in succeeded(equipoise("tool", file, "--modes"))
 
 
-def test_what_is_missing_is_told() -> None:
+def test_what_is_missing_is_reported() -> None:
     text = example_text("nagamine-irie")
     start = text.index("[[excitations]]")
     written(text[:start] + text[text.index("[operation]") :], to="silent.toml")

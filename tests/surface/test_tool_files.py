@@ -46,7 +46,7 @@ def test_check_of_an_example(name: str) -> None:
         assert any(line.startswith(f"  {station['name']} at ") for line in lines)
 
 
-def test_check_tells_what_it_has_read() -> None:
+def test_check_reports_what_it_has_read() -> None:
     text = unfolded("\n".join(checked_tool(EVERY_TOOL)))
     for part in (
         "from 1300 mm to 1500 mm: bending stiffness 1822 N m^2, 0.7867 kg/m",

@@ -91,11 +91,11 @@ def pump(to: str = "pump.toml", units: str = "") -> str:
 
 @pytest.mark.exhaustive(but=["analyze", "respond", "modes", "check"])
 @pytest.mark.parametrize("words", LINKAGE, ids=" ".join)
-def test_a_pump_jack_is_told_in_numbers_that_can_be_read(words: tuple[str, ...]) -> None:
+def test_a_pump_jack_is_reported_in_numbers_that_can_be_read(words: tuple[str, ...]) -> None:
     text = printed(words, pump())
     assert COARSE.findall(text) == []
     # but for what a proof leaves, and shares of a motion that has died away
-    assert [one for one in ROUNDING.findall(text) if "more than" not in text] == []
+    assert [match for match in ROUNDING.findall(text) if "more than" not in text] == []
 
 
 # Tables of a terminal have the same numbers.
@@ -111,16 +111,18 @@ def test_a_machine_of_micrometres() -> None:
     text = PUMP.split("[[loads]]", maxsplit=1)[0]
     sizes = {" kg m^2": (" g mm^2", 1e-15), " kg": (" mg", 1e-9), " m": (" um", 3.0)}
 
-    def smaller(found: re.Match[str]) -> str:
-        unit, factor = sizes[found[2]]
-        return f'"{float(found[1]) * factor:.6g}{unit}"'
+    def smaller(result: re.Match[str]) -> str:
+        unit, factor = sizes[result[2]]
+        return f'"{float(result[1]) * factor:.6g}{unit}"'
 
     text = re.sub(r'"([-\d.]+)( kg m\^2| kg| m)"', smaller, text).replace("10 rpm", "6000 rpm")
     Path("micro.toml").write_text(text, encoding="utf-8")
-    told = succeeded(equipoise("analyze", "--full", "micro.toml"))
+    reported = succeeded(equipoise("analyze", "--full", "micro.toml"))
     # what shakes weighs some ng; forces are some pN, lengths some um
-    assert re.search(r"crank +crank +A, B +0\.002700$", told, re.MULTILINE)
-    assert re.search(r"shaking force x, nN", told) and "-0" not in cells(told, "shaking force x")
+    assert re.search(r"crank +crank +A, B +0\.002700$", reported, re.MULTILINE)
+    assert re.search(r"shaking force x, nN", reported) and "-0" not in cells(
+        reported, "shaking force x"
+    )
 
 
 @pytest.mark.exhaustive(but=["analyze", "respond", "modes", "check", "balance conditions"])
@@ -152,8 +154,8 @@ def test_the_same_value_whatever_its_unit() -> None:
         [float(cell) * parse(f"1 {unit}", "force") for cell in row[::2][:2]]
         for unit, row in rows.items()
     ]
-    for found in newtons[1:]:
-        assert found == pytest.approx(newtons[0], rel=6e-4, abs=1e-9)
+    for result in newtons[1:]:
+        assert result == pytest.approx(newtons[0], rel=6e-4, abs=1e-9)
     assert read("analyze", pump(), "--units", "lbf") == read("analyze", pump())
 
 
@@ -214,8 +216,8 @@ def test_tools_studies_and_records_follow() -> None:
     ],
 )
 def test_wrong_units_of_a_file(given: str, sentence: str) -> None:
-    told = refused(equipoise("analyze", pump(units=given)))
-    assert told.startswith("pump.toml: ") and sentence in told
+    refusal = refused(equipoise("analyze", pump(units=given)))
+    assert refusal.startswith("pump.toml: ") and sentence in refusal
 
 
 def test_wrong_units_of_the_command_line() -> None:
@@ -227,7 +229,7 @@ def test_wrong_units_of_the_command_line() -> None:
     )
 
 
-def test_rounding_is_told_as_nothing_in_harmonics() -> None:
+def test_rounding_is_reported_as_nothing_in_harmonics() -> None:
     """Of a machine that is balanced in one direction, other harmonics are -6.9e-15."""
     for name in ("scotch-yoke", "planetary-planting-arm"):
         text = succeeded(equipoise("analyze", "--full", name, "--orders", "6"))

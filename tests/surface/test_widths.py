@@ -98,14 +98,14 @@ LINES = [
 """Of every command that prints blocks, quick ones with much to tell."""
 PRINTING = {
     name
-    for name, one in functions().items()
-    if any(issubclass(group, Printed) for group in getattr(declared_of(one), "groups", ()))
+    for name, value in functions().items()
+    if any(issubclass(group, Printed) for group in getattr(declared_of(value), "groups", ()))
 }
 """Commands whose results are printed."""
 
 
 def tried() -> set[str]:
-    return {name for name in PRINTING for one in LINES if f"{one} ".startswith(f"{name} ")}
+    return {name for name in PRINTING for item in LINES if f"{item} ".startswith(f"{name} ")}
 
 
 LINES += [
@@ -147,10 +147,12 @@ class Told:
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv("FORCE_COLOR", "1")
             self.coloured = shown(title, parts, 80)
-        self.whole = [line for one in parts if isinstance(one, FileText) for line in lines_of(one)]
-        told = [grid(one) for one in within(parts) if isinstance(one, Table)]
-        self.cells = [cell for one in told for row in one.rows for cell in row]
-        texts = [one for one in within(parts) if isinstance(one, Text) and one.emphasis]
+        self.whole = [
+            line for part in parts if isinstance(part, FileText) for line in lines_of(part)
+        ]
+        reported = [grid(item) for item in within(parts) if isinstance(item, Table)]
+        self.cells = [cell for item in reported for row in item.rows for cell in row]
+        texts = [item for item in within(parts) if isinstance(item, Text) and item.emphasis]
         self.marked = len(texts), sum(cell.emphasis is not None for cell in self.cells)
 
 
@@ -158,14 +160,14 @@ def shown(title: str | None, blocks: Iterable[Block | ReportSection], width: int
     return block_text(title, blocks, width)
 
 
-def lines_of(one: FileText) -> list[str]:
+def lines_of(item: FileText) -> list[str]:
     """Lines to be pasted, which stay whole."""
-    return plain(one.text).splitlines()
+    return plain(item.text).splitlines()
 
 
 def within(blocks: Iterable[Block | ReportSection]) -> Iterator[Block | ReportSection]:
-    for one in blocks:
-        yield from within(one.blocks) if isinstance(one, ReportSection) else [one]
+    for block in blocks:
+        yield from within(block.blocks) if isinstance(block, ReportSection) else [block]
 
 
 @pytest.fixture(scope="module")
@@ -182,17 +184,17 @@ def run(line: str, place: Path) -> list[Told]:
     """What a command line shows, run once for all widths."""
     if line.startswith(("resume", "best")):
         run("sweep study.toml --out designs.zarr", place)
-    found: list[Told] = []
+    actual: list[Told] = []
 
     def keep(title: str | None, blocks: Iterable[Block | ReportSection], **_: int | None) -> str:
-        found.append(Told(title, blocks))
+        actual.append(Told(title, blocks))
         return ""
 
     with pytest.MonkeyPatch.context() as patch, chdir(place):
         patch.setattr(equipoise.present.terminal, "block_text", keep)
         succeeded(equipoise_runs(*shlex.split(line)))
-    assert found
-    return found
+    assert actual
+    return actual
 
 
 def test_no_command_is_left_out() -> None:
@@ -203,20 +205,24 @@ def test_no_command_is_left_out() -> None:
 @pytest.mark.parametrize("line", TRIED)
 def test_no_line_is_wider_than_the_terminal(line: str, place: Path) -> None:
     """But where a single word is."""
-    for told in run(line, place):
-        for width, text in told.by_width.items():
-            lines = (one for one in text.splitlines() if one not in told.whole)
-            wide = [one for one in lines if cell_len(one) > width and len(one.split()) > 1]
+    for reported in run(line, place):
+        for width, text in reported.by_width.items():
+            lines = (item for item in text.splitlines() if item not in reported.whole)
+            wide = [item for item in lines if cell_len(item) > width and len(item.split()) > 1]
             assert wide == [], width
 
 
 @pytest.mark.parametrize("line", TRIED)
 def test_nothing_is_lost_at_any_width(line: str, place: Path) -> None:
-    for told in run(line, place):
-        numbers = [cell for cell in told.cells if cell.number]
-        wanted = Counter(word for one in numbers for word in f"{one.text} {one.at}".split())
-        words = {word for one in told.cells if not one.number for word in plain(one.text).split()}
-        for text in told.by_width.values():
+    for reported in run(line, place):
+        numbers = [cell for cell in reported.cells if cell.number]
+        wanted = Counter(
+            word for number in numbers for word in f"{number.text} {number.at}".split()
+        )
+        words = {
+            word for item in reported.cells if not item.number for word in plain(item.text).split()
+        }
+        for text in reported.by_width.values():
             assert wanted - Counter(text.replace(", over the limit", " over").split()) == Counter()
             parts = (part for word in words for part in re.split("(?<=[./-])", word))
             assert [part for part in parts if part not in text] == []
@@ -232,4 +238,4 @@ def test_what_stands_out_does_so_with_and_without_colour(line: str, place: Path)
         assert told.coloured.count("\x1b[1;31m") >= sentences + cells
         assert "\x1b" not in told.by_width[80]
     if line in STAND_OUT:
-        assert any(any(told.marked) for told in run(line, place))
+        assert any(any(reported.marked) for reported in run(line, place))

@@ -14,6 +14,6 @@ DOCS = Path(__file__).parents[2] / "docs"
 def test_the_page_is_fresh() -> None:
     page = runpy.run_path(str(DOCS / "api.py"))["page"]()
     assert page == (DOCS / "api.txt").read_text(encoding="utf-8"), "run python docs/api.py"
-    told = re.findall(r"(?m)^## (?:class )?[\w.]*\.(\w+)", page)
-    assert {name.rpartition(".")[2] for name in NAMES} <= {*told}
-    assert len(told) == len({*told})
+    matches = re.findall(r"(?m)^## (?:class )?[\w.]*\.(\w+)", page)
+    assert {name.rpartition(".")[2] for name in NAMES} <= {*matches}
+    assert len(matches) == len({*matches})

@@ -30,7 +30,7 @@ from support.conformance import (
 DOCS = TESTS.parent / "docs"
 PAGE, TRUST = DOCS / "conformance.md", DOCS / "trust.md"
 MARKED = re.compile("(?<=<!-- printed numbers -->).*?(?=<!-- /printed numbers -->)", re.DOTALL)
-SOURCES = [one for one in vars(sources).values() if isinstance(one, Source)]
+SOURCES = [var for var in vars(sources).values() if isinstance(var, Source)]
 Rows = dict[Source, list[Printed | Agreement]]
 
 TOTALS = (
@@ -88,7 +88,7 @@ def declared() -> Rows:
     rows: Rows = {source: [] for source in SOURCES}
     for _, (source, more) in sorted(DECLARED.items()):
         rows[source] += more
-    return {source: told for source, told in rows.items() if told}
+    return {source: reported for source, reported in rows.items() if reported}
 
 
 def page(rows: Rows) -> str:
@@ -98,13 +98,13 @@ def page(rows: Rows) -> str:
         "## Contents\n",
         CONTENTS,
     ]
-    for one, told in rows.items():
-        kinds = " | ".join(str(count or "") for count in counts({one: told}).values())
-        parts.append(f"| [{one.name}](#{anchor(one.name)}) | {kinds} |")
+    for key, text in rows.items():
+        kinds = " | ".join(str(count or "") for count in counts({key: text}).values())
+        parts.append(f"| [{key.name}](#{anchor(key.name)}) | {kinds} |")
     parts.append("\nThe last section lists the [slips in print](#slips-in-print).")
-    for source, told in rows.items():
+    for source, text in rows.items():
         parts.append(f"\n## {source.name}\n\n{' '.join(source.text.split())}\n")
-        parts += sections(told)
+        parts += sections(text)
     parts += ["\n## Slips in print\n", SLIPS, *slips(rows)]
     return "\n".join(parts) + "\n"
 
@@ -112,13 +112,13 @@ def page(rows: Rows) -> str:
 def totals(rows: Rows) -> str:
     """What is counted of printed numbers, in a sentence: the one place that counts them."""
     of = counts(rows)
-    told = sum(of[kind] for kind in KINDS if kind != "drawn")
-    return TOTALS.format(told=told, **of)
+    reported = sum(of[kind] for kind in KINDS if kind != "drawn")
+    return TOTALS.format(told=reported, **of)
 
 
 def counts(rows: Rows) -> dict[str, int]:
     """How many rows of each kind there are."""
-    every = [row for told in rows.values() for row in told]
+    every = [row for text in rows.values() for row in text]
     kinds = Counter(row.kind for row in every if isinstance(row, Printed))
     others = [row for row in every if isinstance(row, Agreement)]
     return {
@@ -146,7 +146,7 @@ def sections(rows: Sequence[Printed | Agreement]) -> Iterator[str]:
         if lines:
             yield "\n".join([f"**{name}**\n", NUMBERS[name], *lines]) + "\n"
     if equations:
-        equations.sort(key=lambda line: [int(one) for one in re.findall(r"\d+", line)])
+        equations.sort(key=lambda line: [int(match) for match in re.findall(r"\d+", line)])
         yield "\n".join(["**Equations**\n", EQUATIONS, *equations]) + "\n"
     if compared:
         yield "\n".join(
@@ -164,10 +164,10 @@ def cells(row: Printed) -> list[str]:
     """A printed number as a line of the table of its kind."""
     what = f"{row.what}, {row.unit}" if row.unit else row.what
     near = row.within and not row.computed
-    told = f"{row.told} ± {power(row.within)}" if near else row.told
+    reported = f"{row.told} ± {power(row.within)}" if near else row.told
     if row.kind == "drawn":
-        return [row.case, what, row.place, told]
-    line = [row.case, what, row.place, row.printed, told]
+        return [row.case, what, row.place, reported]
+    line = [row.case, what, row.place, row.printed, reported]
     if row.kind == "met":
         return line
     kind = "" if row.kind == "explained" else f"{row.kind}: "
@@ -185,8 +185,8 @@ def deviation(row: Printed) -> str:
 
 def slips(rows: Rows) -> Iterator[str]:
     """What is wrong in print: numbers, equations, words."""
-    for source, told in rows.items():
-        for row in told:
+    for source, text in rows.items():
+        for row in text:
             if isinstance(row, Printed) and row.slip:
                 said = f"{row}: {row.printed} for {row.told} {row.unit}".strip()
                 yield f"| {source.name} | {row.place} | {said}; {row.why} |"
@@ -220,8 +220,8 @@ def test_trust_counts_as_the_page_does() -> None:
 
 
 def test_a_printed_number_stands_once() -> None:
-    for source, told in declared().items():
-        often = Counter((row.case, row.what, row.place) for row in told if isinstance(row, Printed))
+    for source, text in declared().items():
+        often = Counter((row.case, row.what, row.place) for row in text if isinstance(row, Printed))
         assert [key for key, count in often.items() if count > 1] == [], source.name
 
 
@@ -243,7 +243,7 @@ def row(printed: str, computed: str = "", **more: Any) -> Printed:
         (row("1800", "1613", why=MISREAD, slip=True), 1613.2),
     ],
 )
-def test_a_row_holds_every_digit_told(told: Printed, found: Any) -> None:
+def test_a_row_holds_every_reported_digit(told: Printed, found: Any) -> None:
     told.hold(found)
     for value in np.ravel(found):
         with pytest.raises(AssertionError, match=f"is not {told.told}"):
@@ -261,7 +261,7 @@ def test_a_row_holds_every_digit_told(told: Printed, found: Any) -> None:
         ("under 1.0", "1.2", {}),
     ],
 )
-def test_a_difference_is_told_why(printed: str, computed: str, more: dict[str, Any]) -> None:
+def test_a_difference_is_reported_why(printed: str, computed: str, more: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match="nothing says why"):
         row(printed, computed, **more)
 
@@ -288,13 +288,13 @@ def test_what_is_known_of_a_difference_is_computed() -> None:
     ],
 )
 def test_a_cause_meets_the_printed_digits(printed: str, unit: str, gives: Any, holds: bool) -> None:
-    told = row(printed, "20", unit=unit, why=Cause("as read", lambda: gives))
-    assert told.kind == "explained"
+    reported = row(printed, "20", unit=unit, why=Cause("as read", lambda: gives))
+    assert reported.kind == "explained"
     if holds:
-        told.check_cause()
+        reported.check_cause()
         return
     with pytest.raises(AssertionError, match="as read gives"):
-        told.check_cause()
+        reported.check_cause()
 
 
 if __name__ == "__main__":

@@ -46,23 +46,23 @@ OURS, THEIRS = made_by(dataclass), made_by(dataclasses.dataclass)
 
 @pytest.mark.parametrize("kind", [OURS, THEIRS])
 def test_objects_of_both(kind):
-    one = kind(1, 3.0, third="x", alone=8)
-    assert repr(one).endswith(
+    first = kind(1, 3.0, third="x", alone=8)
+    assert repr(first).endswith(
         "Inner(first=1, second=3.0, aside=0, made=[], alone=8, own={}, third='x')"
     )
-    assert one == kind(1, 3.0, aside=5, third="x", alone=8)
-    assert one != kind(1, 3.0, third="y", alone=8)
-    assert one != (1, 3.0)
-    assert hash(one) == hash(kind(1, 3.0, aside=5, third="x", alone=8))
-    assert replace(one, first=2).first == 2
-    assert one.made is not kind(1).made
-    assert copy.deepcopy(one) == one
+    assert first == kind(1, 3.0, aside=5, third="x", alone=8)
+    assert first != kind(1, 3.0, third="y", alone=8)
+    assert first != (1, 3.0)
+    assert hash(first) == hash(kind(1, 3.0, aside=5, third="x", alone=8))
+    assert replace(first, first=2).first == 2
+    assert first.made is not kind(1).made
+    assert copy.deepcopy(first) == first
     with pytest.raises(FrozenInstanceError, match="first"):
-        one.first = 2
+        first.first = 2
     with pytest.raises(FrozenInstanceError, match="third"):
-        del one.third
+        del first.third
     with pytest.raises(FrozenInstanceError, match="new"):
-        one.new = 2
+        first.new = 2
     with pytest.raises(ValueError, match="-1"):
         kind(-1)
     for wrong in [{}, {"first": 1, "nothing": 2}]:
@@ -120,9 +120,9 @@ def test_what_a_class_has_itself_stays():
 
 
 def test_an_object_that_holds_itself_is_printed():
-    one = Kept(1.0)
-    object.__setattr__(one, "value", one)
-    assert repr(one) == "Kept(value=...)"
+    first = Kept(1.0)
+    object.__setattr__(first, "value", first)
+    assert repr(first) == "Kept(value=...)"
 
 
 def test_what_is_remembered_is_computed_once_and_can_be_handed_on() -> None:
@@ -139,10 +139,10 @@ def test_what_is_remembered_is_computed_once_and_can_be_handed_on() -> None:
             calls.append(self.side)
             return self.side**2
 
-    one = Square(3.0)
-    assert (one.area, one.area, calls) == (9.0, 9.0, [3.0])
-    other = replace(one)
-    assert other == one
-    other.memory.update(one.memory)
+    first = Square(3.0)
+    assert (first.area, first.area, calls) == (9.0, 9.0, [3.0])
+    other = replace(first)
+    assert other == first
+    other.memory.update(first.memory)
     assert (other.area, calls) == (9.0, [3.0])
     assert Square.area.__doc__ == "In m2."

@@ -37,7 +37,7 @@ def test_a_notebook_shows_the_command_that_explains_an_error() -> None:
     assert any("RangeError" in line and "cannot turn fully" in line for line in lines)
 
 
-def test_the_live_page_is_told_the_page_of_an_error() -> None:
+def test_the_live_page_gets_the_page_of_an_error() -> None:
     """Its address in the documentation, and its text where there is none."""
     content = refused(7, raised(LONG_CRANK)).content
     assert content["topic"] == "the-crank-cannot-turn-fully"

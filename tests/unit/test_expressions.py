@@ -78,7 +78,7 @@ def test_names_stand_for_amounts(text: str, length: float) -> None:
     assert parse_expression(text, "length", names) == length
 
 
-def test_an_amount_tells_its_dimension() -> None:
+def test_an_amount_reports_its_dimension() -> None:
     assert parse_amount("=crank/2", {"crank": CRANK}).dimension == "length"
     assert parse_amount("=crank/(1 mm)", {"crank": CRANK}).dimension is None
     assert parse_number("=count*crank/(67 mm)", {"crank": CRANK, "count": COUNT}) == 1.5

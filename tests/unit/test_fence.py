@@ -13,9 +13,9 @@ from support.refusals import refused
 
 def test_files_beyond_a_fence(tmp_path: Path) -> None:
     folder, beyond = tmp_path / "folder", tmp_path / "folder too"
-    for one in (folder, beyond):
-        one.mkdir()
-        (one / "there.txt").write_text("there")
+    for item in (folder, beyond):
+        item.mkdir()
+        (item / "there.txt").write_text("there")
     (folder / "way.txt").symlink_to(beyond / "there.txt")
     fence = Fence(folder)
     with fenced(fence), transaction():

@@ -96,10 +96,10 @@ def without_reason(file: Path) -> Iterator[str]:
         if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:
             continue
         parts = [*ast.walk(node.value)]
-        numbers = [one for one in parts if isinstance(one, ast.Constant)]
-        plain = all(isinstance(one, NUMBER | ast.expr_context) for one in parts)
+        numbers = [part for part in parts if isinstance(part, ast.Constant)]
+        plain = all(isinstance(part, NUMBER | ast.expr_context) for part in parts)
         said = isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant)
-        if plain and any(isinstance(one.value, float | int) for one in numbers) and not said:
+        if plain and any(isinstance(number.value, float | int) for number in numbers) and not said:
             line = lines[node.lineno - 1]
             if "  # " not in line and "[" not in line.partition("=")[0]:
                 yield line
@@ -191,9 +191,9 @@ def test_names_say_what_a_thing_is() -> None:
     assert [place for name, place in places if name.strip("_").lower() in VAGUE] == []
 
 
-def test_the_documentation_tells_these_sizes() -> None:
-    told = (TOP / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    assert f"at most {FILE} lines; a function at most {FUNCTION} without its docstring" in told
+def test_the_documentation_reports_these_sizes() -> None:
+    text = (TOP / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    assert f"at most {FILE} lines; a function at most {FUNCTION} without its docstring" in text
     assert f"at most {FILE} lines long" in (TOP / "docs/architecture.md").read_text("utf-8")
     sizes = [
         node.end_lineno - node.lineno + 1
@@ -208,10 +208,10 @@ def test_the_documentation_tells_these_sizes() -> None:
 def test_files_that_the_documentation_names_are_there(page: Path) -> None:
     """By their path from the top, from the package, or by their name alone."""
     named = re.findall(r"`([\w/]+\.(?:py|ts))`", page.read_text(encoding="utf-8"))
-    found = [
+    actual = [
         file for folder in ("src", "tests", "page/src") for file in (TOP / folder).rglob("*.*")
     ]
-    names = {file.name for file in found}
+    names = {file.name for file in actual}
     for name in named:
         assert name in names or (TOP / name).exists() or (ROOT / name).exists(), name
 
@@ -220,11 +220,11 @@ def test_files_that_the_documentation_names_are_there(page: Path) -> None:
 def words_of_all() -> frozenset[str]:
     """All names in code, and those of its files and folders."""
     places = ("src", "tests", "page/src", "docs", "benchmarks")
-    files = [one for place in places for one in (TOP / place).rglob("*.*")]
-    words = {one.stem for one in files} | {one.parent.name for one in files}
-    for one in (*files, TOP / "conftest.py", TOP / "hatch_build.py"):
-        if one.suffix in (".py", ".ts"):
-            words.update(re.findall(r"\w+", one.read_text(encoding="utf-8")))
+    files = [path for place in places for path in (TOP / place).rglob("*.*")]
+    words = {file.stem for file in files} | {file.parent.name for file in files}
+    for item in (*files, TOP / "conftest.py", TOP / "hatch_build.py"):
+        if item.suffix in (".py", ".ts"):
+            words.update(re.findall(r"\w+", item.read_text(encoding="utf-8")))
     return frozenset(words)
 
 
@@ -234,7 +234,7 @@ def test_names_that_developers_look_for_are_there(page: str) -> None:
     text = re.sub(r"```.*?```", "", (TOP / page).read_text(encoding="utf-8"), flags=re.DOTALL)
     named = re.findall(r"`([A-Za-z_][\w.]*)(?:\([^`]*\))?`", text)
     of_numba = {"prange"}  # which is not used, and why not is said
-    assert {*(one.rstrip(".").rpartition(".")[2] for one in named)} - words_of_all() <= of_numba
+    assert {*(item.rstrip(".").rpartition(".")[2] for item in named)} - words_of_all() <= of_numba
 
 
 def test_decompositions_are_asked_for_in_one_place() -> None:

@@ -31,29 +31,33 @@ def room(name: str) -> ModuleType:
 def public(name: str) -> list[str]:
     """What a room offers, but for rooms of its own."""
     names = getattr(room(name), "__all__", [])
-    return [one for one in names if not isinstance(getattr(room(name), one), ModuleType)]
+    return [item for item in names if not isinstance(getattr(room(name), item), ModuleType)]
 
 
 NAMES = {
-    f"{name}.{one}".lstrip("."): getattr(room(name), one) for name in ROOMS for one in public(name)
+    f"{name}.{item}".lstrip("."): getattr(room(name), item)
+    for name in ROOMS
+    for item in public(name)
 }
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_name_is_there_and_documented(name: str) -> None:
-    found: Any = NAMES[name]
-    assert found.__name__ == name.rpartition(".")[2]
-    assert found.__module__.startswith("equipoise.")
-    assert found.__doc__
-    assert not found.__doc__.startswith(f"{found.__name__}("), "a docstring that dataclass made up"
+    actual: Any = NAMES[name]
+    assert actual.__name__ == name.rpartition(".")[2]
+    assert actual.__module__.startswith("equipoise.")
+    assert actual.__doc__
+    assert not actual.__doc__.startswith(f"{actual.__name__}("), (
+        "a docstring that dataclass made up"
+    )
 
 
 def methods() -> Iterator[tuple[str, Any]]:
-    for name, found in NAMES.items():
-        if inspect.isclass(found):
-            members = vars(found).items()
-            functions = ((key, one) for key, one in members if inspect.isfunction(one))
-            yield from ((f"{name}.{key}", one) for key, one in functions if key[0] != "_")
+    for name, actual in NAMES.items():
+        if inspect.isclass(actual):
+            members = vars(actual).items()
+            functions = ((key, first) for key, first in members if inspect.isfunction(first))
+            yield from ((f"{name}.{key}", first) for key, first in functions if key[0] != "_")
 
 
 @pytest.mark.parametrize(("key", "function"), [*methods()])
@@ -63,9 +67,9 @@ def test_every_method_is_documented(key: str, function: Any) -> None:
 
 def test_a_name_means_one_thing() -> None:
     """Rooms may offer what the package does, as the same."""
-    found: dict[str, Any] = {}
-    for name, one in NAMES.items():
-        assert found.setdefault(name.rpartition(".")[2], one) is one, name
+    actual: dict[str, Any] = {}
+    for name, value in NAMES.items():
+        assert actual.setdefault(name.rpartition(".")[2], value) is value, name
 
 
 COMMANDS = ("analyze", "balance", "export", "modes", "plant", "report", "respond", "run",
@@ -194,7 +198,7 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_wrong_arguments_are_told_in_a_sentence(name: str) -> None:
+def test_wrong_arguments_are_reported_in_a_sentence(name: str) -> None:
     call, words = WRONG[name]
     with pytest.raises(eq.EquipoiseError) as caught:
         call()
@@ -202,9 +206,9 @@ def test_wrong_arguments_are_told_in_a_sentence(name: str) -> None:
 
 
 FUNCTIONS = {
-    name: one
-    for name, one in NAMES.items()
-    if inspect.isfunction(one) and not name.startswith("signals.")  # no room, but a module
+    name: value
+    for name, value in NAMES.items()
+    if inspect.isfunction(value) and not name.startswith("signals.")  # no room, but a module
 }
 
 
@@ -218,6 +222,6 @@ def test_every_function_refuses_what_is_nothing_of_the_kind(name: str) -> None:
 
 def test_guarded_functions_are_still_what_they_were() -> None:
     """The same wherever they are offered, for workers too, and with their signature."""
-    for name, one in FUNCTIONS.items():
-        assert pickle.loads(pickle.dumps(one)) is one, name
-        assert inspect.signature(one) == inspect.signature(inspect.unwrap(one))
+    for name, value in FUNCTIONS.items():
+        assert pickle.loads(pickle.dumps(value)) is value, name
+        assert inspect.signature(value) == inspect.signature(inspect.unwrap(value))

@@ -31,26 +31,26 @@ THETA = 2 * pi * np.arange(24) / 24
 
 
 def test_figures_of_a_sine() -> None:
-    found = figures(THETA, 1 + 3 * np.sin(THETA))
-    assert found.mean == pytest.approx(1)
-    assert found.rms == pytest.approx(sqrt(1 + 4.5))
-    assert (found.max, found.max_at) == (pytest.approx(4), pytest.approx(pi / 2))
-    assert (found.min, found.min_at) == (pytest.approx(-2), pytest.approx(3 * pi / 2))
-    assert (found.peak, found.peak_at) == (found.max, found.max_at)
-    assert found.peak_to_peak == pytest.approx(6)
+    result = figures(THETA, 1 + 3 * np.sin(THETA))
+    assert result.mean == pytest.approx(1)
+    assert result.rms == pytest.approx(sqrt(1 + 4.5))
+    assert (result.max, result.max_at) == (pytest.approx(4), pytest.approx(pi / 2))
+    assert (result.min, result.min_at) == (pytest.approx(-2), pytest.approx(3 * pi / 2))
+    assert (result.peak, result.peak_at) == (result.max, result.max_at)
+    assert result.peak_to_peak == pytest.approx(6)
 
 
 def test_a_peak_may_be_a_minimum() -> None:
-    found = figures(THETA, -1 + 3 * np.sin(THETA))
-    assert (found.peak, found.peak_at) == (pytest.approx(4), pytest.approx(3 * pi / 2))
-    assert found.peak == -found.min
+    result = figures(THETA, -1 + 3 * np.sin(THETA))
+    assert (result.peak, result.peak_at) == (pytest.approx(4), pytest.approx(3 * pi / 2))
+    assert result.peak == -result.min
 
 
 @pytest.mark.parametrize("value", [2.5, 0.0, -2.5])
 def test_figures_of_a_constant(value: float) -> None:
-    found = figures(THETA, np.full(24, value))
-    assert (found.mean, found.max, found.min) == (value, value, value)
-    assert (found.rms, found.peak, found.peak_to_peak) == (abs(value), abs(value), 0.0)
+    result = figures(THETA, np.full(24, value))
+    assert (result.mean, result.max, result.min) == (value, value, value)
+    assert (result.rms, result.peak, result.peak_to_peak) == (abs(value), abs(value), 0.0)
 
 
 def curve(count: int, of: Callable[[np.ndarray], np.ndarray], turns: int = 1) -> Figures:
@@ -63,24 +63,24 @@ def curve(count: int, of: Callable[[np.ndarray], np.ndarray], turns: int = 1) ->
 @pytest.mark.parametrize("order", [1, 5, 20])
 def test_extremes_lie_between_samples(order: int, phase: float) -> None:
     at = phase * 2 * pi / 360
-    found = curve(360, lambda theta: 2 + 3 * np.cos(order * (theta - at)))
+    result = curve(360, lambda theta: 2 + 3 * np.cos(order * (theta - at)))
     error = 1e-12 + 5 * (2 * pi * order / 360) ** 9
-    assert found.max == pytest.approx(5, abs=error)
-    assert found.max_at == pytest.approx(at, abs=1e-4 * 2 * pi / 360)
-    assert found.min == pytest.approx(-1, abs=error)
-    assert found.peak_to_peak == pytest.approx(6, abs=2 * error)
+    assert result.max == pytest.approx(5, abs=error)
+    assert result.max_at == pytest.approx(at, abs=1e-4 * 2 * pi / 360)
+    assert result.min == pytest.approx(-1, abs=error)
+    assert result.peak_to_peak == pytest.approx(6, abs=2 * error)
 
 
 def test_extremes_from_few_samples() -> None:
-    found = curve(24, lambda theta: np.cos(theta - 0.1) + 0.2 * np.cos(2 * theta - 0.1))
+    result = curve(24, lambda theta: np.cos(theta - 0.1) + 0.2 * np.cos(2 * theta - 0.1))
     want = Periodic(np.array([0, np.exp(-0.1j), 0.2 * np.exp(-0.1j)])).figures
-    assert found.max == pytest.approx(want.max, abs=1e-6)
-    assert found.max_at == pytest.approx(want.max_at, abs=1e-5)
+    assert result.max == pytest.approx(want.max, abs=1e-6)
+    assert result.max_at == pytest.approx(want.max_at, abs=1e-5)
 
 
 def test_extremes_of_several_turns() -> None:
-    found = curve(360, lambda theta: np.cos(theta / 3 - 3.001), turns=3)
-    assert (found.max, found.max_at) == (pytest.approx(1, abs=1e-13), pytest.approx(9.003))
+    result = curve(360, lambda theta: np.cos(theta / 3 - 3.001), turns=3)
+    assert (result.max, result.max_at) == (pytest.approx(1, abs=1e-13), pytest.approx(9.003))
 
 
 @pytest.mark.parametrize("shift", np.linspace(0, 1, 21).tolist())
@@ -99,43 +99,43 @@ def test_nothing_is_above_a_kink_or_a_jump(
 ) -> None:
     """Wherever it lies between two samples."""
     at = (100 + shift) * 2 * pi / 360
-    found = curve(360, lambda theta: of(theta - at))
+    result = curve(360, lambda theta: of(theta - at))
     samples = of(2 * pi * np.arange(360) / 360 - at)
-    assert np.max(samples) <= found.max <= max(np.max(of(np.linspace(-0.1, 0.1, 200001))), 0.0)
-    assert 1e-6 >= found.min - np.min(samples) >= -1e-4
+    assert np.max(samples) <= result.max <= max(np.max(of(np.linspace(-0.1, 0.1, 200001))), 0.0)
+    assert 1e-6 >= result.min - np.min(samples) >= -1e-4
 
 
 def test_the_size_of_a_vector_near_zero() -> None:
     """It has no kink but in the limit, and its square is smooth."""
     at = 0.4321
     for least in (0.0, 1e-5, 1e-3, 0.1):
-        found = curve(360, lambda theta, least=least: np.hypot(np.sin(theta - at), least))
-        assert found.min == pytest.approx(least, abs=1e-8)
-        assert np.sin(found.min_at - at) == pytest.approx(0, abs=1e-6)
+        result = curve(360, lambda theta, least=least: np.hypot(np.sin(theta - at), least))
+        assert result.min == pytest.approx(least, abs=1e-8)
+        assert np.sin(result.min_at - at) == pytest.approx(0, abs=1e-6)
 
 
 def test_of_equal_extremes_the_first() -> None:
     """Also where one is nearer to a sample than the other."""
-    found = curve(90, lambda theta: np.cos(4 * theta - 0.2))
-    assert found.max_at == pytest.approx(0.05)
-    assert found.min_at == pytest.approx(0.05 + pi / 4)
-    assert found.peak_at == pytest.approx(0.05)
+    result = curve(90, lambda theta: np.cos(4 * theta - 0.2))
+    assert result.max_at == pytest.approx(0.05)
+    assert result.min_at == pytest.approx(0.05 + pi / 4)
+    assert result.peak_at == pytest.approx(0.05)
     shifted = curve(90, lambda theta: np.sin(theta - 0.01) * np.cos(theta - 0.01))
     assert shifted.peak_at == pytest.approx(0.01 + pi / 4)
 
 
 def test_a_top_that_is_a_sample_stays_there() -> None:
     for order in (1, 2, 6):
-        found = curve(360, lambda theta, order=order: np.cos(order * theta))
-        assert (found.max, found.max_at) == (1.0, 0.0)
+        result = curve(360, lambda theta, order=order: np.cos(order * theta))
+        assert (result.max, result.max_at) == (1.0, 0.0)
 
 
 def test_extremes_of_what_is_not_finite() -> None:
     samples = np.tan(THETA / 2)
     samples[12] = np.inf
-    found = figures(THETA, samples, 2 * pi)
-    assert (found.max, found.max_at) == (np.inf, pi)
-    assert found.min == pytest.approx(np.min(samples))
+    result = figures(THETA, samples, 2 * pi)
+    assert (result.max, result.max_at) == (np.inf, pi)
+    assert result.min == pytest.approx(np.min(samples))
 
 
 def test_extremes_between_jumps() -> None:
@@ -150,10 +150,10 @@ def test_extremes_between_jumps() -> None:
     grid = 2 * pi * np.arange(60) / 60
     sampling = JumpSampling.of(grid, 1, jumps, bends)
     every = np.array([of(sampling.crank_angle), np.minimum(of(sampling.crank_angle), 1.5)])
-    found, cut = sampling.figures_of_each(every)
-    assert (found.max, found.max_at) == (pytest.approx(3, abs=1e-9), pytest.approx(4.7, abs=1e-9))
-    assert found.min == pytest.approx(-1, abs=1e-9)
-    assert found.min_at == pytest.approx(2.3456 - pi / 3, abs=1e-6)
+    actual, cut = sampling.figures_of_each(every)
+    assert (actual.max, actual.max_at) == (pytest.approx(3, abs=1e-9), pytest.approx(4.7, abs=1e-9))
+    assert actual.min == pytest.approx(-1, abs=1e-9)
+    assert actual.min_at == pytest.approx(2.3456 - pi / 3, abs=1e-6)
     assert cut.max == pytest.approx(1.5, rel=1e-12)
 
 
@@ -181,10 +181,10 @@ def test_figures_are_plain_numbers() -> None:
 
 def test_phase_convention() -> None:
     """y = Re sum Y_n exp(i n theta): Re Y_n goes with the cosine, minus Im Y_n with the sine."""
-    found = harmonics(5 + 2 * np.cos(THETA) - 3 * np.sin(THETA) + 0.5 * np.sin(4 * THETA))
+    result = harmonics(5 + 2 * np.cos(THETA) - 3 * np.sin(THETA) + 0.5 * np.sin(4 * THETA))
     want = np.zeros(13, complex)
     want[[0, 1, 4]] = 5, 2 + 3j, -0.5j
-    np.testing.assert_allclose(found, want, atol=1e-14)
+    np.testing.assert_allclose(result, want, atol=1e-14)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 8, 9, 24, 25])
@@ -229,9 +229,9 @@ def test_synthesis_anywhere() -> None:
 def test_harmonics_of_a_machine_converge(name: str) -> None:
     """A turn is periodic: a coarse sampling tells the same low orders as a fine one."""
     coarse, fine = (eq.analyze(eq.load(name), count).forces for count in (240, 960))
-    one, two = (harmonics(found.shaking_force.x, 6) for found in (coarse, fine))
-    np.testing.assert_allclose(one, two, rtol=0, atol=1e-10 * np.max(np.abs(two)))
-    assert abs(one[0]) < 1e-12 * np.max(np.abs(two))
+    first, two = (harmonics(result.shaking_force.x, 6) for result in (coarse, fine))
+    np.testing.assert_allclose(first, two, rtol=0, atol=1e-10 * np.max(np.abs(two)))
+    assert abs(first[0]) < 1e-12 * np.max(np.abs(two))
 
 
 # -- periodic signals by their orders --------------------------------------------------------------
@@ -248,12 +248,12 @@ def periodic(
     return Periodic(amplitudes, turns)
 
 
-def same(found: Periodic, wanted: Periodic, tolerance: float = 1e-13) -> None:
+def same(result: Periodic, wanted: Periodic, tolerance: float = 1e-13) -> None:
     """Compare signals order by order, where one may have fewer."""
-    assert found.turns == wanted.turns
-    orders = max(found.amplitudes.shape[-1], wanted.amplitudes.shape[-1])
-    theta = found.period * np.arange(2 * orders + 1) / (2 * orders + 1)
-    np.testing.assert_allclose(found.values(theta), wanted.values(theta), rtol=0, atol=tolerance)
+    assert result.turns == wanted.turns
+    orders = max(result.amplitudes.shape[-1], wanted.amplitudes.shape[-1])
+    theta = result.period * np.arange(2 * orders + 1) / (2 * orders + 1)
+    np.testing.assert_allclose(result.values(theta), wanted.values(theta), rtol=0, atol=tolerance)
 
 
 SHAPES = pytest.mark.parametrize("shape", [(), (3,), (2, 3)])
@@ -296,15 +296,15 @@ def test_rounding_is_left_out() -> None:
 
 
 def test_an_order_counts_if_any_signal_of_a_stack_has_it() -> None:
-    found = Periodic.of(np.stack([np.cos(THETA), np.sin(5 * THETA)]))
-    np.testing.assert_allclose(found.sizes, [[0, 1, 0, 0, 0, 0], [0, 0, 0, 0, 0, 1]], atol=1e-14)
+    result = Periodic.of(np.stack([np.cos(THETA), np.sin(5 * THETA)]))
+    np.testing.assert_allclose(result.sizes, [[0, 1, 0, 0, 0, 0], [0, 0, 0, 0, 0, 1]], atol=1e-14)
 
 
 def test_order_at_half_the_number_of_samples_is_left_out() -> None:
     """24 samples of sin 12 theta are all zero: what they tell of order 12 is not its amplitude."""
-    found = Periodic.of(np.cos(THETA) + 0.7 * np.cos(12 * THETA))
-    assert found.amplitudes.shape[-1] <= 12
-    np.testing.assert_allclose(found.sizes[:2], [0, 1], atol=1e-14)
+    result = Periodic.of(np.cos(THETA) + 0.7 * np.cos(12 * THETA))
+    assert result.amplitudes.shape[-1] <= 12
+    np.testing.assert_allclose(result.sizes[:2], [0, 1], atol=1e-14)
 
 
 @pytest.mark.parametrize("phase", [0.3, -2.0, 40.0])
@@ -351,9 +351,9 @@ def test_units_in_phase() -> None:
 
 
 def test_sum_of_signals_with_other_numbers_of_orders() -> None:
-    one, other, theta = periodic(1, orders=3), periodic(2, orders=8), np.linspace(0, 6, 11)
-    for total in (one + other, other + one):
-        np.testing.assert_allclose(total.values(theta), one.values(theta) + other.values(theta))
+    first, other, theta = periodic(1, orders=3), periodic(2, orders=8), np.linspace(0, 6, 11)
+    for total in (first + other, other + first):
+        np.testing.assert_allclose(total.values(theta), first.values(theta) + other.values(theta))
 
 
 def test_signals_of_other_numbers_of_turns_do_not_add_up() -> None:
@@ -368,8 +368,8 @@ def test_derivatives_against_differences(turns: int, shape: tuple[int, ...]) -> 
     signal, theta, h = periodic(turns=turns, shape=shape), np.linspace(0, 12, 23), 1e-4
     for times in (1, 2):
         before, after = (signal.derivative(times - 1).values(theta + d) for d in (-h, h))
-        found = signal.derivative(times).values(theta)
-        np.testing.assert_allclose(found, (after - before) / (2 * h), rtol=0, atol=1e-5)
+        values = signal.derivative(times).values(theta)
+        np.testing.assert_allclose(values, (after - before) / (2 * h), rtol=0, atol=1e-5)
     same(signal.derivative(2), signal.derivative().derivative(), 1e-11)
 
 
@@ -422,8 +422,8 @@ def test_extremes_against_dense_sampling(seed: int, turns: int) -> None:
         assert abs(away) < 1e-3
         assert 0 <= angle < signal.period
         assert signal.values(np.array([angle]))[0] == pytest.approx(float(value), abs=1e-12)
-    found = signal.peak_to_peak
-    assert found == pytest.approx(np.max(samples) - np.min(samples), abs=1e-7)
+    peak_to_peak = signal.peak_to_peak
+    assert peak_to_peak == pytest.approx(np.max(samples) - np.min(samples), abs=1e-7)
 
 
 @SHAPES
@@ -432,8 +432,8 @@ def test_extremes_of_a_stack_are_those_of_each(shape: tuple[int, ...]) -> None:
     value, at = stack.extreme(1)
     assert np.shape(value) == np.shape(at) == shape
     for index in np.ndindex(shape):
-        one = Periodic(stack.amplitudes[index])
-        assert (value[index], at[index]) == pytest.approx(tuple(map(float, one.extreme(1))))
+        first = Periodic(stack.amplitudes[index])
+        assert (value[index], at[index]) == pytest.approx(tuple(map(float, first.extreme(1))))
 
 
 def test_extremes_of_a_sine_to_the_digit() -> None:
@@ -468,28 +468,28 @@ TURN = np.arange(720) * (2 * np.pi / 720)
 
 @pytest.mark.parametrize("noise", range(5))
 @pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
-def test_of_equal_extremes_the_first_is_told(noise: int, size: float) -> None:
+def test_of_equal_extremes_the_first_is_reported(noise: int, size: float) -> None:
     """Rounding, here made larger, decides neither between tops nor between a top and a dip."""
     rng = np.random.default_rng(noise)
     rounding = 1 + 1e-14 * rng.standard_normal(TURN.size)
-    found = figures(TURN, size * np.sin(3 * TURN) * rounding)
-    assert found.max_at == pytest.approx(np.pi / 6)
-    assert found.min_at == pytest.approx(np.pi / 2)
-    assert found.peak_at == pytest.approx(np.pi / 6)
+    result = figures(TURN, size * np.sin(3 * TURN) * rounding)
+    assert result.max_at == pytest.approx(np.pi / 6)
+    assert result.min_at == pytest.approx(np.pi / 2)
+    assert result.peak_at == pytest.approx(np.pi / 6)
     turned = figures(TURN, -size * np.sin(3 * TURN) * rounding)
     assert turned.peak_at == pytest.approx(np.pi / 6)
     still = figures(TURN, np.full(720, size) * rounding)
     assert (still.max_at, still.min_at, still.peak_at) == (0.0, 0.0, 0.0)
 
 
-def test_a_higher_top_is_told_wherever_it_is() -> None:
+def test_a_higher_top_is_reported_wherever_it_is() -> None:
     samples = np.sin(3 * TURN) + 1e-6 * np.sin(TURN - 1.0)
-    found = figures(TURN, samples)
-    assert found.max == np.max(samples)
-    assert found.max_at == TURN[np.argmax(samples)]
+    result = figures(TURN, samples)
+    assert result.max == np.max(samples)
+    assert result.max_at == TURN[np.argmax(samples)]
 
 
-def test_near_a_flat_top_its_own_angle_is_told() -> None:
+def test_near_a_flat_top_its_own_angle_is_reported() -> None:
     """On a fine grid neighbours of the top are nearly as high as it."""
     fine = np.linspace(0.0, 2 * np.pi, 400_001)
     assert figures(fine, np.cos(fine - 2.0)).max_at == pytest.approx(2.0, abs=2e-5)
@@ -539,7 +539,7 @@ def test_angles_short_of_a_period_by_rounding_are_zero() -> None:
 # -- of very many orders ---------------------------------------------------------------------------
 
 
-def test_samples_of_more_orders_than_they_tell_apart() -> None:
+def test_samples_of_more_orders_than_they_report_apart() -> None:
     """A sum over orders, angle by angle, comes to the same."""
     random = np.random.default_rng(7)
     signal = Periodic(random.normal(size=(2, 23)) + 1j * random.normal(size=(2, 23)), 3)
@@ -564,16 +564,16 @@ def test_orders_that_are_rounding_of_each_signal_are_left_out() -> None:
     amplitudes = np.zeros((3, 40), complex)
     amplitudes[0, [0, 7, 30]] = 1.0, 2j, 1e-15
     amplitudes[1, [7, 31]] = 1e-20, 1e-35
-    found = Periodic(amplitudes, 5).without_rounding()
-    assert present(found.amplitudes).tolist() == [0, 7]
+    result = Periodic(amplitudes, 5).without_rounding()
+    assert present(result.amplitudes).tolist() == [0, 7]
     theta = np.linspace(0, 31, 60)
     waves = np.array([1 + (2j * np.exp(1.4j * theta)).real, 1e-20 * np.cos(1.4 * theta)])
-    assert found.values(theta)[:2] == pytest.approx(waves, rel=1e-12, abs=1e-33)
-    assert not found.values(theta)[2].any()
+    assert result.values(theta)[:2] == pytest.approx(waves, rel=1e-12, abs=1e-33)
+    assert not result.values(theta)[2].any()
 
 
 def test_orders_above_the_last_are_nothing() -> None:
-    found = Periodic.of(np.cos(3 * np.arange(64) * 2 * pi / 64)[None])
-    assert found.amplitude(3) == pytest.approx(np.ones(1))
-    assert found.amplitudes.shape == (1, 4)
-    np.testing.assert_array_equal(found.amplitude(4), np.zeros(1))
+    result = Periodic.of(np.cos(3 * np.arange(64) * 2 * pi / 64)[None])
+    assert result.amplitude(3) == pytest.approx(np.ones(1))
+    assert result.amplitudes.shape == (1, 4)
+    np.testing.assert_array_equal(result.amplitude(4), np.zeros(1))

@@ -15,9 +15,9 @@ def analyzed(name: str, angles: int = 720) -> tuple[Analysis, Scene, ForceArrow]
     return prepared(eq.analyze(eq.load(name), angles))
 
 
-def prepared(found: Analysis) -> tuple[Analysis, Scene, ForceArrow]:
-    arrow = ForceArrow(found.forces.about, found.forces.shaking_force.value)
-    return found, Scene.of(found.motion), arrow
+def prepared(result: Analysis) -> tuple[Analysis, Scene, ForceArrow]:
+    arrow = ForceArrow(result.forces.about, result.forces.shaking_force.value)
+    return result, Scene.of(result.motion), arrow
 
 
 def shown(scene: Scene, values: np.ndarray, frames: int) -> np.ndarray:

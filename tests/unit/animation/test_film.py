@@ -44,23 +44,23 @@ def test_the_bytes_of_a_film_do_not_depend_on_what_was_in_memory() -> None:
     """glibc fills memory that is handed out with other bytes by this variable."""
     pytest.importorskip("av")
     command = [sys.executable, "-c", OF_ANY_MEMORY]
-    found = {
+    actual = {
         subprocess.run(command, env={**os.environ, "MALLOC_PERTURB_": filled}, check=True,
                        capture_output=True, text=True, timeout=300).stdout
         for filled in ("0", "85")
     }  # fmt: skip
-    assert len(found) == 1 and len(found.pop().strip()) == 64
+    assert len(actual) == 1 and len(actual.pop().strip()) == 64
 
 
 def frames_of_gif(data: bytes) -> list[np.ndarray]:
     with Image.open(BytesIO(data)) as image:
         assert image.info["loop"] == 0
-        found = []
+        actual = []
         for number in range(image.n_frames):
             image.seek(number)
             assert image.info["duration"] == 40
-            found.append(np.asarray(image.convert("RGB")))
-        return found
+            actual.append(np.asarray(image.convert("RGB")))
+        return actual
 
 
 def frames_of_mp4(data: bytes) -> list[np.ndarray]:
@@ -84,8 +84,8 @@ def check_tip(frames: list[np.ndarray], scene: Scene, shade: str, near: float) -
     tip = stage.at(shown(scene, scene.places["P"], len(frames)))
     for frame, place in zip(frames, tip, strict=True):
         assert frame.shape == (stage.height, 320, 3)
-        found = frame[int(place.imag), int(place.real)].astype(float)
-        assert abs(found - color(shade)).max() <= near
+        result = frame[int(place.imag), int(place.real)].astype(float)
+        assert abs(result - color(shade)).max() <= near
         assert abs(frame[0, 0] - color(LIGHT["paper"])).max() <= near
 
 
@@ -131,14 +131,14 @@ def test_a_film_shows_the_motion() -> None:
     check_tip(frames, scene, LIGHT["main"], 45)  # hues are stored for two by two pixels
 
 
-def test_a_film_takes_as_many_turns_as_it_is_told_and_has_even_sides() -> None:
+def test_a_film_takes_as_many_turns_as_given_and_has_even_sides() -> None:
     pytest.importorskip("av")
     _, scene, arrow = prepared(of_three_turns(60))
-    told: list[tuple[int, int]] = []
+    texts: list[tuple[int, int]] = []
     options = {"seconds": 0.2, "width": 201, "arrow": arrow, "dark": True}
-    whole = frames_of_mp4(mp4(scene, progress=lambda *count: told.append(count), **options))
+    whole = frames_of_mp4(mp4(scene, progress=lambda *count: texts.append(count), **options))
     assert len(whole) == 3 * 6
-    assert told == [(done, 18) for done in range(1, 19)]
+    assert texts == [(done, 18) for done in range(1, 19)]
     assert all(side % 2 == 0 for side in whole[0].shape[:2])
     assert abs(whole[0][0, 0] - color(DARK["paper"]).astype(float)).max() < 4
     longer = frames_of_mp4(mp4(scene, turns=4, **options))
@@ -175,7 +175,7 @@ def test_part_of_a_turn_goes_there_and_back() -> None:
         ({"traced": ["Q"]}, {"given": "Q"}),
     ],
 )
-def test_what_cannot_be_filmed_is_told(
+def test_what_cannot_be_filmed_is_reported(
     kind, options: dict[str, object], expected: dict[str, Any]
 ) -> None:
     pytest.importorskip("av")
@@ -190,7 +190,7 @@ def test_there_are_as_many_crank_angles_as_frames() -> None:
         gif(scene, seconds=4.0)
 
 
-def test_a_missing_library_is_told_with_the_command_that_installs_it(monkeypatch) -> None:
+def test_a_missing_library_is_reported_with_the_command_that_installs_it(monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "av", None)
     _, scene, _ = analyzed("yamashita-1", 90)
     with refused(UsageError, command='pip install "equipoise[video]"', library="av"):

@@ -46,29 +46,29 @@ class Picture:
 
     def groups(self) -> Iterator[tuple[ElementTree.Element, np.ndarray | None]]:
         for group in self.root.iter(f"{NAME}g"):
-            found = re.search(r"m(\d+)", group.get("class", ""))
-            yield group, None if found is None else self.moves[found[1]]
+            match = re.search(r"m(\d+)", group.get("class", ""))
+            yield group, None if match is None else self.moves[match[1]]
 
     def circles(self, look: str) -> list[np.ndarray]:
         """Place of each circle of a look at each instant, pixels; (1,) where it stands still."""
-        found = []
+        actual = []
         for group, move in self.groups():
             for circle in group.iter(f"{NAME}circle"):
                 if circle.get("class") == look:
                     own = complex(float(circle.get("cx")), float(circle.get("cy")))
-                    found.append(np.array([own]) if move is None else placed(move, own))
-        return found
+                    actual.append(np.array([own]) if move is None else placed(move, own))
+        return actual
 
     def ends(self, look: str) -> list[np.ndarray]:
         """The same of the points of each path of a look, (points, instants)."""
-        found = []
+        actual = []
         for group, move in self.groups():
             for path in group.iter(f"{NAME}path"):
                 if path.get("class") == look and move is not None:
                     numbers = re.findall(r"(-?[\d.]+) (-?[\d.]+)", path.get("d"))
                     own = [complex(float(x), float(y)) for x, y in numbers]
-                    found.append(np.array([placed(move, z) for z in own]))
-        return found
+                    actual.append(np.array([placed(move, z) for z in own]))
+        return actual
 
 
 def placed(move: np.ndarray, own: complex) -> np.ndarray:
@@ -76,15 +76,15 @@ def placed(move: np.ndarray, own: complex) -> np.ndarray:
     return x + 1j * y + (own.real * stretch + 1j * own.imag) * np.exp(1j * np.radians(angle))
 
 
-def pixels(picture: Picture, scene: Scene, one: str, other: str):
+def pixels(picture: Picture, scene: Scene, item: str, other: str):
     """Pixels of a place in m, as two pivots have them."""
     still = [circle[0] for circle in picture.circles("pin") if len(circle) == 1]
     held = scene.pins.union(to for _, to in scene.springs)
     at = dict(zip([name for name in scene.frame if name in held], still, strict=True))
-    first, second = scene.places[one][0], scene.places[other][0]
-    turn = (at[other] - at[one]) / np.conj(second - first)
+    first, second = scene.places[item][0], scene.places[other][0]
+    turn = (at[other] - at[item]) / np.conj(second - first)
     assert abs(turn.imag) < 1e-3 * turn.real
-    return lambda place: at[one] + np.conj(place - first) * turn
+    return lambda place: at[item] + np.conj(place - first) * turn
 
 
 CASES = [("watt-six-bar", "A", "G"), ("geared-counterweight", "O2", "E"), ("yamashita-1", "A", "D")]
@@ -118,10 +118,10 @@ def test_links_reach_from_pin_to_pin(name: str, one: str, other: str) -> None:
 
 
 def test_the_arrow_ends_on_the_curve_of_the_force_and_is_in_its_direction() -> None:
-    found, scene, arrow = analyzed("yamashita-1")
+    actual, scene, arrow = analyzed("yamashita-1")
     picture = Picture(animated_svg(scene, title="", frames=40, arrow=arrow))
     (shaft,), (head,) = picture.ends("force"), picture.ends("force-head")
-    force = np.conj(shown(scene, found.forces.shaking_force.value, 40))
+    force = np.conj(shown(scene, actual.forces.shaking_force.value, 40))
     reach = (head[0] - shaft[0])[:-1]
     per_newton = abs(reach[0]) / abs(force[0])
     np.testing.assert_allclose(reach, force * per_newton, atol=2 * ROUNDED)
@@ -212,7 +212,9 @@ def test_a_six_bar_is_small_and_speaks_the_language_of_the_reader() -> None:
         ({"width": 4000}, {"low": 100, "width": 4000}),
     ],
 )
-def test_what_cannot_be_drawn_is_told(options: dict[str, object], expected: dict[str, Any]) -> None:
+def test_what_cannot_be_drawn_is_reported(
+    options: dict[str, object], expected: dict[str, Any]
+) -> None:
     _, scene, _ = analyzed("yamashita-1", 90)
     with refused(UsageError, **expected):
         animated_svg(scene, title="", **options)
@@ -231,11 +233,11 @@ def test_what_is_said_of_a_support_fits_where_the_picture_is_narrow() -> None:
     picture = Picture(animated_svg(moving, title="rig"))
     narrow = picture.style.partition("@media (max-width:")[2]
     size = float(re.findall(r"text\.strip\{font-size:([\d.]+)px\}", narrow)[0])
-    strip = [one for one in picture.root.iter(f"{NAME}text") if "strip" in one.get("class", "")]
+    strip = [item for item in picture.root.iter(f"{NAME}text") if "strip" in item.get("class", "")]
     assert len(strip) > 1 and size >= 12
-    places = sorted({float(one.get("y", "")) for one in strip})  # the lowest beside the ruler
+    places = sorted({float(item.get("y", "")) for item in strip})  # the lowest beside the ruler
     assert min(b - a for a, b in pairwise(places)) > size
-    assert all(width_of(one.text or "", size) <= float(one.get("x", "")) for one in strip)
+    assert all(width_of(item.text or "", size) <= float(item.get("x", "")) for item in strip)
 
 
 def test_texts_lie_apart_and_inside_where_the_picture_is_narrow() -> None:
@@ -246,7 +248,7 @@ def test_texts_lie_apart_and_inside_where_the_picture_is_narrow() -> None:
         scene = swinging(Scene.of(analysis.motion).with_rows(analysis.motion), response)
         moving = laid_out(scene, (), width=440, arrow=ForceArrow.of(analysis))
         larger, strip = _sizes_where_narrow(moving.stage)
-        boxes = [one.box(strip if one.in_strip else larger) for one in moving.labels]
+        boxes = [label.box(strip if label.in_strip else larger) for label in moving.labels]
         assert all(left >= 0 and right <= moving.stage.width for left, _, right, _ in boxes)
         for a, b in combinations(boxes, 2):
             beside = a[2] <= b[0] or b[2] <= a[0]

@@ -35,10 +35,10 @@ def scene_of(name: str, factor: float | None = None) -> Scene:
     return swinging(scene, response(name), factor)
 
 
-def told_factor(scene: Scene) -> float:
+def printed_factor(scene: Scene) -> float:
     """The factor that the picture tells."""
-    found = re.search(r"([\d.e+]+) times", scene.swing.captions[0])
-    return float(found[1]) if found else 1.0
+    match = re.search(r"([\d.e+]+) times", scene.swing.captions[0])
+    return float(match[1]) if match else 1.0
 
 
 def through(part: MovingGroup, point: complex) -> np.ndarray:
@@ -49,13 +49,13 @@ def through(part: MovingGroup, point: complex) -> np.ndarray:
 
 
 def with_role(drawn: Moving, role: str) -> list[MovingGroup]:
-    return [part for part in drawn.parts if any(one.role == role for one in part.strokes)]
+    return [part for part in drawn.parts if any(stroke.role == role for stroke in part.strokes)]
 
 
 @pytest.mark.parametrize("name", ON_MOUNTS)
-def test_gauges_move_by_the_told_factor_times_the_response(name: str) -> None:
+def test_gauges_move_by_the_reported_factor_times_the_response(name: str) -> None:
     scene = scene_of(name)
-    drawn, factor = laid_out(scene), told_factor(scene)
+    drawn, factor = laid_out(scene), printed_factor(scene)
     stage = drawn.stage
     at = stage.chosen % COUNT
     (part,) = with_role(drawn, "gauge")
@@ -64,7 +64,7 @@ def test_gauges_move_by_the_told_factor_times_the_response(name: str) -> None:
             continue
         place = complex(*gauge.point[:2])
         rest = stage.scale * place.conjugate()
-        middles = [np.mean(one.points) for one in part.strokes if one.role == "gauge"]
+        middles = [np.mean(stroke.points) for stroke in part.strokes if stroke.role == "gauge"]
         assert min(abs(middle - rest) for middle in middles) < 1e-6
         moved = (through(part, rest) - stage.at(place)) / stage.scale
         along = np.array(unit_vector(gauge.direction)[:2])
@@ -93,7 +93,7 @@ def test_movement_is_seen_and_stays_in_the_picture(name: str) -> None:
     size = max((high - low).real, (high - low).imag)
     corners = [low, high, complex(low.real, high.imag), complex(high.real, low.imag)]
     reach = max(np.max(np.abs(scene.swung(corner) - corner)) for corner in corners)
-    assert reach <= LARGEST * size * 1.01 or told_factor(scene) == 1
+    assert reach <= LARGEST * size * 1.01 or printed_factor(scene) == 1
     assert reach > 0.2 * LARGEST * size
     for factor in (None, 20.0):
         low, high = scene_of(name, factor).swept_box
@@ -129,12 +129,12 @@ def test_the_tip_runs_along_its_path() -> None:
         assert np.min(np.abs(path.points - place)) < 2
 
 
-def test_what_moves_across_the_drawing_is_told() -> None:
-    told = scene_of("riding-transplanter").swing.captions
+def test_what_moves_across_the_drawing_is_reported() -> None:
+    captions = scene_of("riding-transplanter").swing.captions
     motion = response("riding-transplanter").motion
     roll = motion.values(np.linspace(0, 2 * np.pi, 721))[3]
-    assert len(told) == 2 and told[1].startswith("across the drawing, not shown: sway ")
-    assert f"roll {np.degrees(np.ptp(roll) / 2):.4g} deg" in told[1]
+    assert len(captions) == 2 and captions[1].startswith("across the drawing, not shown: sway ")
+    assert f"roll {np.degrees(np.ptp(roll) / 2):.4g} deg" in captions[1]
     assert len(scene_of("sieve").swing.captions) == 1
     assert scene_of("sieve", 1.0).swing.captions == ("movement of the support to scale",)
 
@@ -159,11 +159,11 @@ def test_a_mode_swings_the_support_and_leaves_the_crank() -> None:
 @pytest.mark.parametrize("model", ["moment", "torque", "coupled", "exact"])
 def test_the_motion_of_a_response_is_what_gauges_read(model: str) -> None:
     machine = eq.load("sieve")
-    found = eq.respond(machine, model=model)
+    result = eq.respond(machine, model=model)
     body = SupportBody(machine)
     for name, gauge in machine.support.gauges.items():
-        read = replace(found.motion, amplitudes=body.row(gauge) @ found.motion.amplitudes)
-        shown = found.gauges[name].displacement
+        read = replace(result.motion, amplitudes=body.row(gauge) @ result.motion.amplitudes)
+        shown = result.gauges[name].displacement
         theta = np.linspace(0, 2 * np.pi, 50)
         off = np.abs(read.values(theta) - shown.values(theta))
         assert np.max(off) < (1e-5 if model == "exact" else 1e-12)
@@ -195,7 +195,7 @@ def test_names_of_gauges_stand_beside_mounts() -> None:
 
 
 @pytest.mark.parametrize("width", [150, 440, 640])
-def test_what_is_told_is_told_whole_in_pictures_of_any_width(width: int) -> None:
+def test_texts_are_whole_in_pictures_of_any_width(width: int) -> None:
     scene = scene_of("riding-transplanter")
     drawn = laid_out(scene, ["P"], width=width)
     lines = [line for line, _ in drawn.stage.lines if line]

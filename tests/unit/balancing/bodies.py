@@ -59,9 +59,9 @@ def moments_of(piece: dict[str, Any], center: complex) -> Array:
     if piece["shape"] == "ring":
         return plate * area(place, low, high, 0.0, 2 * pi)
     start = piece["direction"] - piece["angle"] / 2
-    found = plate * area(center, low, high, start, start + piece["angle"])
-    assert abs(complex(*found[1:3]) / found[0] - place) < 1e-9 * high
-    return found
+    actual = plate * area(center, low, high, start, start + piece["angle"])
+    assert abs(complex(*actual[1:3]) / actual[0] - place) < 1e-9 * high
+    return actual
 
 
 def farthest(piece: dict[str, Any], center: complex) -> float:

@@ -97,37 +97,37 @@ def inline_three() -> eq.Machine:
 
 def test_the_file_s_own_plan_is_carried_out() -> None:
     machine = eq.load("balance-crank")
-    found, asked = advise(machine), eq.balance(machine)
-    assert found.plan is machine.balance and found.advice is None
-    assert found.objectives == asked.objectives
-    assert not {"large", "offered", "flywheels"} & found.to_dict().keys()
+    actual, asked = advise(machine), eq.balance(machine)
+    assert actual.plan is machine.balance and actual.advice is None
+    assert actual.objectives == asked.objectives
+    assert not {"large", "offered", "flywheels"} & actual.to_dict().keys()
 
 
 def test_a_couple_is_aimed_at_where_that_is_what_is_large() -> None:
     """Not the shaking force, which is next to nothing; by a couple of counterweights."""
     machine = inline_three()
-    found = advise(machine)
-    assert found.advice is not None and found.advice.before[0].output == "rocking_moment"
-    assert [one.output for one in found.plan.objectives] == ["rocking_moment"]
-    assert found.helps
-    one, other = found.changes
-    assert one.values["plane"] == -other.values["plane"] == -0.12
-    assert one.values["mass"] == other.values["mass"]
-    assert abs(abs(one.values["direction"] - other.values["direction"]) - pi) < 1e-9
+    advice = advise(machine)
+    assert advice.advice is not None and advice.advice.before[0].output == "rocking_moment"
+    assert [objective.output for objective in advice.plan.objectives] == ["rocking_moment"]
+    assert advice.helps
+    first, other = advice.changes
+    assert first.values["plane"] == -other.values["plane"] == -0.12
+    assert first.values["mass"] == other.values["mass"]
+    assert abs(abs(first.values["direction"] - other.values["direction"]) - pi) < 1e-9
     before, after = (eq.analyze(each).forces.across.rocking_moment.value
-                     for each in (machine, found.machine))  # fmt: skip
+                     for each in (machine, advice.machine))  # fmt: skip
     gain = 1 - np.sqrt(np.mean(np.abs(after) ** 2) / np.mean(np.abs(before) ** 2))
-    assert found.gain == pytest.approx(gain, rel=1e-6) and gain > 0.3
+    assert advice.gain == pytest.approx(gain, rel=1e-6) and gain > 0.3
 
 
 @pytest.mark.exhaustive(but=["straw-walker", "hydraulic-loader"])
 @pytest.mark.parametrize("name", ["hydraulic-loader", "quick-return", "straw-walker"])
 def test_where_nothing_large_shakes_the_masses_are_left_as_they_are(name: str) -> None:
     """However large a counterweight would be: a half disc of 360 kg against 2 % of the load."""
-    found = advice_for(name)
-    assert not found.helps and not any(one.helps for one in found.tried)
-    told = " ".join(benefit_sentences(found))
-    assert re.search("Leave the (masses|machine) as (they are|it is)|No counterweight", told)
+    advice = advice_for(name)
+    assert not advice.helps and not any(item.helps for item in advice.tried)
+    text = " ".join(benefit_sentences(advice))
+    assert re.search("Leave the (masses|machine) as (they are|it is)|No counterweight", text)
 
 
 def test_all_that_is_large_is_named_first() -> None:
@@ -142,9 +142,9 @@ def test_all_that_is_large_is_named_first() -> None:
 @pytest.mark.exhaustive
 def test_rows_are_turned_so_that_the_gauges_read_least() -> None:
     """Not the shaking force, whose best phases make yaw 89 % worse."""
-    found = advise(RIDING)
-    assert [change.kind for change in found.changes] == ["phases"]
-    assert np.degrees(found.changes[0].values["phases"]) == pytest.approx([0, 180, 180, 0])
+    advice = advise(RIDING)
+    assert [change.kind for change in advice.changes] == ["phases"]
+    assert np.degrees(advice.changes[0].values["phases"]) == pytest.approx([0, 180, 180, 0])
     by_force = eq.balance(
         RIDING, Balance(phases=Phases(), objectives=(Objective("shaking_force"),))
     )
@@ -152,7 +152,7 @@ def test_rows_are_turned_so_that_the_gauges_read_least() -> None:
         "reading at yaw, peak to peak, by 89 %" in line
         for line in deterioration_sentences(by_force)
     )
-    assert not found.worse
+    assert not advice.worse
 
 
 def with_hand(hours: float) -> eq.Machine:
@@ -194,26 +194,29 @@ def test_all_speeds_at_which_a_machine_runs_are_aims() -> None:
     machine = RIG.with_drive(speeds=(100 * RPM, 240 * RPM))
     speeds = np.array(running_speeds(machine, Linear.of(machine))) / RPM
     assert speeds[[0, 2, 3, 4]] == pytest.approx([100, 170, 193, 240])
-    found = advise(machine)
-    assert [one.speeds[0] / RPM for one in found.plan.objectives] == pytest.approx(speeds)
-    for one in found.plan.objectives:
-        pair = swing(machine, "gauge", one.speeds[0]), swing(found.machine, "gauge", one.speeds[0])
-        assert found.objectives[one.name] == pytest.approx(pair, rel=1e-6)
-    assert objectives_text(found).endswith("170, 193, 240 rpm")
+    advice = advise(machine)
+    assert [item.speeds[0] / RPM for item in advice.plan.objectives] == pytest.approx(speeds)
+    for objective in advice.plan.objectives:
+        pair = (
+            swing(machine, "gauge", objective.speeds[0]),
+            swing(advice.machine, "gauge", objective.speeds[0]),
+        )
+        assert advice.objectives[objective.name] == pytest.approx(pair, rel=1e-6)
+    assert objectives_text(advice).endswith("170, 193, 240 rpm")
 
 
 def test_what_the_file_wants_and_limits_is_kept() -> None:
     free = (AddedMass("crank", "A", Weight("any", 0.07, at_most=0.5)),)
-    found = advise(RIG.with_balance(Balance(masses=free)))
-    assert found.plan.masses == free and found.advice is None
-    assert [one.name for one in found.plan.objectives] == ["ripple of gauges.gauge"]
+    advice = advise(RIG.with_balance(Balance(masses=free)))
+    assert advice.plan.masses == free and advice.advice is None
+    assert [objective.name for objective in advice.plan.objectives] == ["ripple of gauges.gauge"]
     wish = (Objective("shaking_force"),)
     limits = (Limit(Objective("shaking_force", "peak"), ratio=0.75),)
     machine = eq.load("balance-shafts")
-    found = advise(machine.with_balance(Balance(objectives=wish, limits=limits)))
-    assert found.plan.objectives == wish and found.advice is not None
-    peaks = [eq.analyze(each).summary["shaking_force"].peak for each in (machine, found.machine)]
-    assert not found.helps or peaks[1] <= 0.75 * peaks[0] * (1 + 1e-6)
+    advice = advise(machine.with_balance(Balance(objectives=wish, limits=limits)))
+    assert advice.plan.objectives == wish and advice.advice is not None
+    peaks = [eq.analyze(each).summary["shaking_force"].peak for each in (machine, advice.machine)]
+    assert not advice.helps or peaks[1] <= 0.75 * peaks[0] * (1 + 1e-6)
     light = advise(machine.with_balance(Balance(objectives=wish, added_mass=0.1)))
     assert light.added_mass <= 0.1
 
@@ -221,7 +224,7 @@ def test_what_the_file_wants_and_limits_is_kept() -> None:
 # -- room ------------------------------------------------------------------------------------------
 
 
-def test_room_is_not_told_by_the_throw_of_a_crank() -> None:
+def test_room_is_not_reported_by_the_throw_of_a_crank() -> None:
     """A sieve whose crank throws 4 mm has plates as thick as one that throws 18 mm."""
     sieve = bare("sieve")
     links = dict(sieve.links)
@@ -273,8 +276,8 @@ def test_a_plane_of_its_own_is_crossed_by_shafts_and_guided_pins() -> None:
     *_, room = rooms_about(rig, "crank")
     shaft = abs(complex(*rig.frame["D"]) - complex(*rig.frame["A"]))
     assert 0.85 * shaft < room.largest < shaft - room.clearance * (1 - 1e-9)
-    told = " ".join(benefit_sentences(advise(rig)))
-    assert "in a plane of its own beside pin C" in told
+    text = " ".join(benefit_sentences(advise(rig)))
+    assert "in a plane of its own beside pin C" in text
 
 
 def test_a_plane_of_its_own_is_said_where_only_a_link_comes_near() -> None:
@@ -288,7 +291,7 @@ def test_a_plane_of_its_own_is_said_where_only_a_link_comes_near() -> None:
         assert text.endswith(f", in a plane of its own{said}" if said else "its middle at 0°")
 
 
-# Room: `test_room_is_not_told_by_the_throw_of_a_crank`.
+# Room: `test_room_is_not_reported_by_the_throw_of_a_crank`.
 @pytest.mark.exhaustive
 def test_the_room_of_a_short_crank_is_larger_than_its_throw() -> None:
     """As of a disc with a pin; nobody has said how far it may reach."""
@@ -301,15 +304,15 @@ def test_the_room_of_a_short_crank_is_larger_than_its_throw() -> None:
 @pytest.mark.exhaustive
 def test_what_more_room_would_allow_is_said() -> None:
     """Where it is worth it: a carrier's weight twice as far out is lighter and does more."""
-    found = advice_for("planetary-planting-arm")
-    more = found.with_room
+    advice = advice_for("planetary-planting-arm")
+    more = advice.with_room
     assert more is not None and more.wanted == pytest.approx(2 * more.assumed)
     (piece,) = more.remedy.changes[0].values["pieces"]
     assert more.assumed < piece["outer_radius"] <= more.wanted
-    assert more.remedy.helps and more.remedy.gain > found.gain + LEAST_GAIN
-    assert found.to_dict()["with_room"]["gain"] == more.remedy.gain
-    told = " ".join(benefit_sentences(found))
-    assert f"The space about {more.at} is assumed, from the lengths of the links" in told
+    assert more.remedy.helps and more.remedy.gain > advice.gain + LEAST_GAIN
+    assert advice.to_dict()["with_room"]["gain"] == more.remedy.gain
+    text = " ".join(benefit_sentences(advice))
+    assert f"The space about {more.at} is assumed, from the lengths of the links" in text
     assert advice_for("balance-shafts").with_room is None
 
 
@@ -342,8 +345,8 @@ def test_a_longer_arm_is_taken_rather_than_more_mass(name: str, mass: float, gai
     """298 g within 40 mm took 20.9 % off; as much mass does twice that as far out as 50 mm over the
     soil allow.
     """
-    found = advice_for(name)
-    assert found.helps and found.added_mass / found.gain < 0.55 * mass / gain
+    advice = advice_for(name)
+    assert advice.helps and advice.added_mass / advice.gain < 0.55 * mass / gain
 
 
 def test_gears_and_belts_take_room_away() -> None:
@@ -357,17 +360,17 @@ def test_gears_and_belts_take_room_away() -> None:
 def test_a_sector_is_what_its_outline_weighs() -> None:
     """Mass, first moment and inertia by its outline, as a polygon."""
     shape = SectorShape(0.08, 0.02, 0.012, 35, 140)
-    one = sectors([shape])
+    first = sectors([shape])
     turned = np.radians(35 + 140 * np.linspace(-0.5, 0.5, 8001))
     outline = np.concatenate([0.08 * np.exp(1j * turned), 0.02 * np.exp(1j * turned[::-1])])
     following = np.roll(outline, -1)
     crossed = np.imag(np.conj(outline) * following)
     plate = 7850 * 0.012
-    assert one.mass[0] == pytest.approx(plate * np.sum(crossed) / 2, rel=1e-6)
-    assert one.moment[0] == pytest.approx(plate * np.sum(crossed * (outline + following)) / 6,
+    assert first.mass[0] == pytest.approx(plate * np.sum(crossed) / 2, rel=1e-6)
+    assert first.moment[0] == pytest.approx(plate * np.sum(crossed * (outline + following)) / 6,
                                           rel=1e-6)  # fmt: skip
     squares = np.abs(outline) ** 2 + np.real(outline * np.conj(following)) + np.abs(following) ** 2
-    assert one.inertia[0] == pytest.approx(plate * np.sum(crossed * squares) / 12, rel=1e-6)
+    assert first.inertia[0] == pytest.approx(plate * np.sum(crossed * squares) / 12, rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -378,35 +381,37 @@ def test_plates_that_are_to_be_had(most: float, thickness: float) -> None:
     assert plate_of(most) == pytest.approx(thickness, rel=1e-12)
 
 
-def test_the_machine_that_is_told_has_the_shape_that_is_told() -> None:
+def test_the_reported_machine_has_the_reported_shape() -> None:
     """Not the best one between two degrees: figures are those of the rounded shape."""
-    machine, found = bare("balance-shafts"), advice_for("balance-shafts")
-    (change,) = found.changes
+    machine, actual = bare("balance-shafts"), advice_for("balance-shafts")
+    (change,) = actual.changes
     (piece,) = change.values["pieces"]
     (degrees,) = {round(np.degrees(piece["angle"]))}
     shape = SectorShape(piece["outer_radius"], piece["inner_radius"], piece["thickness"],
                         round(np.degrees(piece["direction"])), degrees)  # fmt: skip
-    one = sectors([shape])
-    moment = complex(one.moment[0])
-    inertia = float(one.inertia[0]) - abs(moment) ** 2 / one.mass[0]
-    place = moment / one.mass[0]
-    link = machine.links["crank"].with_added(float(one.mass[0]), (place.real, place.imag), inertia)
+    first = sectors([shape])
+    moment = complex(first.moment[0])
+    inertia = float(first.inertia[0]) - abs(moment) ** 2 / first.mass[0]
+    place = moment / first.mass[0]
+    link = machine.links["crank"].with_added(
+        float(first.mass[0]), (place.real, place.imag), inertia
+    )
     rebuilt = replace(machine, links={**machine.links, "crank": link})
     force, same = (np.abs(eq.analyze(each, 720).forces.shaking_force.value)
-                   for each in (rebuilt, found.machine))  # fmt: skip
+                   for each in (rebuilt, actual.machine))  # fmt: skip
     np.testing.assert_allclose(force, same, rtol=1e-9)
-    before, after = found.objectives["rms of shaking_force"]
+    before, after = actual.objectives["rms of shaking_force"]
     assert after == pytest.approx(np.sqrt(np.mean(force**2)), rel=1e-6)
     assert before > after
 
 
 def test_the_proof_is_of_every_sector_of_that_plate() -> None:
     """It holds for the shape that is told, and names the room."""
-    found = advice_for("balance-shafts")
-    assert found.bound <= found.cost and found.gap < 0.1
-    (told,) = proof_sentences(found)
-    assert told.startswith("Proof, by cone program: with a sector of ")
-    assert "where no headline figure gets worse" in told
+    advice = advice_for("balance-shafts")
+    assert advice.bound <= advice.cost and advice.gap < 0.1
+    (text,) = proof_sentences(advice)
+    assert text.startswith("Proof, by cone program: with a sector of ")
+    assert "where no headline figure gets worse" in text
 
 
 # -- prices ----------------------------------------------------------------------------------------
@@ -414,27 +419,27 @@ def test_the_proof_is_of_every_sector_of_that_plate() -> None:
 
 def test_what_gains_too_little_for_its_mass_is_not_offered() -> None:
     """On a crank that turns among pins of the frame, about which nothing fits."""
-    found = advice_for("drag-link")
-    assert not found.helps
-    assert all(one.gain < LEAST_GAIN for one in found.tried)
-    assert "that is too little" in " ".join(benefit_sentences(found))
+    advice = advice_for("drag-link")
+    assert not advice.helps
+    assert all(item.gain < LEAST_GAIN for item in advice.tried)
+    assert "that is too little" in " ".join(benefit_sentences(advice))
 
 
 # Of a single joint or direction: the test below.
 @pytest.mark.exhaustive
 def test_what_leaves_a_headline_figure_worse_is_not_offered() -> None:
     """A lever would take a quarter off the shaking force, and makes the torque swing more."""
-    found = advice_for("class-three")
-    assert not found.helps and found.gain > 0.25
-    assert found.advice is not None
-    ((was, new), *_) = found.advice.worse
-    swings = [float(np.ptp(eq.analyze(one).forces.drive_torque))
-              for one in (found.original, found.machine)]  # fmt: skip
+    advice = advice_for("class-three")
+    assert not advice.helps and advice.gain > 0.25
+    assert advice.advice is not None
+    ((was, new), *_) = advice.advice.worse
+    swings = [float(np.ptp(eq.analyze(item).forces.drive_torque))
+              for item in (advice.original, advice.machine)]  # fmt: skip
     assert was.output == "drive_torque" and new.value == pytest.approx(swings[1], rel=1e-3)
-    told = " ".join(benefit_sentences(found))
+    text = " ".join(benefit_sentences(advice))
     assert swings[1] > 1.1 * swings[0]
     grown = f"drive torque, peak to peak, from {swings[0]:.2f} to {swings[1]:.2f} N m"
-    assert grown in told and "would grow" in told
+    assert grown in text and "would grow" in text
 
 
 @pytest.mark.exhaustive(but=["four-stroke-engine-shaking force y"])
@@ -444,10 +449,10 @@ def test_what_leaves_a_headline_figure_worse_is_not_offered() -> None:
 )
 def test_what_leaves_a_single_joint_or_direction_worse_is_not_offered(name: str, what: str) -> None:
     """The pin of a crank would carry an eighth more; the force along y would double."""
-    found = advice_for(name)
-    assert not found.helps
-    rejected = [one for one in found.tried if one.gain > LEAST_GAIN]
-    grown = {str(was.label) for one in rejected if one.advice for was, _ in one.advice.worse}
+    advice = advice_for(name)
+    assert not advice.helps
+    rejected = [item for item in advice.tried if item.gain > LEAST_GAIN]
+    grown = {str(was.label) for item in rejected if item.advice for was, _ in item.advice.worse}
     assert f"{what}, peak" in grown
 
 
@@ -455,24 +460,24 @@ def test_what_leaves_a_single_joint_or_direction_worse_is_not_offered(name: str,
 @pytest.mark.exhaustive
 def test_a_trifle_may_grow() -> None:
     """What stays below a tenth of its yardstick is no headline figure."""
-    found = advice_for("balance-shafts")
-    assert found.advice is not None
-    (one, *_) = found.advice.before
-    tiny = replace(one, value=1e-3 * one.value, ratio=1e-3 * one.ratio)
+    advice = advice_for("balance-shafts")
+    assert advice.advice is not None
+    (first, *_) = advice.advice.before
+    tiny = replace(first, value=1e-3 * first.value, ratio=1e-3 * first.ratio)
     assert not worse_headlines((tiny,), (replace(tiny, value=2 * tiny.value),), Saving())
-    assert worse_headlines((one,), (replace(one, value=1.02 * one.value),), Saving())
-    assert not worse_headlines((one,), (replace(one, value=1.005 * one.value),), Saving())
+    assert worse_headlines((first,), (replace(first, value=1.02 * first.value),), Saving())
+    assert not worse_headlines((first,), (replace(first, value=1.005 * first.value),), Saving())
 
 
 def test_what_is_small_and_stays_small_may_grow_by_half_of_what_is_saved() -> None:
     """Each over what is large of its kind: 0.8 of 1.6 here."""
-    found = advice_for("balance-shafts")
-    assert found.advice is not None
-    (one, *_) = found.advice.before
+    advice = advice_for("balance-shafts")
+    assert advice.advice is not None
+    (first, *_) = advice.advice.before
     saving = Saving(gain=0.5, excess=1.6)
     for before, after, is_worse in ((0.3, 0.69, False), (0.3, 0.71, True), (0.6, 0.74, False),
                                     (0.6, 0.76, True)):  # fmt: skip
-        was, new = (replace(one, value=x, ratio=x) for x in (before, after))
+        was, new = (replace(first, value=x, ratio=x) for x in (before, after))
         assert bool(worse_headlines((was,), (new,), saving)) is is_worse
 
 
@@ -480,27 +485,27 @@ def test_what_is_large_may_grow_by_a_tenth_of_what_is_saved() -> None:
     """Of a figure five times its yardstick at most a tenth of the share that the aim loses, and at
     most a tenth of what is saved.
     """
-    found = advice_for("balance-shafts")
-    assert found.advice is not None
-    one = replace(found.advice.before[0], value=5.0, ratio=5.0)
+    advice = advice_for("balance-shafts")
+    assert advice.advice is not None
+    first = replace(advice.advice.before[0], value=5.0, ratio=5.0)
     for excess, most in ((6.0, 5.2), (1.0, 5.05)):
         saving = Saving(gain=0.4, excess=excess)
-        assert not worse_headlines((one,), (replace(one, value=most - 1e-6),), saving)
-        assert worse_headlines((one,), (replace(one, value=most + 1e-3),), saving)
+        assert not worse_headlines((first,), (replace(first, value=most - 1e-6),), saving)
+        assert worse_headlines((first,), (replace(first, value=most + 1e-3),), saving)
 
 
 # Limits of growth: `test_what_is_large_may_grow_by_a_tenth_of_what_is_saved`.
 @pytest.mark.exhaustive
 def test_what_was_nothing_may_not_become_large() -> None:
     """Other phases of rows may bring a couple where there was none."""
-    found = advice_for("balance-shafts")
-    assert found.advice is not None
-    (one, *_) = found.advice.before
+    advice = advice_for("balance-shafts")
+    assert advice.advice is not None
+    (first, *_) = advice.advice.before
     saving = Saving(gain=1.0, excess=3.0)
-    ((was, new),) = worse_headlines((), (replace(one, ratio=1.1),), saving)
-    assert was.value == 0 and new.value == one.value
-    assert not worse_headlines((), (replace(one, ratio=0.7),), saving)
-    assert worse_headlines((), (replace(one, ratio=0.7),), Saving(gain=0.2, excess=3.0))
+    ((was, new),) = worse_headlines((), (replace(first, ratio=1.1),), saving)
+    assert was.value == 0 and new.value == first.value
+    assert not worse_headlines((), (replace(first, ratio=0.7),), saving)
+    assert worse_headlines((), (replace(first, ratio=0.7),), Saving(gain=0.2, excess=3.0))
 
 
 # Couples: `test_a_couple_is_aimed_at_where_that_is_what_is_large`.
@@ -509,8 +514,8 @@ def test_a_couple_larger_than_what_is_saved_is_not_made() -> None:
     """Phases of 0, 180, 270 and 90 deg save 4.2 N m of shaking moment, RMS, and twist the machine
     by 9.6 N m; those that do not twist it are offered.
     """
-    found = advice_for("four-row-transplanter")
-    first, second = found.tried
+    advice = advice_for("four-row-transplanter")
+    first, second = advice.tried
     assert np.degrees(first.changes[0].values["phases"]) == pytest.approx([0, 180, 270, 90])
     assert first.advice is not None and not first.helps
     roll, yaw = (eq.analyze(first.machine).summary[f"rows.{name}"].rms
@@ -518,29 +523,29 @@ def test_a_couple_larger_than_what_is_saved_is_not_made() -> None:
     ((before, after),) = first.objectives.values()
     assert roll > yaw > before - after > 4
     assert {was.output for was, _ in first.advice.worse} == {"rows.roll_moment", "rows.yaw_moment"}
-    assert found.helps and found.changes == second.changes
-    assert np.degrees(found.changes[0].values["phases"]) == pytest.approx([0, 180, 180, 0])
-    level = eq.analyze(found.machine).summary
+    assert advice.helps and advice.changes == second.changes
+    assert np.degrees(advice.changes[0].values["phases"]) == pytest.approx([0, 180, 180, 0])
+    level = eq.analyze(advice.machine).summary
     assert level["rows.roll_moment"].rms < 1e-9 > level["rows.yaw_moment"].rms
-    assert "without couples between the rows" in " ".join(proof_sentences(found))
+    assert "without couples between the rows" in " ".join(proof_sentences(advice))
 
 
 # Gains: `test_what_gains_too_little_for_its_mass_is_not_offered`.
 @pytest.mark.exhaustive
 def test_a_weight_that_takes_off_less_than_a_quarter_is_not_offered() -> None:
     """A seventh of the links' mass, for 22 % of an RMS and 15 % of the peak that is large."""
-    found = advice_for("watt-six-bar")
-    assert not found.helps
+    advice = advice_for("watt-six-bar")
+    assert not advice.helps
     aims = (Objective("shaking_force"),)
-    about_crank = [one for one in found.tried if one.plan.objectives == aims
-                   and one.changes[0].link == "crank" and not one.advice.worse]  # fmt: skip
+    about_crank = [item for item in advice.tried if item.plan.objectives == aims
+                   and item.changes[0].link == "crank" and not item.advice.worse]  # fmt: skip
     assert about_crank
-    for one in about_crank:
-        assert one.added_mass > 0 and LEAST_GAIN < one.gain < LEAST_GAIN_OF_ADDED
+    for entry in about_crank:
+        assert entry.added_mass > 0 and LEAST_GAIN < entry.gain < LEAST_GAIN_OF_ADDED
         before, after = (eq.analyze(of).summary["shaking_force"].peak
-                         for of in (one.original, one.machine))  # fmt: skip
+                         for of in (entry.original, entry.machine))  # fmt: skip
         assert 1 - after / before < LEAST_GAIN_OF_ADDED
-        assert why_not(one) == "that is too little"
+        assert why_not(entry) == "that is too little"
 
 
 # `test_beside_a_torque_nothing_that_shakes_may_grow`.
@@ -549,22 +554,22 @@ def test_what_evens_a_torque_may_not_shake_the_machine_more() -> None:
     """A weight of 29 % of the links of a flap folder would even its torque, and raise its shaking
     force from 5.0 to 6.3 N: small beside its weight, but a spring or a flywheel costs none of it.
     """
-    found = advice_for("flap-folder")
-    assert not found.helps
-    rejected = [one for one in found.tried if one.gain > LEAST_GAIN and one.advice is not None]
+    advice = advice_for("flap-folder")
+    assert not advice.helps
+    rejected = [item for item in advice.tried if item.gain > LEAST_GAIN and item.advice is not None]
     assert rejected
-    for one in rejected:
-        assert one.advice is not None
-        assert any(was.is_shaking for was, _ in one.advice.worse)
+    for entry in rejected:
+        assert entry.advice is not None
+        assert any(was.is_shaking for was, _ in entry.advice.worse)
 
 
 def test_beside_a_torque_nothing_that_shakes_may_grow() -> None:
-    found = advice_for("balance-shafts")
-    assert found.advice is not None
-    one = replace(found.advice.before[0], value=0.4, ratio=0.4)
-    grown, saving = (replace(one, value=0.5),), Saving(gain=0.5, excess=1.6)
-    assert one.is_shaking and not worse_headlines((one,), grown, saving)
-    assert worse_headlines((one,), grown, replace(saving, steadies=True))
+    advice = advice_for("balance-shafts")
+    assert advice.advice is not None
+    first = replace(advice.advice.before[0], value=0.4, ratio=0.4)
+    grown, saving = (replace(first, value=0.5),), Saving(gain=0.5, excess=1.6)
+    assert first.is_shaking and not worse_headlines((first,), grown, saving)
+    assert worse_headlines((first,), grown, replace(saving, steadies=True))
 
 
 def test_the_figure_that_is_large_falls_in_its_own_measure() -> None:
@@ -575,8 +580,8 @@ def test_the_figure_that_is_large_falls_in_its_own_measure() -> None:
     assert is_worth(0.2, 0.0, 0.16) and not is_worth(0.2, 0.0, 0.14)
     assert is_worth(0.26, 0.1, 0.26) and not is_worth(0.26, 0.1, 0.24)
     assert not is_worth(0.27, 0.24)  # about as much as it costs
-    found = advice_for("cam-pusher")
-    assert not found.helps
+    advice = advice_for("cam-pusher")
+    assert not advice.helps
     assert is_worth(np.array([0.41, 0.27]), np.array([0.30, 0.24])).tolist() == [True, False]
 
 
@@ -584,20 +589,22 @@ def test_the_figure_that_is_large_falls_in_its_own_measure() -> None:
 @pytest.mark.exhaustive
 def test_the_peak_of_what_is_offered_falls_with_its_rms() -> None:
     for name in ("yamashita-1", "scotch-yoke", "kim-chung-a"):
-        found = advice_for(name)
-        assert found.helps and found.advice is not None
-        old, new = (eq.analyze(one).summary for one in (found.original, found.machine))
-        share = found.added_mass / found.original.mass
-        (aim,) = found.plan.objectives
+        advice = advice_for(name)
+        assert advice.helps and advice.advice is not None
+        old, new = (eq.analyze(item).summary for item in (advice.original, advice.machine))
+        share = advice.added_mass / advice.original.mass
+        (aim,) = advice.plan.objectives
         gone = 1 - new[aim.output].peak / old[aim.output].peak
         assert gone >= max(0.25, 2 / 3 * share)
 
 
 def test_little_is_added_against_what_is_not_large() -> None:
     """The reel of a baler shakes with 64 % of the weight of its links: 1.4 kg are too much."""
-    found = advice_for("baler-pickup")
-    little = [one for one in found.tried if one.plan.objectives == (Objective("shaking_force"),)]
-    assert little and all(0 < one.added_mass <= 0.05 * one.original.mass for one in little)
+    advice = advice_for("baler-pickup")
+    little = [
+        item for item in advice.tried if item.plan.objectives == (Objective("shaking_force"),)
+    ]
+    assert little and all(0 < item.added_mass <= 0.05 * item.original.mass for item in little)
 
 
 # What is large: `test_all_that_is_large_is_named_first`.
@@ -606,8 +613,10 @@ def test_what_stays_large_is_said_first_and_by_the_yardstick_before() -> None:
     """Added mass makes the yardstick longer, and no moment smaller; 2.22 N m over the weight of
     1.145 kg between pivots that are 89 mm apart.
     """
-    found = advice_for("yamashita-1")
-    text = " ".join(one.text for one in found.headline(alone=True) if isinstance(one, TextBlock))
+    advice = advice_for("yamashita-1")
+    text = " ".join(
+        item.text for item in advice.headline(alone=True) if isinstance(item, TextBlock)
+    )
     assert "Large after that, as before: shaking moment, peak: 2.22 N m" in text
     assert "2.2 times the weight of the moving links at the span" in text
 
@@ -616,11 +625,11 @@ def test_what_stays_large_is_said_first_and_by_the_yardstick_before() -> None:
 @pytest.mark.exhaustive
 def test_what_falls_besides_is_said() -> None:
     """A weight against the torque of a six-bar takes a third off its shaking force."""
-    found = advice_for("stephenson-six-bar")
-    old, new = (eq.analyze(one).summary for one in (found.original, found.machine))
-    before, after = (one["shaking_force"].peak for one in (old, new))
+    advice = advice_for("stephenson-six-bar")
+    old, new = (eq.analyze(item).summary for item in (advice.original, advice.machine))
+    before, after = (item["shaking_force"].peak for item in (old, new))
     assert after < 0.9 * before
-    text = " ".join(benefit_sentences(found))
+    text = " ".join(benefit_sentences(advice))
     assert f"This also reduces shaking force, peak, from {before:.1f} to {after:.1f} N" in text
 
 
@@ -629,19 +638,19 @@ def test_what_falls_besides_is_said() -> None:
 
 def test_a_counterweight_that_is_too_heavy_is_taken_off() -> None:
     machine = bare("four-stroke-engine").with_link("crank", center_of_mass=(-6e-3, 0.0))
-    found = advise(machine)
-    (change,) = found.changes
-    assert change.kind == "removed mass" and found.added_mass < 0 and found.helps
+    advice = advise(machine)
+    (change,) = advice.changes
+    assert change.kind == "removed mass" and advice.added_mass < 0 and advice.helps
     taken, place = change.values["mass"], complex(*change.values["place"])
-    old, new = machine.links["crank"], found.machine.links["crank"]
+    old, new = machine.links["crank"], advice.machine.links["crank"]
     assert new.mass == pytest.approx(old.mass - taken)
     moments = [link.mass * complex(*link.center_of_mass) for link in (old, new)]
     assert moments[0] - moments[1] == pytest.approx(taken * place)
     about = [link.inertia + link.mass * abs(complex(*link.center_of_mass)) ** 2
              for link in (old, new)]  # fmt: skip
     assert about[0] - about[1] == pytest.approx(taken * abs(place) ** 2)
-    (told,) = sentences(change)
-    assert told.startswith("crank: take 280.0 g off, 34.00 mm from A at 180°")
+    (text,) = sentences(change)
+    assert text.startswith("crank: take 280.0 g off, 34.00 mm from A at 180°")
 
 
 def with_heavy_side() -> eq.Machine:
@@ -655,24 +664,24 @@ def with_heavy_side() -> eq.Machine:
 
 def test_holes_take_off_what_is_too_heavy() -> None:
     machine = with_heavy_side()
-    found = advise(machine)
-    (change,) = found.changes
-    assert change.kind == "removed mass" and found.helps
-    (hole,) = found.machine.links["crank"].bodies[0].holes
+    advice = advise(machine)
+    (change,) = advice.changes
+    assert change.kind == "removed mass" and advice.helps
+    (hole,) = advice.machine.links["crank"].bodies[0].holes
     radius = change.values["hole_radius"]
     assert hole.radius == radius
     assert change.values["mass"] == pytest.approx(7850 * 0.02 * pi * radius**2)
-    assert found.added_mass == pytest.approx(-change.values["mass"])
+    assert advice.added_mass == pytest.approx(-change.values["mass"])
     x, y = hole.at
     assert x < 0 and abs(y) + radius < 0.04 and x - radius > -0.09
-    assert "drill a hole of" in " ".join(benefit_sentences(found))
+    assert "drill a hole of" in " ".join(benefit_sentences(advice))
 
 
 # -- the rest --------------------------------------------------------------------------------------
 
 
-def figures_of_advice(found: Balanced) -> dict[str, object]:
-    return {key: found.to_dict()[key] for key in ("offered", "large", "tried", "flywheels")}
+def figures_of_advice(result: Balanced) -> dict[str, object]:
+    return {key: result.to_dict()[key] for key in ("offered", "large", "tried", "flywheels")}
 
 
 # `test_every_answer_is_in_the_machine_readable_output` of test_beyond_masses.py.
@@ -683,12 +692,14 @@ def test_advice_is_machine_readable() -> None:
     large = values["large"]
     assert isinstance(large, list) and large[0]["figure"] == "shaking_force.peak"
     assert large[0]["ratio"] == pytest.approx(large[0]["value"] / large[0]["yardstick"])
-    assert isinstance(values["tried"], list) and not any(one["worth"] for one in values["tried"])
+    assert isinstance(values["tried"], list) and not any(
+        value["worth"] for value in values["tried"]
+    )
 
 
 def test_where_nothing_is_offered_no_change_is_listed() -> None:
-    told = " ".join(str(block) for block in outcome_blocks(advice_for("drag-link")))
-    assert "Leave the masses as they are" in told and "add a counterweight" not in told
+    text = " ".join(str(block) for block in outcome_blocks(advice_for("drag-link")))
+    assert "Leave the masses as they are" in text and "add a counterweight" not in text
 
 
 def test_a_machine_without_masses_has_nothing_to_balance() -> None:
@@ -700,7 +711,9 @@ def test_mounts_without_a_steady_state_leave_what_shakes() -> None:
     loose = RIG.with_support(mounts={})
     with pytest.raises(EquipoiseError):
         eq.respond(loose)
-    assert not any(one.output.startswith("gauges") for one in advise(loose).plan.objectives)
+    assert not any(
+        objective.output.startswith("gauges") for objective in advise(loose).plan.objectives
+    )
 
 
 # -- machines of other trades ----------------------------------------------------------------------
@@ -713,11 +726,11 @@ def advised(name: str) -> eq.Machine:
 # Aims of a torque: `test_beside_a_torque_nothing_that_shakes_may_grow`.
 @pytest.mark.exhaustive
 def test_a_torque_that_weights_can_steady_is_an_aim() -> None:
-    found = advice_for("walking-beam")
-    assert found.helps and found.plan.objectives == (Objective("drive_torque", "ripple"),)
+    advice = advice_for("walking-beam")
+    assert advice.helps and advice.plan.objectives == (Objective("drive_torque", "ripple"),)
     swings = [
-        float(np.std(eq.analyze(one).forces.drive_torque))
-        for one in (found.original, found.machine)
+        float(np.std(eq.analyze(item).forces.drive_torque))
+        for item in (advice.original, advice.machine)
     ]
     assert swings[1] < 0.5 * swings[0]
 
@@ -730,13 +743,15 @@ def test_a_joint_that_bears_its_load_is_not_large() -> None:
     """The pin of a press, 99 % of the load, and a sieve's, 1.1 times the force of inertia."""
     for machine in (advised("press"), advised("sieve-short"), bare("sieve")):
         analysis = eq.analyze(machine)
-        assert not any(one.is_large for one in assess(analysis) if one.output.startswith("joints"))
+        assert not any(
+            item.is_large for item in assess(analysis) if item.output.startswith("joints")
+        )
 
 
 def test_an_inertia_that_follows_from_bodies_has_no_wrong_unit() -> None:
     """Nor a pulley on a shaft of a short throw."""
     for name in ("sieve-short", "sieve-eccentric"):
-        assert not any("gyration" in str(one) for one in eq.analyze(advised(name)).notes)
+        assert not any("gyration" in str(note) for note in eq.analyze(advised(name)).notes)
 
 
 def test_a_crank_that_jams_on_its_way_is_refused_by_all() -> None:
@@ -758,9 +773,9 @@ def summed(values: Array, count: int) -> Array:
 @pytest.mark.parametrize(("name", "count"), [("planetary-planting-arm", 2), ("baler-pickup", 4)])
 def test_evenly_spaced_arms_leave_what_their_sum_leaves(name: str, count: int) -> None:
     """The fewest that take nine tenths; the swing of the torque over its mean, likewise."""
-    machine, found = bare(name), advice_for(name)
-    assert found.advice is not None
-    arms = spaced_arms_for(eq.analyze(machine, acceleration=0.0), found.advice.before, 0.5)
+    machine, actual = bare(name), advice_for(name)
+    assert actual.advice is not None
+    arms = spaced_arms_for(eq.analyze(machine, acceleration=0.0), actual.advice.before, 0.5)
     assert arms is not None and arms.count == count
     forces = eq.analyze(machine, 720, acceleration=0.0).forces
     force, torque = forces.shaking_force.value, forces.drive_torque
@@ -770,11 +785,11 @@ def test_evenly_spaced_arms_leave_what_their_sum_leaves(name: str, count: int) -
         assert (gone > 0.9) == (few == count)
     assert arms.gain == pytest.approx(gone, abs=1e-3)
     if arms.swing_after is not None:
-        swings = [np.ptp(one) / abs(np.mean(one)) for one in (torque, summed(torque, count))]
+        swings = [np.ptp(item) / abs(np.mean(item)) for item in (torque, summed(torque, count))]
         assert (arms.swing_before, arms.swing_after) == pytest.approx(swings, rel=0.01)
-    told = " ".join(benefit_sentences(found))
+    text = " ".join(benefit_sentences(actual))
     first = "A second arm like this one, opposite on carrier"
-    assert (first if count == 2 else "4 arms like this one, evenly spaced on reel") in told
+    assert (first if count == 2 else "4 arms like this one, evenly spaced on reel") in text
 
 
 def test_arms_that_would_strike_each_other_are_not_named() -> None:
@@ -788,9 +803,9 @@ def test_arms_that_would_strike_each_other_are_not_named() -> None:
 # Little against what is not large: `test_little_is_added_against_what_is_not_large`.
 @pytest.mark.exhaustive
 def test_no_weight_against_what_is_not_large_where_more_arms_do_more() -> None:
-    found = advice_for("baler-pickup")
-    assert not found.helps and found.advice is not None
-    force = next(one for one in found.advice.before if one.output == "shaking_force")
+    advice = advice_for("baler-pickup")
+    assert not advice.helps and advice.advice is not None
+    force = next(item for item in advice.advice.before if item.output == "shaking_force")
     assert not force.is_large
 
 
@@ -799,9 +814,9 @@ def test_no_weight_against_what_is_not_large_where_more_arms_do_more() -> None:
 def test_two_weights_at_the_ends_take_the_couple_that_turns_with_the_crank() -> None:
     """The best two by least squares on the samples of the couple of three rows."""
     machine = eq.load(ADVISED / "inline-3-rows.toml")
-    found, analysis = advise(machine), eq.analyze(machine, acceleration=0.0)
-    assert found.advice is not None
-    ends = end_weights_for(analysis, found.advice.before)
+    actual, analysis = advise(machine), eq.analyze(machine, acceleration=0.0)
+    assert actual.advice is not None
+    ends = end_weights_for(analysis, actual.advice.before)
     assert ends is not None
     roll, yaw = (analysis.outputs[f"rows.{name}_moment"].values for name in ("roll", "yaw"))
     couple = roll + 1j * yaw
@@ -810,7 +825,7 @@ def test_two_weights_at_the_ends_take_the_couple_that_turns_with_the_crank() -> 
     left = np.linalg.norm(couple - turned * best[0]) / np.linalg.norm(couple)
     assert ends.gain == pytest.approx(1 - left, abs=1e-9)
     assert abs(best[0]) == pytest.approx(ends.moment)
-    assert "opposite each other and 176 mm apart" in " ".join(benefit_sentences(found))
+    assert "opposite each other and 176 mm apart" in " ".join(benefit_sentences(actual))
 
 
 def test_the_rule_of_what_is_offered_says_how_far_small_figures_may_grow() -> None:

@@ -30,11 +30,11 @@ PLAN = Balance(
 FOUND = eq.balance(MACHINE, PLAN)
 
 
-def with_figures(found: Balanced, before: dict[str, float], after: dict[str, float]) -> Balanced:
+def with_figures(result: Balanced, before: dict[str, float], after: dict[str, float]) -> Balanced:
     """The result as if it had these figures."""
-    found = replace(found)
-    found.__dict__.update(before=before, after=after, _shaking=(before, after))
-    return found
+    result = replace(result)
+    result.__dict__.update(before=before, after=after, _shaking=(before, after))
+    return result
 
 
 def test_figures_are_those_of_the_analysis() -> None:
@@ -144,15 +144,15 @@ def test_equivalent_speeds_give_the_old_figures() -> None:
 
 
 def test_json() -> None:
-    told = json.loads(json.dumps(FOUND.to_dict(), default=np.ndarray.tolist))
+    content = json.loads(json.dumps(FOUND.to_dict(), default=np.ndarray.tolist))
     wanted = {"before", "after", "changes", "gap", "prices", "bound", "cost", "objectives", "notes"}
-    assert wanted <= set(told)
-    assert told["before"] == pytest.approx(FOUND.before)
-    assert told["objectives"][LIFT.name]["after"] == FOUND.objectives[LIFT.name][1]
-    assert told["prices"]["added mass"]["at_most"] == 0.9
-    assert [change["link"] for change in told["changes"]] == ["crank", "rocker"]
-    assert "shaking_force.y" in told["sensitivities"]
-    assert told["planting_kept"] is None
+    assert wanted <= set(content)
+    assert content["before"] == pytest.approx(FOUND.before)
+    assert content["objectives"][LIFT.name]["after"] == FOUND.objectives[LIFT.name][1]
+    assert content["prices"]["added mass"]["at_most"] == 0.9
+    assert [change["link"] for change in content["changes"]] == ["crank", "rocker"]
+    assert "shaking_force.y" in content["sensitivities"]
+    assert content["planting_kept"] is None
 
 
 def test_units_of_objectives_and_limits() -> None:
@@ -208,13 +208,13 @@ def test_planting_stays_as_it_is() -> None:
         masses=(AddedMass(drive, at, Weight("any", 0.05, at_most=0.5)),),
         objectives=(LIFT,),
     )
-    found = eq.balance(machine, plan)
-    assert found.planting_kept is True
-    assert any(name.startswith("planting.") for name in found.before)
-    off = {name: value * (1 + 1e-6) for name, value in found.after.items()}
-    assert with_figures(found, found.before, off).planting_kept is False
-    assert with_figures(found, found.before, {}).planting_kept is False
-    assert with_figures(found, {"mass": 1.0}, {"mass": 2.0}).planting_kept is None
+    balanced = eq.balance(machine, plan)
+    assert balanced.planting_kept is True
+    assert any(name.startswith("planting.") for name in balanced.before)
+    off = {name: value * (1 + 1e-6) for name, value in balanced.after.items()}
+    assert with_figures(balanced, balanced.before, off).planting_kept is False
+    assert with_figures(balanced, balanced.before, {}).planting_kept is False
+    assert with_figures(balanced, {"mass": 1.0}, {"mass": 2.0}).planting_kept is None
 
 
 def test_figures_of_gauges_and_rows() -> None:
@@ -231,7 +231,7 @@ def test_figures_of_gauges_and_rows() -> None:
 
 
 def test_every_output_that_is_compared_may_get_worse() -> None:
-    names = [f"{one.named('a')}.rms" for one in DECLARED.values() if "rms" in one.compared]
+    names = [f"{value.named('a')}.rms" for value in DECLARED.values() if "rms" in value.compared]
     assert {"bearings.a.rms", "cams.a.rms", "belts.a.pull.rms"} & {*names}
-    found = worse_of(dict.fromkeys(names, 1.0), dict.fromkeys(names, 2.0), {})
-    assert {f"{one.objective.output}.rms" for one in found} == {*names}
+    result = worse_of(dict.fromkeys(names, 1.0), dict.fromkeys(names, 2.0), {})
+    assert {f"{item.objective.output}.rms" for item in result} == {*names}

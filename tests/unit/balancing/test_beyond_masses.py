@@ -39,9 +39,9 @@ ADVISED = Path(support.findings.__file__).parent / "advised"
 
 
 def beyond(name: str) -> Beyond:
-    found = advice_for(name)
-    assert found.advice is not None
-    return found.advice.beyond
+    advice = advice_for(name)
+    assert advice.advice is not None
+    return advice.advice.beyond
 
 
 def said(name: str) -> str:
@@ -72,20 +72,20 @@ def test_a_flywheel_stores_the_work_that_the_torque_swings_by(
     machine = advice_for(name).original
     flywheels = beyond(name).flywheels
     assert flywheels is not None
-    assert tuple(one.fluctuation for one in flywheels.choices) == shares
+    assert tuple(choice.fluctuation for choice in flywheels.choices) == shares
     analysis = eq.analyze(machine, 7200, acceleration=0.0)
     torque, speed = analysis.forces.drive_torque, machine.drive.speed
     faster = eq.analyze(machine.with_drive(flywheel=0.0), 7200, acceleration=1.0)
     linkage = faster.forces.drive_torque - torque
-    for one in flywheels.choices:
-        assert one.ratio == ratio
-        inertia = machine.drive.flywheel + one.inertia * one.ratio**2
+    for item in flywheels.choices:
+        assert item.ratio == ratio
+        inertia = machine.drive.flywheel + item.inertia * item.ratio**2
         gained = np.cumsum(np.mean(torque) - torque) * 2 * pi * analysis.motion.turns / len(torque)
         energy = (inertia + np.mean(linkage)) * speed**2 / 2 + gained - np.mean(gained)
         energy += (linkage - np.mean(linkage)) * speed**2 / 2
         speeds = np.sqrt(2 * energy / (inertia + linkage))
         swing = float(np.ptp(speeds) * np.mean(1 / speeds))
-        assert 0.9 * one.fluctuation < swing < 1.01 * one.fluctuation  # rounded up to two digits
+        assert 0.9 * item.fluctuation < swing < 1.01 * item.fluctuation  # rounded up to two digits
 
 
 def test_a_flywheel_is_that_of_run() -> None:
@@ -93,10 +93,10 @@ def test_a_flywheel_is_that_of_run() -> None:
     machine = advice_for("four-stroke-engine").original
     flywheels = beyond("four-stroke-engine").flywheels
     assert flywheels is not None
-    (one,) = flywheels.choices
+    (first,) = flywheels.choices
     exact = size_flywheel(machine, STEADY)
-    assert exact.inertia <= one.inertia < 1.1 * exact.inertia
-    assert one.inertia < 0.95 * exact.estimate
+    assert exact.inertia <= first.inertia < 1.1 * exact.inertia
+    assert first.inertia < 0.95 * exact.estimate
 
 
 def test_a_flywheel_is_a_disc_that_can_be_turned_and_run() -> None:
@@ -104,35 +104,35 @@ def test_a_flywheel_is_a_disc_that_can_be_turned_and_run() -> None:
     for name in ("four-stroke-engine", "press", "quick-return", "brush-cutter-engine"):
         flywheels = beyond(name).flywheels
         assert flywheels is not None
-        for one in flywheels.choices:
-            rings = np.linspace(0, one.diameter / 2, 20001)
+        for choice in flywheels.choices:
+            rings = np.linspace(0, choice.diameter / 2, 20001)
             middle = (rings[1:] + rings[:-1]) / 2
-            mass = 7850 * one.thickness * 2 * pi * middle * np.diff(rings)
-            assert np.sum(mass) == pytest.approx(one.mass, rel=1e-6)
+            mass = 7850 * choice.thickness * 2 * pi * middle * np.diff(rings)
+            assert np.sum(mass) == pytest.approx(choice.mass, rel=1e-6)
             inertia = np.sum(mass * middle**2)
-            per_millimetre = inertia / one.thickness * 1e-3  # which rounding up may add
-            assert one.inertia * (1 - 1e-6) <= inertia < one.inertia + per_millimetre
-            assert 1 / 30 * (1 - 1e-6) <= one.thickness / one.diameter <= 1 / 3
-            speed = abs(advice_for(name).original.drive.speed) * one.ratio
-            assert speed * one.diameter / 2 <= 40 * (1 + 1e-9)
+            per_millimetre = inertia / choice.thickness * 1e-3  # which rounding up may add
+            assert choice.inertia * (1 - 1e-6) <= inertia < choice.inertia + per_millimetre
+            assert 1 / 30 * (1 - 1e-6) <= choice.thickness / choice.diameter <= 1 / 3
+            speed = abs(advice_for(name).original.drive.speed) * choice.ratio
+            assert speed * choice.diameter / 2 <= 40 * (1 + 1e-9)
 
 
-def test_engines_are_told_their_flywheel_though_the_force_is_larger() -> None:
+def test_engines_get_their_flywheel_though_the_force_is_larger() -> None:
     """The torque of the four-stroke engine swings by 16 times its mean; its force is first."""
     flywheels = beyond("four-stroke-engine").flywheels
     assert flywheels is not None
     assert "Flywheel on crank: at least 0.029 kg m²" in said("four-stroke-engine")
 
 
-def test_a_press_is_told_what_its_motor_gives() -> None:
+def test_a_press_gets_the_torque_of_its_motor() -> None:
     """The work of its load in a turn, by the force and the way of the ram."""
-    found, machine = beyond("press").flywheels, advice_for("press").original
-    assert found is not None
+    actual, machine = beyond("press").flywheels, advice_for("press").original
+    assert actual is not None
     turned = np.radians(np.linspace(248, 268, 20001))
     motion = eq.move(machine, turned)
     work = -200e3 * np.ptp(motion.points["C"].place.imag)
-    assert found.mean_torque == pytest.approx(abs(work) / (2 * pi), rel=1e-3)
-    assert found.power == pytest.approx(found.mean_torque * machine.drive.speed)
+    assert actual.mean_torque == pytest.approx(abs(work) / (2 * pi), rel=1e-3)
+    assert actual.power == pytest.approx(actual.mean_torque * machine.drive.speed)
     assert "within 5 %" in said("press") and "within 20 %" in said("press")
     assert "A motor that permits this fluctuation then has to give 100 N m at crank" in said(
         "press"
@@ -160,14 +160,14 @@ def test_a_flywheel_on_a_faster_shaft_names_what_is_assumed() -> None:
     machine = eq.load("plunger-pump")
     alone = eq.analyze(machine, acceleration=0.0)
     flywheels = flywheels_for(alone, assess(alone))
-    assert flywheels is not None and all(one.is_shaft_assumed for one in flywheels.choices)
+    assert flywheels is not None and all(choice.is_shaft_assumed for choice in flywheels.choices)
     (first, *_) = flywheel_sentences(flywheels, "crank", machine.mass)
     assert "Flywheel on a shaft 4 times as fast as crank, which the file does not give" in first
     motor = Motor(stall_torque=60.0, no_load_speed=400.0, ratio=3.5)
     driven = eq.analyze(machine.with_drive(motor=motor), acceleration=0.0)
     flywheels = flywheels_for(driven, assess(driven))
     assert flywheels is not None
-    assert all(one.ratio == 3.5 and not one.is_shaft_assumed for one in flywheels.choices)
+    assert all(choice.ratio == 3.5 and not choice.is_shaft_assumed for choice in flywheels.choices)
     (first, *_) = flywheel_sentences(flywheels, "crank", machine.mass)
     assert first.startswith("Flywheel on the shaft of the motor: ")
 
@@ -176,9 +176,9 @@ def test_a_flywheel_that_is_there_is_enough() -> None:
     machine = advice_for("brush-cutter-engine").original
     flywheels = beyond("brush-cutter-engine").flywheels
     assert flywheels is not None
-    (one,) = flywheels.choices
-    assert isinstance(one, RequiredFlywheel)
-    heavy = eq.analyze(machine.with_drive(flywheel=1.1 * one.inertia))
+    (first,) = flywheels.choices
+    assert isinstance(first, RequiredFlywheel)
+    heavy = eq.analyze(machine.with_drive(flywheel=1.1 * first.inertia))
     assert flywheels_for(heavy, assess(heavy)) is None
 
 
@@ -188,19 +188,19 @@ def test_a_flywheel_that_is_there_is_enough() -> None:
 @pytest.mark.parametrize(("name", "bore"), [("hydraulic-loader", 0.05), ("excavator", 0.14)])
 def test_a_bore_holds_the_force_at_a_pressure(name: str, bore: float) -> None:
     """By the forces of a whole analysis; the next smaller in stock does not."""
-    one = beyond(name).cylinder
-    assert one is not None and one.bore == bore
-    push, pull = (area * CYLINDER_PRESSURE * pi / 4 for area in (bore**2, bore**2 - one.rod**2))
-    assert one.push <= push and one.pull <= pull
+    first = beyond(name).cylinder
+    assert first is not None and first.bore == bore
+    push, pull = (area * CYLINDER_PRESSURE * pi / 4 for area in (bore**2, bore**2 - first.rod**2))
+    assert first.push <= push and first.pull <= pull
     smaller = {0.05: 0.04, 0.14: 0.125}[bore]
-    assert one.push > smaller**2 * CYLINDER_PRESSURE * pi / 4 or one.pull > 0.6 * push
+    assert first.push > smaller**2 * CYLINDER_PRESSURE * pi / 4 or first.pull > 0.6 * push
     assert f"At 200 bar a cylinder of {1e3 * bore:.3g}" in said(name).replace("50.0", "50")
 
 
 def test_a_rod_does_not_buckle() -> None:
     """By the lowest eigenvalue of a strut with pins at both ends, in finite differences."""
-    one = beyond("hydraulic-loader").cylinder
-    assert one is not None and one.is_slender
+    first = beyond("hydraulic-loader").cylinder
+    assert first is not None and first.is_slender
     machine = advice_for("hydraulic-loader").original
     analysis = eq.analyze(machine)
     force = analysis.outputs["drive_force"].values
@@ -211,14 +211,14 @@ def test_a_rod_does_not_buckle() -> None:
     step = length[k] / nodes
     bending = np.diag([2.0] * (nodes - 1)) - np.eye(nodes - 1, k=1) - np.eye(nodes - 1, k=-1)
     lowest = float(np.linalg.eigvalsh(bending)[0]) / step**2
-    load = {rod: MODULUS * pi * rod**4 / 64 * lowest for rod in (one.rod, 0.028)}
-    assert load[one.rod] >= BUCKLING_SAFETY * force[k] * (1 - 1e-4) > load[0.028]
+    load = {rod: MODULUS * pi * rod**4 / 64 * lowest for rod in (first.rod, 0.028)}
+    assert load[first.rod] >= BUCKLING_SAFETY * force[k] * (1 - 1e-4) > load[0.028]
 
 
 def test_a_lever_is_longer_only_where_its_cylinder_can_be_built() -> None:
     """The loader's, closed 600 mm for a stroke of 450, has no room for more stroke."""
-    one = beyond("hydraulic-loader").cylinder
-    assert one is not None and one.lever is None and one.is_lever_stopped
+    first = beyond("hydraulic-loader").cylinder
+    assert first is not None and first.lever is None and first.is_lever_stopped
     assert "has no room" in said("hydraulic-loader")
     assert "twice as long" not in said("hydraulic-loader")
     of_stick = beyond("excavator").cylinder
@@ -229,21 +229,21 @@ def test_a_lever_is_longer_only_where_its_cylinder_can_be_built() -> None:
 
 def test_a_longer_lever_takes_the_force_of_virtual_work() -> None:
     """F dL = F' dL', with both lengths by the places of the pins, and differences for dL."""
-    one, machine = beyond("excavator").cylinder, advice_for("excavator").original
-    assert one is not None and one.lever is not None and one.pivot == "Q"
+    first, machine = beyond("excavator").cylinder, advice_for("excavator").original
+    assert first is not None and first.lever is not None and first.pivot == "Q"
     analysis = eq.analyze(machine, 7200)
     places = {name: analysis.motion.points[name].place for name in "EFQ"}
     force = analysis.outputs["drives.stick.force"].values
-    more = one.lever.distance / float(np.abs(places["F"] - places["Q"])[0])
+    more = first.lever.distance / float(np.abs(places["F"] - places["Q"])[0])
     moved = dict(places)
-    moved[one.lever.point] = places["Q"] + more * (places[one.lever.point] - places["Q"])
+    moved[first.lever.point] = places["Q"] + more * (places[first.lever.point] - places["Q"])
     old, new = (np.abs(at["F"] - at["E"]) for at in (places, moved))
     assert (float(np.min(new)), float(np.max(new))) == pytest.approx(
-        (one.lever.closed, one.lever.open), rel=1e-4
+        (first.lever.closed, first.lever.open), rel=1e-4
     )
     moving = np.abs(np.gradient(old)) > 1e-3 * np.max(np.abs(np.gradient(old)))
     needed = force[moving] * np.gradient(old)[moving] / np.gradient(new)[moving]
-    assert np.max(np.abs(needed)) == pytest.approx(one.lever.force, rel=2e-3)
+    assert np.max(np.abs(needed)) == pytest.approx(first.lever.force, rel=2e-3)
 
 
 # -- mounts ----------------------------------------------------------------------------------------
@@ -251,8 +251,8 @@ def test_a_longer_lever_takes_the_force_of_virtual_work() -> None:
 
 def test_a_resonance_beside_the_speed_is_moved_first() -> None:
     """The sieve at 280 to 360 rpm beside 255 rpm: not a sector of plate."""
-    found, mounts = advice_for("sieve"), beyond("sieve").mounts
-    assert not found.helps and mounts is not None
+    actual, mounts = advice_for("sieve"), beyond("sieve").mounts
+    assert not actual.helps and mounts is not None
     assert mounts.speed / RPM == pytest.approx(255, abs=1)
     assert np.array(mounts.avoid) / RPM == pytest.approx([221, 277.5], abs=0.5)
     assert mounts.mounts == ("front_along", "back_along")
@@ -348,27 +348,27 @@ def test_the_resonance_that_moves_the_machine_at_its_speed_is_named(
 
 # Mounts: `test_a_resonance_beside_the_speed_is_moved_first`.
 @pytest.mark.exhaustive
-def test_other_mounts_bring_what_is_told() -> None:
+def test_other_mounts_bring_what_is_reported() -> None:
     """By whole responses of the machine that stands on them; and no resonance is beside it."""
     machine, mounts = advice_for("sieve").original, beyond("sieve").mounts
     assert mounts is not None and mounts.factor == 0.5 and machine.support is not None
     soft = dict(machine.support.mounts)
     for name in mounts.mounts:
-        one = soft[name]
-        soft[name] = replace(one, stiffness=one.stiffness / 2, damping=one.damping / 2)
+        first = soft[name]
+        soft[name] = replace(first, stiffness=first.stiffness / 2, damping=first.damping / 2)
     changed = machine.with_support(mounts=soft)
     aims = gauge_aims(machine)
     left = []
-    for one in aims:
-        (speed,) = one.speeds
-        name = one.output.removeprefix("gauges.")
+    for first in aims:
+        (speed,) = first.speeds
+        name = first.output.removeprefix("gauges.")
         both = [eq.respond(each, speed).gauges[name].displacement.vibration_rms
                 for each in (machine, changed)]  # fmt: skip
         left.append(float(both[1] / both[0]))
     assert 1 - np.mean(left) == pytest.approx(mounts.gain, rel=1e-3)
-    for one in resonances(Linear.of(changed), *around(machine.drive, machine.drive.speed)):
-        if one.is_loud and one.avoid is not None:
-            assert not 280 * RPM / np.sqrt(2) < abs(one.speed) < 360 * RPM * np.sqrt(2)
+    for first in resonances(Linear.of(changed), *around(machine.drive, machine.drive.speed)):
+        if first.is_loud and first.avoid is not None:
+            assert not 280 * RPM / np.sqrt(2) < abs(first.speed) < 360 * RPM * np.sqrt(2)
 
 
 # Mounts: `test_a_resonance_beside_the_speed_is_moved_first`.
@@ -384,8 +384,8 @@ def test_a_machine_far_from_its_resonances_keeps_its_mounts() -> None:
 @pytest.mark.exhaustive
 def test_where_phases_of_rows_bring_more_no_mounts_are_named() -> None:
     """A walking transplanter beside its resonance: two rows in turn leave 2 % of what it reads."""
-    found = advice_for("walking-transplanter")
-    assert found.helps and found.gain > 0.95
+    advice = advice_for("walking-transplanter")
+    assert advice.helps and advice.gain > 0.95
     assert beyond("walking-transplanter").mounts is None
 
 
@@ -393,8 +393,8 @@ def test_where_phases_of_rows_bring_more_no_mounts_are_named() -> None:
 @pytest.mark.exhaustive
 def test_a_resonance_that_matters_less_than_masses_is_not_moved_first() -> None:
     """193 rpm beside 119 rpm: a softer spring takes 23 % off, a counterweight 43 %."""
-    found, mounts = advice_for("yamashita-rig"), beyond("yamashita-rig").mounts
-    assert found.helps and mounts is not None and mounts.gain < found.gain
+    actual, mounts = advice_for("yamashita-rig"), beyond("yamashita-rig").mounts
+    assert actual.helps and mounts is not None and mounts.gain < actual.gain
     text = said("yamashita-rig")
     assert "The resonance at 119 rpm amplifies the motion at 193 rpm too: move it, or run" in text
     assert "First move" not in text
@@ -407,13 +407,13 @@ def test_a_damped_resonance_that_amplifies_by_half_is_named_beside_a_counterweig
     """411 rpm with a damping of 0.2152, run at 300 rpm: 1.8 times what stiff mounts would leave;
     along and across alike.  Its edges by the equation of a mass on a spring and a damper.
     """
-    found, mounts = advice_for("exudyn-slider-crank"), beyond("exudyn-slider-crank").mounts
-    assert found.helps and mounts is not None
+    actual, mounts = advice_for("exudyn-slider-crank"), beyond("exudyn-slider-crank").mounts
+    assert actual.helps and mounts is not None
     assert mounts.mounts == ("along", "across") and mounts.factor == 2.0
     assert "First move the resonance at 411 rpm" in said("exudyn-slider-crank")
     assert mounts.away == mounts.avoid[0] < mounts.near < mounts.speed
     assert "or run below" in said("exudyn-slider-crank")
-    mode = Linear.of(found.original).modes[0]
+    mode = Linear.of(actual.original).modes[0]
     for speed, order in ((mounts.avoid[0], 0), (mounts.avoid[1], 2)):
         ratio = speed / mode.natural_frequency
         moved = 1 / abs(1 - ratio**2 + 2j * mode.damping_ratio * ratio)
@@ -457,7 +457,7 @@ def test_a_piston_is_that_of_a_crank() -> None:
 
 
 @pytest.mark.parametrize("name", ["slider-crank-engine", "brush-cutter-engine"])
-def test_engines_are_told_their_shaking_force_beside_the_torque(name: str) -> None:
+def test_engines_get_their_shaking_force_beside_the_torque(name: str) -> None:
     piston = beyond(name).piston
     assert piston is not None and piston.is_half
     force = force_of(advice_for(name).original)
@@ -483,28 +483,28 @@ def left_with(force: np.ndarray, square: float, forward: float, backward: float)
 @pytest.mark.parametrize("name", ["balance-shafts", "four-stroke-engine"])
 def test_balance_shafts_are_for_the_machine_that_is_advised(name: str) -> None:
     """With the counterweight where one is offered: for the machine as it is they over-balance."""
-    found, shafts = advice_for(name), beyond(name).shafts
+    actual, shafts = advice_for(name), beyond(name).shafts
     assert shafts is not None
-    machine = found.machine if found.helps else found.original
+    machine = actual.machine if actual.helps else actual.original
     square = machine.drive.speed**2
     left = left_with(force_of(machine), square, shafts.forward, shafts.backward)
     assert 1 - left == pytest.approx(shafts.gain, abs=2e-3)
-    assert ("With that change" in said(name)) == found.helps
-    if found.helps:
-        (change,) = found.changes
+    assert ("With that change" in said(name)) == actual.helps
+    if actual.helps:
+        (change,) = actual.changes
         turned = np.exp(-1j * np.radians(np.arange(0, 360, 0.5)))
-        without = np.mean(force_of(found.original) * turned)
+        without = np.mean(force_of(actual.original) * turned)
         moment = change.values["moment"] / (np.abs(without) / square)
         assert shafts.forward == pytest.approx(abs(without) / square * (1 - moment), rel=0.02)
 
 
 def test_no_shafts_are_named_where_the_counterweight_leaves_too_little_for_them() -> None:
     """A yoke shakes with 9.6 times its weight as it is, with 5.7 times beside the counterweight."""
-    found, machine = advice_for("scotch-yoke"), advice_for("scotch-yoke").original
-    analyses = [eq.analyze(one, acceleration=0.0) for one in (machine, found.machine)]
-    before, after = (one.summary["shaking_force"].peak / (machine.mass * 9.80665)
-                     for one in analyses)  # fmt: skip
-    assert found.helps and after < WORTH_SHAFTS < before
+    actual, machine = advice_for("scotch-yoke"), advice_for("scotch-yoke").original
+    analyses = [eq.analyze(item, acceleration=0.0) for item in (machine, actual.machine)]
+    before, after = (analysis.summary["shaking_force"].peak / (machine.mass * 9.80665)
+                     for analysis in analyses)  # fmt: skip
+    assert actual.helps and after < WORTH_SHAFTS < before
     assert balance_shafts_for(analyses[0], assess(analyses[0])) is not None
     assert beyond("scotch-yoke").shafts is None and "With that change" not in said("scotch-yoke")
 
@@ -522,8 +522,10 @@ def test_a_weight_on_a_slow_crank_takes_the_torque_of_order_1() -> None:
     link = machine.links["crank"].with_added(1500.0, (place.real, place.imag), 0.0)
     changed = machine.with_link("crank", mass=link.mass, center_of_mass=link.center_of_mass,
                                 inertia=link.inertia)  # fmt: skip
-    swings = [np.sqrt(one.summary["drive_torque"].rms ** 2 - one.summary["drive_torque"].mean ** 2)
-              for one in map(eq.analyze, (machine, changed))]  # fmt: skip
+    swings = [
+        np.sqrt(item.summary["drive_torque"].rms ** 2 - item.summary["drive_torque"].mean ** 2)
+        for item in map(eq.analyze, (machine, changed))
+    ]
     assert 1 - swings[1] / swings[0] == pytest.approx(weight.gain, abs=1e-6)
     advice = advise(machine.with_drive(speed=60 * RPM)).advice
     assert advice is not None and advice.beyond.counterbalance is None
@@ -536,21 +538,21 @@ def test_a_weight_on_a_slow_crank_takes_the_torque_of_order_1() -> None:
 @pytest.mark.exhaustive
 def test_a_poor_transmission_angle_names_joint_force_and_length() -> None:
     """Of the walking beam, though a counterweight helps it otherwise."""
-    found, poor = advice_for("walking-beam"), beyond("walking-beam").transmission
-    assert found.helps and poor is not None and poor.between is not None
-    analysis = eq.analyze(found.machine)
+    actual, poor = advice_for("walking-beam"), beyond("walking-beam").transmission
+    assert actual.helps and poor is not None and poor.between is not None
+    analysis = eq.analyze(actual.machine)
     assert poor.joint == "F"
     assert poor.transmission == analysis.outputs["transmission.F"].figures.min
     assert poor.force == analysis.summary["joints.F"].peak
-    told = said("walking-beam")
-    assert "Transmission angle at F: 28.7° at crank angle 212.5° (usual: 40°)." in told
-    assert told.count("Transmission angle at F: ") == 1
-    short = " ".join(one.text for one in found.headline(alone=True) if isinstance(one, Text)
-                     and not one.is_detail)  # fmt: skip
+    reported = said("walking-beam")
+    assert "Transmission angle at F: 28.7° at crank angle 212.5° (usual: 40°)." in reported
+    assert reported.count("Transmission angle at F: ") == 1
+    short = " ".join(item.text for item in actual.headline(alone=True) if isinstance(item, Text)
+                     and not item.is_detail)  # fmt: skip
     assert "Transmission angle at F: 28.7°" in short
-    first, second = (complex(*found.machine.links[poor.link].points[at]) for at in poor.between)
+    first, second = (complex(*actual.machine.links[poor.link].points[at]) for at in poor.between)
     place = first + (1 + poor.share) * (second - first)
-    changed = found.machine.with_point(poor.link, poor.between[1], (place.real, place.imag))
+    changed = actual.machine.with_point(poor.link, poor.between[1], (place.real, place.imag))
     angles = eq.analyze(changed, 720).outputs["transmission.F"].values
     worst = float(np.min(np.minimum(angles, pi - angles)))
     assert worst == pytest.approx(poor.mended, abs=2e-3) and worst > poor.transmission
@@ -585,7 +587,7 @@ def test_arms_that_hang_on_one_side_are_named_where_they_load_a_joint() -> None:
     before = eq.analyze(machine, 720, acceleration=0.0).summary["joints.B"].peak
     for name in arms.links:
         link = machine.links[name]
-        opposite = tuple(-one for one in link.center_of_mass)
+        opposite = tuple(-item for item in link.center_of_mass)
         twice = link.with_added(link.mass, opposite, 0.0)  # as heavy, with its mass on the pin
         about = link.inertia * twice.mass / link.mass
         machine = machine.with_link(name, mass=link.mass, center_of_mass=twice.center_of_mass,
@@ -595,7 +597,7 @@ def test_arms_that_hang_on_one_side_are_named_where_they_load_a_joint() -> None:
     assert "With the centre of mass of arm 1, arm 2 on C, E" in said("rotary-transplanter")
 
 
-def test_a_machine_without_such_arms_is_not_told_of_any() -> None:
+def test_a_machine_without_such_arms_is_not_warned_of_any() -> None:
     for name in ("hydraulic-loader", "yamashita-1", "planetary-planting-arm"):
         assert beyond(name).arms is None
 

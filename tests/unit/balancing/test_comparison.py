@@ -12,5 +12,5 @@ def test_of_figures_that_grew_alike_the_first_stands_for_its_output(more: float)
     """Peak and peak to peak of a signal that reaches as far up as down."""
     before = {"drive_torque.peak": 2.0, "drive_torque.peak to peak": 4.0}
     after = {"drive_torque.peak": 2.2, "drive_torque.peak to peak": 4.4 * more}
-    (found,) = worse_of(before, after, {})
-    assert found.objective.measure == "peak"
+    (actual,) = worse_of(before, after, {})
+    assert actual.objective.measure == "peak"

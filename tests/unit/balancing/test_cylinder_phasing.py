@@ -43,16 +43,16 @@ def in_time(machine: eq.Machine, output: str, about: complex) -> Array:
     total: Array = np.zeros(720)
     for row in machine.rows:
         angles = np.arange(720) * np.pi / 360 + row.phase
-        found = eq.forces(eq.move(machine, angles), about - complex(*row.offset))
+        forces = eq.forces(eq.move(machine, angles), about - complex(*row.offset))
         signals = {
-            "shaking_force.x": found.shaking_force.x,
-            "shaking_force.y": found.shaking_force.y,
-            "shaking_moment": found.shaking_moment,
-            "frame_force.y": found.frame_force.y,
-            "frame_moment": found.frame_moment,
-            "drive_torque": found.drive_torque,
-            "roll_moment": -row.lateral * found.shaking_force.y,
-            "yaw_moment": row.lateral * found.shaking_force.x,
+            "shaking_force.x": forces.shaking_force.x,
+            "shaking_force.y": forces.shaking_force.y,
+            "shaking_moment": forces.shaking_moment,
+            "frame_force.y": forces.frame_force.y,
+            "frame_moment": forces.frame_moment,
+            "drive_torque": forces.drive_torque,
+            "roll_moment": -row.lateral * forces.shaking_force.y,
+            "yaw_moment": row.lateral * forces.shaking_force.x,
         }
         total = total + signals[output]
     return total
@@ -93,12 +93,16 @@ def test_a_counterweight_against_rows_that_cancel_already() -> None:
 
 
 def test_roll_is_balanced_by_what_is_free() -> None:
-    found = eq.balance(MACHINE, Balance(masses=(COUNTER,), objectives=(Objective("roll_moment"),)))
-    before, after = found.objectives["rms of roll_moment"]
+    balanced = eq.balance(
+        MACHINE, Balance(masses=(COUNTER,), objectives=(Objective("roll_moment"),))
+    )
+    before, after = balanced.objectives["rms of roll_moment"]
     assert before == pytest.approx(np.sqrt(np.mean(in_time(MACHINE, "roll_moment", 0j) ** 2)))
-    assert after == pytest.approx(np.sqrt(np.mean(in_time(found.machine, "roll_moment", 0j) ** 2)))
+    assert after == pytest.approx(
+        np.sqrt(np.mean(in_time(balanced.machine, "roll_moment", 0j) ** 2))
+    )
     assert after < 0.7 * before
-    assert any("masses are those of one row" in str(note) for note in found.notes)
+    assert any("masses are those of one row" in str(note) for note in balanced.notes)
 
 
 TRANSPLANTER = eq.load("four-row-transplanter")
@@ -118,61 +122,61 @@ def rows_value(machine: eq.Machine) -> float:
 
 
 def test_phases_alone() -> None:
-    found = eq.balance(TRANSPLANTER, Balance(phases=COARSE, objectives=(LIFT,)))
+    balanced = eq.balance(TRANSPLANTER, Balance(phases=COARSE, objectives=(LIFT,)))
     phasing = choose_phases(TRANSPLANTER, (LIFT,), COARSE)
-    before, after = found.objectives[LIFT.name]
+    before, after = balanced.objectives[LIFT.name]
     assert before == pytest.approx(rows_value(TRANSPLANTER))
-    assert after == pytest.approx(rows_value(found.machine), rel=1e-6)
-    assert found.phasing is not None
-    assert found.phasing.phases == phasing.phases
-    (change,) = found.changes
+    assert after == pytest.approx(rows_value(balanced.machine), rel=1e-6)
+    assert balanced.phasing is not None
+    assert balanced.phasing.phases == phasing.phases
+    (change,) = balanced.changes
     assert (change.kind, change.link) == ("phases", "rows")
-    assert change.values["phases"] == tuple(row.phase for row in found.machine.rows)
-    assert found.cost == pytest.approx(after / before)
-    assert found.bound == phasing.bound
-    assert 0 <= found.gap <= CLOSE
-    assert found.proved
-    assert str(found.method) == "branch and bound over all phases of the rows"
-    assert found.machine.links == TRANSPLANTER.links
-    told = json.loads(json.dumps(found.to_dict(), default=np.ndarray.tolist))
-    assert told["rows"]["phases"] == list(phasing.phases)
+    assert change.values["phases"] == tuple(row.phase for row in balanced.machine.rows)
+    assert balanced.cost == pytest.approx(after / before)
+    assert balanced.bound == phasing.bound
+    assert 0 <= balanced.gap <= CLOSE
+    assert balanced.proved
+    assert str(balanced.method) == "branch and bound over all phases of the rows"
+    assert balanced.machine.links == TRANSPLANTER.links
+    content = json.loads(json.dumps(balanced.to_dict(), default=np.ndarray.tolist))
+    assert content["rows"]["phases"] == list(phasing.phases)
 
 
 def test_linkage_and_phases_together() -> None:
     """The cost counts from the machine as it was, not from the balanced linkage."""
     plan = Balance(masses=(CRANK,), phases=COARSE, objectives=(LIFT,))
-    found = eq.balance(TRANSPLANTER, plan)
+    balanced = eq.balance(TRANSPLANTER, plan)
     linkage = eq.balance(TRANSPLANTER, replace(plan, phases=None))
-    before, after = found.objectives[LIFT.name]
+    before, after = balanced.objectives[LIFT.name]
     assert before == pytest.approx(rows_value(TRANSPLANTER))
-    assert after == pytest.approx(rows_value(found.machine), rel=1e-6)
-    assert found.cost == pytest.approx(after / before)
-    assert [change.kind for change in found.changes] == ["added mass", "phases"]
+    assert after == pytest.approx(rows_value(balanced.machine), rel=1e-6)
+    assert balanced.cost == pytest.approx(after / before)
+    assert [change.kind for change in balanced.changes] == ["added mass", "phases"]
     after_it = choose_phases(linkage.machine, (LIFT,), COARSE).after[LIFT.name]
     assert after <= after_it * (1 + 1e-9)
-    assert set(found.prices) == set(linkage.prices)
-    assert found.gap <= 1e-3 * (1 + 1e-6)
-    assert "all phases of the rows and all masses" in str(found.method)
+    assert set(balanced.prices) == set(linkage.prices)
+    assert balanced.gap <= 1e-3 * (1 + 1e-6)
+    assert "all phases of the rows and all masses" in str(balanced.method)
 
 
 def test_two_objectives_as_squares() -> None:
     both = (LIFT, Objective("shaking_force.x", weight=0.5))
-    found = eq.balance(
+    balanced = eq.balance(
         TRANSPLANTER,
         Balance(masses=(CRANK,), phases=COARSE, objectives=both, combine="squares"),
     )
-    shares = [after / before for before, after in found.objectives.values()]
-    assert found.cost == pytest.approx(np.sqrt(shares[0] ** 2 + 0.5 * shares[1] ** 2))
+    shares = [after / before for before, after in balanced.objectives.values()]
+    assert balanced.cost == pytest.approx(np.sqrt(shares[0] ** 2 + 0.5 * shares[1] ** 2))
 
 
 def test_roll_counts_for_the_linkage_too() -> None:
     both = (LIFT, Objective("roll_moment"))
-    found = eq.balance(TRANSPLANTER, Balance(masses=(CRANK,), phases=COARSE, objectives=both))
+    balanced = eq.balance(TRANSPLANTER, Balance(masses=(CRANK,), phases=COARSE, objectives=both))
     alone = choose_phases(TRANSPLANTER, both, COARSE)
-    assert set(found.objectives) == {one.name for one in both}
-    assert found.objectives["rms of roll_moment"][0] == 0.0
-    assert found.cost <= alone.combined[1] * (1 + 1e-9)
-    assert found.bound <= found.cost
+    assert set(balanced.objectives) == {item.name for item in both}
+    assert balanced.objectives["rms of roll_moment"][0] == 0.0
+    assert balanced.cost <= alone.combined[1] * (1 + 1e-9)
+    assert balanced.bound <= balanced.cost
 
 
 @pytest.mark.parametrize(
@@ -198,9 +202,9 @@ def test_what_is_refused(limit: Limit, expected: dict[str, Any]) -> None:
 def test_torque_of_each_of_several_drives() -> None:
     rows = (Row(0.0, 0.0), Row(np.pi / 2, 0.0))
     machine = replace(eq.load("pick-and-place"), rows=rows)
-    found = PhasedRows(machine).signals(Objective("drives.right crank.torque"))
+    result = PhasedRows(machine).signals(Objective("drives.right crank.torque"))
     own = eq.analyze(machine, 720).forces.drives["right crank"]
-    first, second = (row[0, 1:4] for row in found.amplitudes[0])
+    first, second = (row[0, 1:4] for row in result.amplitudes[0])
     np.testing.assert_allclose(second, first, rtol=1e-12)  # phases come with the plan
     np.testing.assert_allclose(abs(first), abs(Periodic.of(own, 1).amplitudes[1:4]), rtol=1e-4)
 

@@ -148,8 +148,8 @@ def plan_of(choice: SpringChoice, objective: Objective = RIPPLE) -> Balance:
 def test_no_other_spring_is_better(measure: str) -> None:
     """The ripple to 1e-6 of the value before; the peak has a kink there, which costs digits."""
     objective = Objective("drive_torque", measure)  # type: ignore[arg-type]
-    found = eq.balance(MACHINE, plan_of(FREE, objective))
-    before, after = found.objectives[objective.name]
+    balanced = eq.balance(MACHINE, plan_of(FREE, objective))
+    before, after = balanced.objectives[objective.name]
 
     def cost(at: np.ndarray) -> float:
         stiffness, length = np.clip(at[0], 1e-9, 200.0), max(at[1], 0.0)
@@ -164,27 +164,27 @@ def test_no_other_spring_is_better(measure: str) -> None:
 
 
 def test_the_result_is_a_machine_with_that_spring() -> None:
-    found = eq.balance(MACHINE, plan_of(FREE))
-    (spring,) = found.machine.springs
-    (change,) = found.changes
+    balanced = eq.balance(MACHINE, plan_of(FREE))
+    (spring,) = balanced.machine.springs
+    (change,) = balanced.changes
     assert (spring.link, spring.point, spring.to) == ("rocker", "C", "A")
     assert change.values["stiffness"] == spring.stiffness
     assert change.values["free_length"] == spring.free_length
     assert (change.kind, change.link) == ("spring", "rocker")
-    told = found.objectives[RIPPLE.name][1]
+    reported = balanced.objectives[RIPPLE.name][1]
     torque = torque_with(spring.stiffness, spring.free_length)
-    assert measured(torque, "ripple") == pytest.approx(told, rel=1e-12)
-    assert found.gap < 1e-8
-    assert found.cost * found.objectives[RIPPLE.name][0] == pytest.approx(told, rel=1e-12)
+    assert measured(torque, "ripple") == pytest.approx(reported, rel=1e-12)
+    assert balanced.gap < 1e-8
+    assert balanced.cost * balanced.objectives[RIPPLE.name][0] == pytest.approx(reported, rel=1e-12)
 
 
 def test_limits_of_stiffness_and_length_are_kept() -> None:
     """Both stand in the way: the best of all has 14.1 N/m and 1.35 m."""
     loose = eq.balance(MACHINE, plan_of(FREE))
-    found = eq.balance(MACHINE, plan_of(SpringChoice("rocker", "C", "A", 7.0, (0.9, 1.2))))
-    (spring,) = found.machine.springs
+    balanced = eq.balance(MACHINE, plan_of(SpringChoice("rocker", "C", "A", 7.0, (0.9, 1.2))))
+    (spring,) = balanced.machine.springs
     assert (spring.stiffness, spring.free_length) == pytest.approx((7.0, 1.2), rel=1e-6)
-    assert loose.cost < found.cost < 1
+    assert loose.cost < balanced.cost < 1
 
 
 def test_price_of_stiffness() -> None:
@@ -198,10 +198,10 @@ def test_price_of_stiffness() -> None:
 
 def test_a_spring_that_only_harms_is_left_out() -> None:
     """The rocker swings about a place where it wants a spring of 1.35 m."""
-    found = eq.balance(MACHINE, plan_of(SpringChoice("rocker", "C", "A", 200.0, (0.2, 0.5))))
-    assert found.machine.springs == ()
-    assert found.cost == pytest.approx(1.0, abs=1e-9)
-    (change,) = found.changes
+    balanced = eq.balance(MACHINE, plan_of(SpringChoice("rocker", "C", "A", 200.0, (0.2, 0.5))))
+    assert balanced.machine.springs == ()
+    assert balanced.cost == pytest.approx(1.0, abs=1e-9)
+    (change,) = balanced.changes
     assert change.values["stiffness"] == 0.0
 
 
@@ -227,10 +227,10 @@ def test_a_spring_that_is_wanted_all_but_constant() -> None:
     machine = make("crossed_guides", 37).machine
     wish = Objective("joints.standing on frame", "peak")
     choice = SpringChoice("standing", "G", "D", 1000.0)
-    found = eq.balance(machine, plan_of(choice, wish))
-    spring = found.machine.springs[-1]  # another is there already
+    balanced = eq.balance(machine, plan_of(choice, wish))
+    spring = balanced.machine.springs[-1]  # another is there already
     size = max(abs(complex(*p)) for link in machine.links.values() for p in link.points.values())
     assert 1.5 * size < spring.free_length
-    assert any("has reached the default limit" in str(note) for note in found.notes)
-    assert found.gap < 1e-8
-    assert found.cost < 0.9
+    assert any("has reached the default limit" in str(note) for note in balanced.notes)
+    assert balanced.gap < 1e-8
+    assert balanced.cost < 0.9

@@ -62,7 +62,7 @@ def subject(kind: str, seed: int) -> Problem:
     """Masses and a centre free on every link, and a spring; no flank matters."""
     machine = make(kind, seed).machine
     gears, racks = (
-        tuple(replace(one, pressure_angle=0.0) for one in table)
+        tuple(replace(item, pressure_angle=0.0) for item in table)
         for table in (machine.gears, machine.racks)
     )
     belts = tuple(replace(belt, tension=belt.tension or 10.0) for belt in machine.belts)
@@ -88,13 +88,13 @@ def subject(kind: str, seed: int) -> Problem:
 
 def some_numbers(problem: Problem, seed: int) -> list[np.ndarray]:
     """Every number anywhere that a body can have."""
-    rng, found = np.random.default_rng(seed), []
+    rng, actual = np.random.default_rng(seed), []
     for part in problem.parts:
         numbers = rng.uniform(0.1, 0.4, part.count)
         if part.count == 4:
             numbers[3] += numbers[1] ** 2 / numbers[0] + numbers[2] ** 2 / numbers[0]
-        found.append(part.project_feasible(numbers, np.ones(part.count, bool)))
-    return found
+        actual.append(part.project_feasible(numbers, np.ones(part.count, bool)))
+    return actual
 
 
 @pytest.mark.parametrize("seed", [3, 8])
@@ -120,9 +120,9 @@ def test_every_output_is_that_of_the_changed_machine(kind: str, seed: int) -> No
         ("frame_moment", about): there.frame_moment,
         ("drive_torque", None): forces.drive_torque,
         **{
-            (f"{of}.{name}", None): one.value
+            (f"{of}.{name}", None): value.value
             for of in ("joints", "gears", "racks")
-            for name, one in getattr(forces, of).items()
+            for name, value in getattr(forces, of).items()
         },
         **{
             (f"belts.{name}.{part}", None): getattr(belt, part)
@@ -142,10 +142,10 @@ def test_moment_of_weight(kind: str) -> None:
     problem = subject(kind, 2)
     numbers = some_numbers(problem, 2)
     changed = eq.forces(eq.move(problem.machine_with(numbers), ANGLES, acceleration=0.0))
-    found = problem.effects.weight_moment(changed.about).on_grid.at(np.concatenate(numbers))
+    values = problem.effects.weight_moment(changed.about).on_grid.at(np.concatenate(numbers))
     scale = np.max(np.abs(changed.weight_moment))
     assert scale > 0
-    assert np.max(np.abs(found - changed.weight_moment)) < EXACT * scale
+    assert np.max(np.abs(values - changed.weight_moment)) < EXACT * scale
 
 
 def test_springs_that_are_there_already_load_the_frame() -> None:
@@ -154,8 +154,8 @@ def test_springs_that_are_there_already_load_the_frame() -> None:
     forces = eq.forces(eq.move(machine, ANGLES, acceleration=0.0))
     for about in (None, *machine.frame):
         wanted = eq.analyze(machine, ANGLES, acceleration=0.0, about=about).forces.frame_moment
-        found = Effects(machine, ()).signal("frame_moment", about).start
-        assert np.max(np.abs(found - wanted)) < EXACT * np.max(np.abs(wanted))
+        start = Effects(machine, ()).signal("frame_moment", about).start
+        assert np.max(np.abs(start - wanted)) < EXACT * np.max(np.abs(wanted))
     assert np.max(np.abs(forces.springs["rocker"][1])) > 0
 
 
@@ -164,9 +164,11 @@ def test_another_speed() -> None:
     problem = subject("crank_rocker", 1)
     twice = problem.effects.at(2 * problem.machine.drive.speed)
     for output in ("shaking_force", "shaking_moment"):
-        one, other = problem.effects.signal(output), twice.signal(output)
-        assert np.allclose(other.start, 4 * one.start, rtol=0, atol=EXACT * np.max(abs(one.start)))
-        assert np.allclose(other.columns, 4 * one.columns)
+        first, other = problem.effects.signal(output), twice.signal(output)
+        assert np.allclose(
+            other.start, 4 * first.start, rtol=0, atol=EXACT * np.max(abs(first.start))
+        )
+        assert np.allclose(other.columns, 4 * first.columns)
     weight = problem.effects.signal("frame_force").columns
     weight = weight - problem.effects.signal("shaking_force").columns
     again = twice.signal("frame_force").columns - twice.signal("shaking_force").columns
@@ -252,8 +254,8 @@ def test_numbers_near_a_machine(machine: eq.Machine) -> None:
         for sign in (1, -1):
             moved = x.copy()
             moved[k] += sign * step
-            one = problem.machine_with(np.split(moved, [4, 8]))
-            there.append(signals_of(Effects(one, ()), wish, LinearizationPoint(one))[0].start)
+            first = problem.machine_with(np.split(moved, [4, 8]))
+            there.append(signals_of(Effects(first, ()), wish, LinearizationPoint(first))[0].start)
         slope = (there[0] - there[1]) / (2 * step)
         scale = np.max(np.abs(slope)) + 1e-4 * np.max(np.abs(wanted.start))
         assert np.max(np.abs(signal.columns[k] - slope)) < 1e-6 * scale
@@ -275,8 +277,8 @@ def test_mass_and_stiffness_by_numbers_are_differences(machine: eq.Machine) -> N
         scale = np.max(np.abs(pair[0].mass))
         assert mass[k] == pytest.approx((pair[0].mass - pair[1].mass) / 0.2, abs=1e-9 * scale)
         scale = np.max(np.abs(pair[0].stiffness))
-        found = (pair[0].stiffness - pair[1].stiffness) / 0.2
-        assert stiffness[k] == pytest.approx(found, abs=1e-9 * scale)
+        actual = (pair[0].stiffness - pair[1].stiffness) / 0.2
+        assert stiffness[k] == pytest.approx(actual, abs=1e-9 * scale)
 
 
 def test_a_center_that_moves_leaves_what_cannot_turn_as_heavy() -> None:
@@ -315,13 +317,13 @@ def blind(machine: eq.Machine, objective: Objective, room: float, most: float) -
 )
 def test_nothing_better_is_found_on_the_rig(objective: Objective) -> None:
     """By 1e-7 of the value before; and polishing comes as near as a kink lets it."""
-    found = eq.balance(RIG, Balance(masses=(POINT,), objectives=(objective,)))
-    before, after = found.objectives[objective.name]
+    balanced = eq.balance(RIG, Balance(masses=(POINT,), objectives=(objective,)))
+    before, after = balanced.objectives[objective.name]
     best = blind(RIG, objective, 0.07, 0.8)
     assert after < best + 1e-7 * before
     assert after == pytest.approx(best, abs=3e-3 * before)
     within = EXACT if objective is RIPPLE else BETWEEN
-    assert after == pytest.approx(read(found.machine, "gauge", objective.measure), rel=within)
+    assert after == pytest.approx(read(balanced.machine, "gauge", objective.measure), rel=within)
 
 
 def test_the_loudest_of_several_speeds_counts() -> None:
@@ -331,11 +333,11 @@ def test_the_loudest_of_several_speeds_counts() -> None:
     assert Problem.value_of(RIG, several) == pytest.approx(max(each), rel=1e-12)
     wanted = [read(RIG.with_drive(speed=speed), "gauge", "ripple") for speed in speeds]
     assert each == pytest.approx(wanted, rel=EXACT)
-    found = eq.balance(RIG, Balance(masses=(POINT,), objectives=(several,)))
+    balanced = eq.balance(RIG, Balance(masses=(POINT,), objectives=(several,)))
     for speed in speeds:
         alone = replace(RIPPLE, speeds=(speed,))
-        one = eq.balance(RIG, Balance(masses=(POINT,), objectives=(alone,)))
-        assert one.objectives[alone.name][1] <= found.objectives[several.name][1] * (1 + 1e-6)
+        first = eq.balance(RIG, Balance(masses=(POINT,), objectives=(alone,)))
+        assert first.objectives[alone.name][1] <= balanced.objectives[several.name][1] * (1 + 1e-6)
 
 
 @EXHAUSTIVE
@@ -344,11 +346,11 @@ def test_a_disc_stays_a_disc(shares: tuple[float, ...], monkeypatch: pytest.Monk
     """Whatever steps led there: its inertia is that of its own mass and size."""
     monkeypatch.setattr("equipoise.balancing.solution.SHARES", shares)
     plan = Balance(masses=(DISC, POINT), objectives=(WIDTH,))
-    found = eq.balance(RIG, plan)
+    balanced = eq.balance(RIG, plan)
     for link, center in (("rocker", "D"), ("crank", "A")):
-        change = next(change for change in found.changes if change.link == link)
+        change = next(change for change in balanced.changes if change.link == link)
         pieces = change.values["pieces"]
-        old, new = RIG.links[link], found.machine.links[link]
+        old, new = RIG.links[link], balanced.machine.links[link]
         about = [
             body.inertia + body.mass * np.sum(np.square(body.center_of_mass)) for body in (old, new)
         ]
@@ -366,10 +368,10 @@ def test_a_disc_stays_a_disc(shares: tuple[float, ...], monkeypatch: pytest.Monk
 def test_shafts_for_a_gauge() -> None:
     """A first-order pair on the rig: their masses make it heavier, and it is still read right."""
     shafts = BalanceShafts(1, ((0.0, -0.1), (0.1, -0.1)), Weight(radius=0.05, at_most=0.5))
-    found = eq.balance(RIG, Balance(shafts=(shafts,), objectives=(RIPPLE,)))
-    before, after = found.objectives[RIPPLE.name]
+    balanced = eq.balance(RIG, Balance(shafts=(shafts,), objectives=(RIPPLE,)))
+    before, after = balanced.objectives[RIPPLE.name]
     assert after < 0.1 * before
-    assert after == pytest.approx(read(found.machine, "gauge", "ripple"), rel=EXACT)
+    assert after == pytest.approx(read(balanced.machine, "gauge", "ripple"), rel=EXACT)
 
 
 def test_gauges_need_a_support() -> None:
@@ -401,8 +403,8 @@ def solved(signal: Signal, measure: Statistic) -> tuple[float, np.ndarray]:
     numbers, term = program.numbers(len(signal.columns)), program.numbers(1)
     bound_measure(program, numbers, signal, measure, Affine.of(term, 1.0))
     program.cost = {int(term[0]): 1.0}
-    found = program.solve()
-    return found.value, found.x[numbers]
+    solution = program.solve()
+    return solution.value, solution.x[numbers]
 
 
 KINDS = [
@@ -435,8 +437,12 @@ def test_a_limit_is_kept_and_has_its_price(measure: Statistic, is_vector: bool) 
         bound = Affine.fixed(limit)
         bound_measure(program, numbers, signal, measure, bound, "it")
         program.cost = {int(numbers[0]): -1.0}
-        found = program.solve()
-        return found.value, found.prices["it"], measured(signal.at(found.x[numbers]), measure)
+        solution = program.solve()
+        return (
+            solution.value,
+            solution.prices["it"],
+            measured(signal.at(solution.x[numbers]), measure),
+        )
 
     limit, step = 1.5 * least, 1e-4 * least
     _, price, used = at(limit)

@@ -55,13 +55,13 @@ def each(geared: GearedWeight, ratios: Sequence[float]) -> list[GearedWeight]:
 
 def by_brute_force() -> dict[tuple[int, int, float], float]:
     """Cost of every pair of teeth, each with every ratio: one plan with given gears each."""
-    found = {}
+    actual = {}
     for a, b in product(range(17, 20), repeat=2):
         pitch = {"pitch_radius": 0.01 * a, "ratio": (a / b, a / b)}
         first = replace(ROCKER, **pitch)
         for ratio, second in zip(FRACTIONS, each(CRANK, FRACTIONS), strict=True):
-            found[a, b, ratio] = cost(first, second)
-    return found
+            actual[a, b, ratio] = cost(first, second)
+    return actual
 
 
 def test_two_shafts_with_choices_each(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -69,14 +69,14 @@ def test_two_shafts_with_choices_each(monkeypatch: pytest.MonkeyPatch) -> None:
     brute = by_brute_force()
     least = min(brute.values())
     assert max(brute.values()) > 1.01 * least  # the gears count
-    found = eq.balance(MACHINE, plan(TOOTHED, CRANK))
-    assert found.cost == pytest.approx(least, rel=1e-6)
-    assert found.bound == pytest.approx(found.cost, rel=1e-6)
-    assert str(found.method).endswith("for each of 45 choices of gears")
-    gears = [change.values for change in found.changes if change.kind == "gears"]
-    assert [one["driver"] for one in gears] == ["rocker", "crank"]
+    balanced = eq.balance(MACHINE, plan(TOOTHED, CRANK))
+    assert balanced.cost == pytest.approx(least, rel=1e-6)
+    assert balanced.bound == pytest.approx(balanced.cost, rel=1e-6)
+    assert str(balanced.method).endswith("for each of 45 choices of gears")
+    gears = [change.values for change in balanced.changes if change.kind == "gears"]
+    assert [gear["driver"] for gear in gears] == ["rocker", "crank"]
     (a, b), ratio = gears[0]["teeth"], gears[1]["ratio"]
-    key = min(brute, key=lambda one: abs(one[2] - ratio) + abs(one[0] - a) + abs(one[1] - b))
+    key = min(brute, key=lambda item: abs(item[2] - ratio) + abs(item[0] - a) + abs(item[1] - b))
     assert brute[key] == pytest.approx(least, rel=1e-6)
     monkeypatch.setattr(gear_search, "MOST_CHOICES", 9)
     fewer = eq.balance(MACHINE, plan(TOOTHED, CRANK))
@@ -102,14 +102,14 @@ def test_two_shafts_with_ranges(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(gear_search, "MOST_ROUNDS", 1)
     first = replace(ROCKER, ratio=(0.8, 1.6))
     second = replace(CRANK, ratio=(2.0, 2.0), direction=(radians(30), radians(150)))
-    found = cost(first, second)
+    result = cost(first, second)
     ratios = [0.8 + 0.1 * k for k in range(9)]
     ways = [radians(30 + 20 * k) for k in range(7)]
     grid = [
-        cost(one, replace(second, direction=(way, way)))
-        for one, way in product(each(first, ratios), ways)
+        cost(item, replace(second, direction=(way, way)))
+        for item, way in product(each(first, ratios), ways)
     ]
-    assert found <= min(grid) * (1 + 1e-6)
+    assert result <= min(grid) * (1 + 1e-6)
 
 
 # On every change: `test_two_shafts_with_choices_each`.
@@ -121,16 +121,16 @@ def test_the_example_with_two_ranges_against_a_fine_grid() -> None:
     machine = eq.load("balance-geared-two")
     assert machine.balance is not None
     first, second = machine.balance.geared
-    found = eq.balance(machine)
-    ratio, other = (one.values["ratio"] for one in found.changes if one.kind == "gears")
+    balanced = eq.balance(machine)
+    ratio, other = (change.values["ratio"] for change in balanced.changes if change.kind == "gears")
     ratios = [0.2 + 0.1 * k for k in range(29)] + [ratio + 0.005 * k for k in range(-4, 5)]
     grid = {
-        (one.ratio, two.ratio): eq.balance(machine, replace(machine.balance, geared=(one, two)))
-        for one, two in product(each(first, ratios), each(second, FRACTIONS))
+        (item.ratio, two.ratio): eq.balance(machine, replace(machine.balance, geared=(item, two)))
+        for item, two in product(each(first, ratios), each(second, FRACTIONS))
     }
-    least = min(one.cost for one in grid.values())
-    assert found.cost <= least * (1 + 1e-6)
-    assert grid[(ratio, ratio), (other, other)].cost == pytest.approx(found.cost, rel=1e-6)
+    least = min(value.cost for value in grid.values())
+    assert balanced.cost <= least * (1 + 1e-6)
+    assert grid[(ratio, ratio), (other, other)].cost == pytest.approx(balanced.cost, rel=1e-6)
 
 
 # Proofs and limits of gears: the other tests of this file.

@@ -34,31 +34,31 @@ def gearing(geared: GearedWeight, **changes: object) -> Gearing:
 
 
 def test_radii_and_place_on_the_line_of_pivots() -> None:
-    found = gearing(ROCKER)
-    mesh = found.mesh(2.0, found.direction)
+    result = gearing(ROCKER)
+    mesh = result.mesh(2.0, result.direction)
     assert (mesh.driver, mesh.shaft, mesh.ratio) == pytest.approx((0.3, 0.15, 2.0))
-    assert found.axis(mesh) == pytest.approx(1.45 + 0j)
+    assert result.axis(mesh) == pytest.approx(1.45 + 0j)
 
 
 def test_place_in_a_direction() -> None:
-    found = gearing(ROCKER, direction=(pi / 2, pi / 2))
-    (way,) = {mesh.direction for mesh in found.meshes()}
-    assert found.axis(found.mesh(1.0, way)) == pytest.approx(1 + 0.6j)
+    result = gearing(ROCKER, direction=(pi / 2, pi / 2))
+    (way,) = {mesh.direction for mesh in result.meshes()}
+    assert result.axis(result.mesh(1.0, way)) == pytest.approx(1 + 0.6j)
 
 
 def test_radii_follow_from_a_given_place() -> None:
-    found = gearing(ROCKER, pitch_radius=None, axis=(1.3, 0.4))
-    mesh = found.mesh(1.5, found.direction)
+    result = gearing(ROCKER, pitch_radius=None, axis=(1.3, 0.4))
+    mesh = result.mesh(1.5, result.direction)
     assert (mesh.driver, mesh.shaft) == pytest.approx((0.3, 0.2))
-    assert found.axis(mesh) == pytest.approx(1.3 + 0.4j)
+    assert result.axis(mesh) == pytest.approx(1.3 + 0.4j)
     assert mesh.direction == pytest.approx(np.angle(0.3 + 0.4j))
 
 
 def test_pairs_of_teeth() -> None:
     """Module 20 mm, 17 to 20 teeth: every pair; on a given axis those that touch."""
     teeth = {"ratio": None, "pitch_radius": None, "teeth": (17, 20), "module": 0.02}
-    found = gearing(ROCKER, **teeth)
-    meshes = found.meshes()
+    result = gearing(ROCKER, **teeth)
+    meshes = result.meshes()
     assert len(meshes) == 16
     for mesh in meshes:
         assert mesh.teeth is not None
@@ -77,10 +77,10 @@ def test_gears_that_do_not_mesh() -> None:
 
 
 def test_a_rocker_may_have_any_ratio() -> None:
-    found = gearing(ROCKER)
-    ratios = [mesh.ratio for mesh in found.meshes()]
-    assert not found.turns_fully
-    assert found.ranges == {"ratio": (0.5, 2.0)}
+    result = gearing(ROCKER)
+    ratios = [mesh.ratio for mesh in result.meshes()]
+    assert not result.turns_fully
+    assert result.ranges == {"ratio": (0.5, 2.0)}
     assert (ratios[0], ratios[-1]) == pytest.approx((0.5, 2.0))
     assert np.ptp(np.diff(np.log(ratios))) < 1e-9
     assert gearing(ROCKER, ratio=(0.7, 0.7)).ranges == {}
@@ -88,14 +88,14 @@ def test_a_rocker_may_have_any_ratio() -> None:
 
 def test_a_crank_comes_back_after_few_turns() -> None:
     """Halves and thirds from 1/2 to 2; every one closes in three turns at the most."""
-    found = gearing(CRANK)
-    meshes = found.meshes()
-    assert found.turns_fully
-    assert found.ranges == {}
+    result = gearing(CRANK)
+    meshes = result.meshes()
+    assert result.turns_fully
+    assert result.ranges == {}
     assert sorted(mesh.ratio for mesh in meshes) == pytest.approx(
         [1 / 2, 2 / 3, 1, 4 / 3, 3 / 2, 5 / 3, 2]
     )
-    assert {eq.move(found.added(mesh)[0], 1).turns for mesh in meshes} == {1, 2, 3}
+    assert {eq.move(result.added(mesh)[0], 1).turns for mesh in meshes} == {1, 2, 3}
     with refused(UsageError, low=0.51, high=0.6):
         gearing(CRANK, ratio=(0.51, 0.6)).meshes()
 
@@ -110,8 +110,8 @@ def test_a_range_of_directions() -> None:
 
 @pytest.mark.parametrize("ratio", [0.5, 1.3])
 def test_the_shaft_turns_against_its_driver(ratio: float) -> None:
-    found = gearing(ROCKER)
-    machine, part = found.added(found.mesh(ratio, 0.0))
+    result = gearing(ROCKER)
+    machine, part = result.added(result.mesh(ratio, 0.0))
     motion = eq.move(machine, 90)
     driver = motion.links["rocker"].angular_velocity
     assert motion.links["counterweight"].angular_velocity == pytest.approx(-ratio * driver)
@@ -123,30 +123,32 @@ def test_the_shaft_turns_against_its_driver(ratio: float) -> None:
 
 def test_gears_are_solid_discs() -> None:
     """Of 10 mm steel: their masses on driver and shaft, turning about the pins."""
-    found = gearing(ROCKER, **GEARS)
-    machine, _ = found.added(found.mesh(1.5, 0.0))
+    result = gearing(ROCKER, **GEARS)
+    machine, _ = result.added(result.mesh(1.5, 0.0))
     masses = [78.5 * pi * radius**2 for radius in (0.3, 0.2)]
     assert machine.links["counterweight"].mass == pytest.approx(masses[1])
     assert machine.links["counterweight"].inertia == pytest.approx(masses[1] * 0.2**2 / 2)
-    one, other = MACHINE.links["rocker"], machine.links["rocker"]
-    assert other.mass - one.mass == pytest.approx(masses[0])
-    moment = np.array(other.center_of_mass) * other.mass - np.array(one.center_of_mass) * one.mass
+    first, other = MACHINE.links["rocker"], machine.links["rocker"]
+    assert other.mass - first.mass == pytest.approx(masses[0])
+    moment = (
+        np.array(other.center_of_mass) * other.mass - np.array(first.center_of_mass) * first.mass
+    )
     assert moment == pytest.approx(np.zeros(2), abs=1e-12)  # the pin is the link's origin
     about_pin = [
-        link.inertia + link.mass * np.sum(np.square(link.center_of_mass)) for link in (one, other)
+        link.inertia + link.mass * np.sum(np.square(link.center_of_mass)) for link in (first, other)
     ]
     assert about_pin[1] - about_pin[0] == pytest.approx(masses[0] * 0.3**2 / 2)
 
 
 def test_change_as_the_workshop_reads_it() -> None:
-    found = gearing(ROCKER, ratio=None, pitch_radius=None, teeth=(20, 30), module=0.02)
-    mesh = next(mesh for mesh in found.meshes() if mesh.teeth == (30, 20))
-    told = found.change(mesh).to_dict()
-    assert told["kind"] == "gears"
-    assert (told["driver"], told["link"]) == ("rocker", "counterweight")
-    assert told["ratio"] == pytest.approx(1.5)
-    assert (told["teeth"], told["module"]) == ((30, 20), 0.02)
-    assert told["axis"] == pytest.approx((1.5, 0.0))
+    result = gearing(ROCKER, ratio=None, pitch_radius=None, teeth=(20, 30), module=0.02)
+    mesh = next(mesh for mesh in result.meshes() if mesh.teeth == (30, 20))
+    content = result.change(mesh).to_dict()
+    assert content["kind"] == "gears"
+    assert (content["driver"], content["link"]) == ("rocker", "counterweight")
+    assert content["ratio"] == pytest.approx(1.5)
+    assert (content["teeth"], content["module"]) == ((30, 20), 0.02)
+    assert content["axis"] == pytest.approx((1.5, 0.0))
 
 
 def test_links_to_stay_clear_of() -> None:
@@ -173,7 +175,7 @@ def test_the_best_of_all_teeth() -> None:
     """No single pair does better than the one that is chosen."""
     free = replace(ROCKER, ratio=None, pitch_radius=None, teeth=(16, 18), module=0.03)
     wish = (Objective("shaking_moment"),)
-    found = eq.balance(MACHINE, Balance(geared=(free,), objectives=wish))
+    balanced = eq.balance(MACHINE, Balance(geared=(free,), objectives=wish))
     costs = {}
     for mesh in Gearing(MACHINE, free).meshes():
         assert mesh.teeth is not None
@@ -183,10 +185,10 @@ def test_the_best_of_all_teeth() -> None:
             Balance(masses=(eq.balancing.AddedMass(part.link, part.at, ROOM),), objectives=wish),
         )
         costs[mesh.teeth] = alone.objectives[wish[0].name][1]
-    gears, _ = found.changes
+    gears, _ = balanced.changes
     assert gears.values["teeth"] == min(costs, key=lambda teeth: costs[teeth])
-    assert found.objectives[wish[0].name][1] == pytest.approx(min(costs.values()), rel=1e-7)
-    assert "9 choices of gears" in str(found.method)
+    assert balanced.objectives[wish[0].name][1] == pytest.approx(min(costs.values()), rel=1e-7)
+    assert "9 choices of gears" in str(balanced.method)
 
 
 # A ratio that is no optimum fails in `test_a_free_ratio` of tests/secondroute/test_balancing.py.
@@ -195,11 +197,11 @@ def test_a_ratio_is_followed_between_the_grid() -> None:
     """No fixed ratio of a finer grid does better."""
     wish = (Objective("shaking_moment"),)
     narrow = replace(ROCKER, ratio=(0.8, 1.6))
-    found = eq.balance(MACHINE, Balance(geared=(narrow,), objectives=wish))
+    balanced = eq.balance(MACHINE, Balance(geared=(narrow,), objectives=wish))
     for ratio in np.linspace(0.8, 1.6, 41):
         fixed = replace(ROCKER, ratio=(float(ratio), float(ratio)))
-        one = eq.balance(MACHINE, Balance(geared=(fixed,), objectives=wish))
-        assert found.cost <= one.cost + 1e-8
+        first = eq.balance(MACHINE, Balance(geared=(fixed,), objectives=wish))
+        assert balanced.cost <= first.cost + 1e-8
 
 
 # -- balance shafts --------------------------------------------------------------------------------
@@ -229,14 +231,14 @@ def test_lanchester_shafts_take_the_second_order_of_an_engine() -> None:
         shafts=(shafts(2),),
         objectives=(Objective("shaking_force", orders=(2.0,)),),
     )
-    found = eq.balance(engine, plan)
-    force = eq.forces(eq.move(found.machine, 720)).shaking_force
+    balanced = eq.balance(engine, plan)
+    force = eq.forces(eq.move(balanced.machine, 720)).shaking_force
     after = np.abs(eq.signals.harmonics(force.x, 4))
     assert before[2] > 0
     assert after[2] < 1e-7 * before[2]
     assert np.abs(eq.signals.harmonics(force.y, 4))[2] < 1e-7 * before[2]
     assert after[[1, 4]] == pytest.approx(before[[1, 4]], rel=1e-7)
     wanted = before[2] / 2 / (2 * engine.drive.speed) ** 2
-    assert [change.values["moment"] for change in found.changes] == pytest.approx(
+    assert [change.values["moment"] for change in balanced.changes] == pytest.approx(
         [wanted, wanted], rel=1e-6
     )

@@ -24,11 +24,11 @@ def forms(chance: np.random.Generator) -> Forms:
 
 def value(part: FormSum, numbers: Array) -> Array:
     """Of one part (N, B), with numbers (N, 2) in every box."""
-    found = []
+    actual = []
     for x in numbers:
         at = np.tile(x, (BOXES, 1))
-        found.append(part.factors * sum(np.max(one.at(at), axis=1) for one in part.groups))
-    return np.array(found)
+        actual.append(part.factors * sum(np.max(group.at(at), axis=1) for group in part.groups))
+    return np.array(actual)
 
 
 @pytest.fixture(params=few([0, 1, 2], {0}))
@@ -55,18 +55,20 @@ def bounded(parts: list[FormSum]) -> module.Bounded:
 
 
 def test_nothing_on_a_grid_is_below_it_and_its_numbers_are_the_best(parts: list[FormSum]) -> None:
-    points, found = grid(), bounded(parts)
+    points, actual = grid(), bounded(parts)
     total = value(parts[0], points) + value(parts[1], points)
     total[value(parts[2], points) > 1.0] = np.inf
     best = np.min(total, axis=0)
     allowed = np.isfinite(best)
     assert np.any(allowed)
-    assert np.all(found.bounds <= best + 1e-9)
+    assert np.all(actual.bounds <= best + 1e-9)
     # on a grid of 0.025, along slopes of 10 together
-    assert found.bounds[allowed] == pytest.approx(best[allowed], abs=0.25)
-    each = [value(part, found.numbers[k : k + 1])[0, k] for part in parts[:2] for k in range(BOXES)]
+    assert actual.bounds[allowed] == pytest.approx(best[allowed], abs=0.25)
+    each = [
+        value(part, actual.numbers[k : k + 1])[0, k] for part in parts[:2] for k in range(BOXES)
+    ]
     there = np.array(each).reshape(2, -1).sum(axis=0)
-    assert there[allowed] == pytest.approx(found.bounds[allowed], abs=1e-6)
+    assert there[allowed] == pytest.approx(actual.bounds[allowed], abs=1e-6)
 
 
 def test_without_a_solution_it_is_a_bound_all_the_same(
@@ -75,21 +77,21 @@ def test_without_a_solution_it_is_a_bound_all_the_same(
     """Nothing rests on the program: any multipliers bound."""
     best = bounded(parts).bounds
     monkeypatch.setattr(module, "_solved", lambda *_: None)
-    found = bounded(parts)
-    assert np.all(found.bounds <= best + 1e-9)
+    result = bounded(parts)
+    assert np.all(result.bounds <= best + 1e-9)
     points = grid()
     total = value(parts[0], points) + value(parts[1], points)
-    assert np.all(found.bounds <= np.min(total, axis=0))
+    assert np.all(result.bounds <= np.min(total, axis=0))
 
 
 def test_without_numbers_it_is_the_largest(parts: list[FormSum]) -> None:
     none = np.zeros((BOXES, 0))
     fixed = [
-        replace(one, groups=tuple(Forms(g.constants, g.slopes[..., :0]) for g in one.groups))
-        for one in parts[:2]
+        replace(part, groups=tuple(Forms(g.constants, g.slopes[..., :0]) for g in part.groups))
+        for part in parts[:2]
     ]
-    found = least_of_forms(fixed, none, none, none, np.zeros((0, 0)), np.zeros(0), SLACK)
+    result = least_of_forms(fixed, none, none, none, np.zeros((0, 0)), np.zeros(0), SLACK)
     wanted = sum(
-        one.factors * sum(np.max(g.constants, axis=1) for g in one.groups) for one in fixed
+        item.factors * sum(np.max(g.constants, axis=1) for g in item.groups) for item in fixed
     )
-    assert found.bounds == pytest.approx(wanted, rel=1e-12)
+    assert result.bounds == pytest.approx(wanted, rel=1e-12)

@@ -29,22 +29,22 @@ def lone() -> eq.Machine:
 
 
 def test_a_lone_crank_must_be_centered() -> None:
-    found = conditions(lone())
-    assert found.sentences == ("crank.moment_x = 0", "crank.moment_y = 0")
-    assert found.units == ("kg m", "kg m")
+    result = conditions(lone())
+    assert result.sentences == ("crank.moment_x = 0", "crank.moment_y = 0")
+    assert result.units == ("kg m", "kg m")
     link = lone().links["crank"]
     assert link.mass is not None
-    assert found.residuals == pytest.approx(link.mass * np.array(link.center_of_mass))
-    assert found.without_effect == (("crank", "mass"), ("crank", "inertia"))
-    assert str(found) == "crank.moment_x = 0\ncrank.moment_y = 0"
+    assert result.residuals == pytest.approx(link.mass * np.array(link.center_of_mass))
+    assert result.without_effect == (("crank", "mass"), ("crank", "inertia"))
+    assert str(result) == "crank.moment_x = 0\ncrank.moment_y = 0"
 
 
 def test_a_lone_crank_shakes_in_a_sine_and_without_moment() -> None:
     for kind, output in (("sine", "shaking_force"), ("zero", "shaking_moment")):
-        found = conditions(lone(), kind, [output])  # type: ignore[arg-type]
-        assert found.count == 0
-        assert found.coefficients.shape == (0, 4)
-        assert len(found.without_effect) == 4
+        result = conditions(lone(), kind, [output])  # type: ignore[arg-type]
+        assert result.count == 0
+        assert result.coefficients.shape == (0, 4)
+        assert len(result.without_effect) == 4
 
 
 def test_slider_crank() -> None:
@@ -80,20 +80,20 @@ def test_force_and_moment_of_a_four_bar() -> None:
 
 @pytest.mark.parametrize("size", [1e-3, 1e3])
 def test_size_does_not_matter(size: float) -> None:
-    found = conditions(four_bar(*(size * x for x in (1.0, 0.35, 0.9, 0.8))))
+    result = conditions(four_bar(*(size * x for x in (1.0, 0.35, 0.9, 0.8))))
     plain = conditions(crank_rocker())
-    assert np.array_equal(found.coefficients != 0, plain.coefficients != 0)
+    assert np.array_equal(result.coefficients != 0, plain.coefficients != 0)
 
 
 def test_gears_of_many_turns() -> None:
     """Order 1 is the crank's turn, not the cycle's."""
-    found = conditions(eq.load("planetary-planting-arm"), "sine")
-    assert found.sentences == ("idler.moment_x = 0", "idler.moment_y = 0")
+    result = conditions(eq.load("planetary-planting-arm"), "sine")
+    assert result.sentences == ("idler.moment_x = 0", "idler.moment_y = 0")
 
 
 def test_plain_data() -> None:
-    found = conditions(slider_crank()).to_dict()
-    text = json.loads(json.dumps(found))
+    content = conditions(slider_crank()).to_dict()
+    text = json.loads(json.dumps(content))
     assert text["kind"] == "zero"
     assert text["outputs"] == ["shaking_force"]
     first = text["conditions"][0]
@@ -135,8 +135,8 @@ def test_first_term_is_positive_unless_the_sign_counts() -> None:
 def test_one_term_keeps_its_unit() -> None:
     given, row = crank_rocker(), np.zeros(12)
     row[11] = -4.0
-    found = reading(given, row)
-    assert (found.text, found.unit, found.factor) == ("rocker.inertia", "kg m2", -0.25)
+    result = reading(given, row)
+    assert (result.text, result.unit, result.factor) == ("rocker.inertia", "kg m2", -0.25)
     assert reading(given, row, signed=True).text == "-rocker.inertia"
 
 
@@ -158,10 +158,10 @@ def test_length_between_joints() -> None:
 
 def test_slider_crank_needs_rod_and_crank() -> None:
     given = slider_crank()
-    found = least_moments(given, ["crank", "rod"])
-    assert found.totals["rod"] == pytest.approx((-0.5, 0.0))
-    assert found.totals["crank"] == pytest.approx((-0.3, 0.0))
-    assert np.max(eq.analyze(found.machine).forces.shaking_force.size) < 1e-11
+    moments = least_moments(given, ["crank", "rod"])
+    assert moments.totals["rod"] == pytest.approx((-0.5, 0.0))
+    assert moments.totals["crank"] == pytest.approx((-0.3, 0.0))
+    assert np.max(eq.analyze(moments.machine).forces.shaking_force.size) < 1e-11
     with refused(UsageError, names="crank"):
         least_moments(given, ["crank"])
     with refused(UsageError, names="no link"):
@@ -175,16 +175,16 @@ def test_a_balanced_machine_needs_nothing() -> None:
 
 
 def test_free_links_alone() -> None:
-    found = least_moments(crank_rocker(), [], ["crank", "rocker"])
-    assert found.cost == 0
+    moments = least_moments(crank_rocker(), [], ["crank", "rocker"])
+    assert moments.cost == 0
     priced = least_moments(crank_rocker(), ["crank", "rocker"])
-    for link, moment in found.moments.items():
+    for link, moment in moments.moments.items():
         assert moment == pytest.approx(priced.moments[link])
 
 
 def test_least_moments_as_plain_data() -> None:
-    found = least_moments(crank_rocker(), ["crank", "rocker"])
-    data = json.loads(json.dumps(found.to_dict()))
+    moments = least_moments(crank_rocker(), ["crank", "rocker"])
+    data = json.loads(json.dumps(moments.to_dict()))
     assert list(data) == ["added", "total", "center_of_mass", "cost"]
     for link in ("crank", "rocker"):
         assert 0.5 * np.array(data["center_of_mass"][link]) == pytest.approx(data["total"][link])
@@ -205,61 +205,61 @@ def test_refusals_of_least_moments() -> None:
 
 def test_sensitivities_of_a_lone_crank() -> None:
     """At 10 rad/s the force is 100 m r, and its height that times a sine."""
-    found = sensitivities(lone(), angles=36)
-    theta = found.crank_angle
-    np.testing.assert_allclose(found["crank.center_x"].values, 50 * np.sin(theta), atol=1e-12)
-    np.testing.assert_allclose(found["crank.center_y"].values, 50 * np.cos(theta), atol=1e-12)
-    assert found["crank.center_x"].rms == pytest.approx(50 / 2**0.5)
-    assert found["crank.center_x"].percent == pytest.approx(0.003 * 50 / 2**0.5)
-    np.testing.assert_allclose(found["crank.center_x"].no_effect_at, [0, np.pi], atol=1e-12)
+    result = sensitivities(lone(), angles=36)
+    theta = result.crank_angle
+    np.testing.assert_allclose(result["crank.center_x"].values, 50 * np.sin(theta), atol=1e-12)
+    np.testing.assert_allclose(result["crank.center_y"].values, 50 * np.cos(theta), atol=1e-12)
+    assert result["crank.center_x"].rms == pytest.approx(50 / 2**0.5)
+    assert result["crank.center_x"].percent == pytest.approx(0.003 * 50 / 2**0.5)
+    np.testing.assert_allclose(result["crank.center_x"].no_effect_at, [0, np.pi], atol=1e-12)
     half = [np.pi / 2, 3 * np.pi / 2]
-    np.testing.assert_allclose(found["crank.center_y"].no_effect_at, half, atol=1e-12)
-    assert not found["crank.inertia"].has_effect
-    assert found["crank.inertia"].no_effect_at.size == 0
-    assert [one.name for one in found.ranked][-1] == "crank.mass"
+    np.testing.assert_allclose(result["crank.center_y"].no_effect_at, half, atol=1e-12)
+    assert not result["crank.inertia"].has_effect
+    assert result["crank.inertia"].no_effect_at.size == 0
+    assert [item.name for item in result.ranked][-1] == "crank.mass"
 
 
 def test_torque_of_a_lone_crank_is_weight() -> None:
-    found = sensitivities(lone(), "drive_torque", 36)
-    wanted = 0.5 * 9.80665 * np.cos(found.crank_angle)
-    np.testing.assert_allclose(found["crank.center_x"].values, wanted, atol=1e-12)
-    assert not found["crank.inertia"].has_effect
+    result = sensitivities(lone(), "drive_torque", 36)
+    wanted = 0.5 * 9.80665 * np.cos(result.crank_angle)
+    np.testing.assert_allclose(result["crank.center_x"].values, wanted, atol=1e-12)
+    assert not result["crank.inertia"].has_effect
 
 
 def test_acceleration_of_the_drive_does_not_count() -> None:
     given = crank_rocker()
     starting = given.with_drive(acceleration=50.0)
     for output in ("shaking_moment", "drive_torque"):
-        one, two = (sensitivities(m, output, 24) for m in (given, starting))
-        for name in one.by_name:
-            np.testing.assert_array_equal(one[name].values, two[name].values)
+        first, two = (sensitivities(m, output, 24) for m in (given, starting))
+        for name in first.by_name:
+            np.testing.assert_array_equal(first[name].values, two[name].values)
 
 
 def test_number_of_crank_angles_does_not_move_the_zeros() -> None:
     few, many = (sensitivities(crank_rocker(), angles=n) for n in (180, 1440))
-    for name, one in few.by_name.items():
-        np.testing.assert_allclose(one.no_effect_at, many[name].no_effect_at, atol=1e-9)
+    for name, value in few.by_name.items():
+        np.testing.assert_allclose(value.no_effect_at, many[name].no_effect_at, atol=1e-9)
 
 
 def test_a_machine_at_rest_has_none() -> None:
-    found = sensitivities(crank_rocker(drive=eq.Drive("crank", 0.0)), angles=24)
-    assert found.ranked == ()
+    result = sensitivities(crank_rocker(drive=eq.Drive("crank", 0.0)), angles=24)
+    assert result.ranked == ()
 
 
 def test_a_cycle_of_many_turns() -> None:
-    found = sensitivities(eq.load("planetary-planting-arm"), angles=72)
-    assert len(found.crank_angle) == 72 * found.turns
-    for one in found.ranked:
-        assert np.all(np.diff(one.no_effect_at) > 0)
-        assert np.all(one.no_effect_at < 2 * np.pi * found.turns)
+    result = sensitivities(eq.load("planetary-planting-arm"), angles=72)
+    assert len(result.crank_angle) == 72 * result.turns
+    for item in result.ranked:
+        assert np.all(np.diff(item.no_effect_at) > 0)
+        assert np.all(item.no_effect_at < 2 * np.pi * result.turns)
 
 
 def test_sensitivities_as_plain_data() -> None:
-    found = sensitivities(lone(), angles=36).to_dict()
-    assert found["output"] == "shaking_force.y"
-    assert found["crank_angle"].shape == (36,)
-    one = found["sensitivities"]["crank.center_x"]
-    assert list(one) == ["values", "rms", "percent", "has_effect", "no_effect_at"]
+    content = sensitivities(lone(), angles=36).to_dict()
+    assert content["output"] == "shaking_force.y"
+    assert content["crank_angle"].shape == (36,)
+    first = content["sensitivities"]["crank.center_x"]
+    assert list(first) == ["values", "rms", "percent", "has_effect", "no_effect_at"]
 
 
 def test_refusals_of_sensitivities() -> None:
@@ -279,9 +279,9 @@ def test_refusals_of_sensitivities() -> None:
 
 def test_conditions() -> None:
     given = eq.load("yamashita-1")
-    found = conditions(given), conditions(given, "sine")
+    actual = conditions(given), conditions(given, "sine")
     text = words(
-        conditions_blocks(*found, verdict=[one.reason for one in feasibility(given).answers])
+        conditions_blocks(*actual, verdict=[answer.reason for answer in feasibility(given).answers])
     )
     assert "Conditions for shaking force to be zero" in text
     assert "Conditions for shaking force to be a pure sine of the crank angle" in text
@@ -319,5 +319,5 @@ def test_sensitivities() -> None:
 
 @pytest.mark.parametrize("output", known_outputs(eq.load("yamashita-1")))
 def test_every_output_has_a_title(output: str) -> None:
-    found = sensitivities(eq.load("yamashita-1"), output, 36)
-    assert "effect of each parameter" in words(found.blocks())
+    result = sensitivities(eq.load("yamashita-1"), output, 36)
+    assert "effect of each parameter" in words(result.blocks())

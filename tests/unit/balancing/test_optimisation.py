@@ -52,10 +52,10 @@ def test_a_limit_on_what_is_0_before(at_most: float) -> None:
         objectives=(Objective("shaking_force"),),
         limits=(Limit(moment, at_most=at_most),),
     )
-    found = eq.balance(pump(), plan)
-    assert found.cost < 1
-    assert found.after["shaking_moment.peak"] <= at_most * (1 + 1e-7)
-    assert found.gap < 1e-8
+    balanced = eq.balance(pump(), plan)
+    assert balanced.cost < 1
+    assert balanced.after["shaking_moment.peak"] <= at_most * (1 + 1e-7)
+    assert balanced.gap < 1e-8
 
 
 def test_a_share_of_what_is_0_before() -> None:
@@ -71,9 +71,9 @@ def test_what_makes_no_difference_stays() -> None:
     """The crank's centre of mass does nothing to the moment about its pivot."""
     moves = tuple(CenterMove(link) for link in ("crank", "coupler", "rocker"))
     plan = Balance(moves=moves, objectives=(Objective("shaking_moment", "peak"),))
-    found = eq.balance(MACHINE, plan)
-    assert found.changes[0].values["to"] == pytest.approx((0.012, 0.0), abs=1e-12)
-    assert found.changes[1].values["to"] != pytest.approx((-0.05, -0.02), abs=1e-3)
+    balanced = eq.balance(MACHINE, plan)
+    assert balanced.changes[0].values["to"] == pytest.approx((0.012, 0.0), abs=1e-12)
+    assert balanced.changes[1].values["to"] != pytest.approx((-0.05, -0.02), abs=1e-3)
 
 
 @pytest.mark.parametrize("shape", ["any", "point", "disc", "sector"])
@@ -84,8 +84,10 @@ def test_no_mass_without_use(shape: str) -> None:
         AddedMass(link, at, Weight(shape, 0.05, **cut))  # type: ignore[arg-type]
         for link, at in (("rocker", "D"), ("crank", "A"))
     )
-    found = eq.balance(MACHINE, Balance(masses=masses, objectives=(Objective("joints.B", "peak"),)))
-    assert found.changes[1].values["mass"] == pytest.approx(0.0, abs=1e-6)
+    balanced = eq.balance(
+        MACHINE, Balance(masses=masses, objectives=(Objective("joints.B", "peak"),))
+    )
+    assert balanced.changes[1].values["mass"] == pytest.approx(0.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("shape", ["any", "point", "disc", "sector"])
@@ -96,8 +98,8 @@ def test_the_least_mass_of_a_moment(shape: str) -> None:
     plan = Balance(
         masses=(AddedMass("crank", "A", weight),), objectives=(Objective("shaking_force.y"),)
     )
-    found = eq.balance(MACHINE, plan)
-    change = found.changes[0].values
+    balanced = eq.balance(MACHINE, plan)
+    change = balanced.changes[0].values
     assert change["moment"] == pytest.approx(0.0408822, rel=1e-4)
     mass, moment = change["mass"], change["moment"]
     if shape in {"any", "point"}:
@@ -115,32 +117,32 @@ def test_teeth_with_a_range_of_directions() -> None:
     weight = Weight("any", 0.05, at_most=0.4)
     geared = GearedWeight("rocker", weight, teeth=(39, 40), module=0.0025, direction=(0.0, 1.0))
     force = Objective("joints.O4")
-    found = eq.balance(eq.load("lee-kim-b"), Balance(geared=(geared,), objectives=(force,)))
-    assert found.changes[0].values["teeth"][0] in range(39, 41)
-    assert str(found.scope[-1]) == "for each of the gears tried"
-    assert found.cost < 1
+    balanced = eq.balance(eq.load("lee-kim-b"), Balance(geared=(geared,), objectives=(force,)))
+    assert balanced.changes[0].values["teeth"][0] in range(39, 41)
+    assert str(balanced.scope[-1]) == "for each of the gears tried"
+    assert balanced.cost < 1
 
 
-def test_gears_tell_their_mass() -> None:
+def test_gears_report_their_mass() -> None:
     weight = Weight("any", 0.05, at_most=0.4)
     geared = GearedWeight("rocker", weight, (0.6, 0.6), pitch_radius=0.05, gear_thickness=0.006,
                           gear_density=7850.0)  # fmt: skip
     moment = Objective("shaking_moment")
-    found = eq.balance(eq.load("lee-kim-a"), Balance(geared=(geared,), objectives=(moment,)))
-    on_driver, on_shaft = found.changes[0].values["masses"]
+    balanced = eq.balance(eq.load("lee-kim-a"), Balance(geared=(geared,), objectives=(moment,)))
+    on_driver, on_shaft = balanced.changes[0].values["masses"]
     assert on_driver == pytest.approx(np.pi * 0.05**2 * 0.006 * 7850)
     assert on_shaft == pytest.approx(on_driver / 0.36)
-    weights = found.changes[1].values["mass"]
-    assert found.added_mass == pytest.approx(on_driver + on_shaft + weights)
+    weights = balanced.changes[1].values["mass"]
+    assert balanced.added_mass == pytest.approx(on_driver + on_shaft + weights)
 
 
-def test_what_was_stopped_is_told() -> None:
+def test_what_was_stopped_is_reported() -> None:
     """An endless mass close to its axis would do better still."""
     geared = GearedWeight("rocker", Weight("any", 0.065), (0.6, 0.6), pitch_radius=0.05)
     plan = Balance(geared=(geared,), objectives=(Objective("shaking_moment"),))
-    found = eq.balance(eq.load("lee-kim-a"), plan)
-    assert [*map(str, found.scope)] == ["within where it was stopped"]
-    assert any("ten times the mass of the links" in str(note) for note in found.notes)
+    balanced = eq.balance(eq.load("lee-kim-a"), plan)
+    assert [*map(str, balanced.scope)] == ["within where it was stopped"]
+    assert any("ten times the mass of the links" in str(note) for note in balanced.notes)
 
 
 def test_a_spring_without_free_length() -> None:
@@ -149,9 +151,9 @@ def test_a_spring_without_free_length() -> None:
         springs=(SpringChoice("rocker", "F", "S", 1e4),),
         objectives=(Objective("drive_torque", "peak"),),
     )
-    found = eq.balance(machine, plan)
-    assert 0 <= found.machine.springs[0].free_length < 0.5
-    assert found.objectives["peak of drive_torque"][1] < 0.6
+    balanced = eq.balance(machine, plan)
+    assert 0 <= balanced.machine.springs[0].free_length < 0.5
+    assert balanced.objectives["peak of drive_torque"][1] < 0.6
 
 
 @pytest.mark.parametrize("order", [999.0, 1.5])
@@ -175,11 +177,11 @@ def test_a_limit_on_a_gauge_is_kept_where_it_is_read(ratio: float) -> None:
     plan = Balance(
         masses=machine.balance.masses, objectives=(joint,), limits=(Limit(gauge, ratio=ratio),)
     )
-    found = eq.balance(machine, plan)
-    price = found.prices[gauge.name]
+    balanced = eq.balance(machine, plan)
+    price = balanced.prices[gauge.name]
     assert price.used == pytest.approx(price.at_most, rel=1e-7)
     assert price.active
-    assert found.gap < 1e-8
+    assert balanced.gap < 1e-8
 
 
 def test_the_ends_of_a_front() -> None:
@@ -203,13 +205,13 @@ def test_flanks_of_gears_are_those_of_the_result() -> None:
     weight = Weight("any", 0.08, at_most=0.5)
     masses = (AddedMass("counterweight", "E", weight), AddedMass("rocker", "O4", weight))
     bearing = Objective("joints.E")
-    found = eq.balance(machine, Balance(masses=masses, objectives=(bearing,)))
-    force = eq.forces(eq.move(found.machine, 720)).joints["E"].size
-    after = found.objectives[bearing.name][1]
+    balanced = eq.balance(machine, Balance(masses=masses, objectives=(bearing,)))
+    force = eq.forces(eq.move(balanced.machine, 720)).joints["E"].size
+    after = balanced.objectives[bearing.name][1]
     assert after == pytest.approx(np.sqrt(np.mean(force**2)))
     assert after < 8.44135
-    assert found.gap < 1e-8
-    assert [*map(str, found.scope)] == [
+    assert balanced.gap < 1e-8
+    assert [*map(str, balanced.scope)] == [
         "for the flanks of teeth and strands of chains that bear here"
     ]
 
@@ -221,9 +223,9 @@ def test_flanks_of_gears_count_in_bearings_too() -> None:
     weight = Weight("any", 0.08, at_most=0.5)
     masses = (AddedMass("counterweight", "E", weight), AddedMass("rocker", "O4", weight))
     plan = Balance(masses=masses, objectives=(Objective("bearings.left"),))
-    found = eq.balance(replace(machine, bearings=bearings), plan)
-    assert found.gap < 1e-8
-    assert [*map(str, found.scope)] == [
+    balanced = eq.balance(replace(machine, bearings=bearings), plan)
+    assert balanced.gap < 1e-8
+    assert [*map(str, balanced.scope)] == [
         "for the flanks of teeth and strands of chains that bear here"
     ]
 
@@ -242,9 +244,9 @@ def traded() -> Front:
     return trade_off(MACHINE, FORCE, TORQUE, PLAN, points=9)
 
 
-def best(one: Objective) -> float:
-    found = eq.balance(MACHINE, replace(PLAN, objectives=(one,)))
-    return found.objectives[one.name][1]
+def best(item: Objective) -> float:
+    balanced = eq.balance(MACHINE, replace(PLAN, objectives=(item,)))
+    return balanced.objectives[item.name][1]
 
 
 def test_falls_and_bends_inwards() -> None:
@@ -284,14 +286,14 @@ def test_prices_are_slopes_of_the_curve() -> None:
 
 def test_nothing_lies_below_the_curve() -> None:
     """Weighted sums of both, whose optima touch it from below."""
-    before = [eq.balance(MACHINE, replace(PLAN, objectives=(one,))).objectives[one.name][0]
-              for one in (FORCE, TORQUE)]  # fmt: skip
+    before = [eq.balance(MACHINE, replace(PLAN, objectives=(item,))).objectives[item.name][0]
+              for item in (FORCE, TORQUE)]  # fmt: skip
     for weight in (0.3, 1.0, 3.0):
         both = (FORCE, replace(TORQUE, weight=weight))
-        found = eq.balance(MACHINE, replace(PLAN, objectives=both))
+        balanced = eq.balance(MACHINE, replace(PLAN, objectives=both))
         sums = traded().values[:, 0] / before[0] + weight * traded().values[:, 1] / before[1]
-        assert found.cost <= np.min(sums) + 1e-8
-        assert found.cost == pytest.approx(np.min(sums), rel=0.01)
+        assert balanced.cost <= np.min(sums) + 1e-8
+        assert balanced.cost == pytest.approx(np.min(sums), rel=0.01)
 
 
 def test_columns_and_dictionary() -> None:
@@ -300,11 +302,11 @@ def test_columns_and_dictionary() -> None:
     assert (unit, other, kilogram) == ("N", "N m", "kg")
     assert np.array_equal(values, traded().values[:, 0])
     assert masses[3] == traded().points[3].added_mass
-    told = json.loads(json.dumps(traded().to_dict()))
-    assert set(told["before"]) == {FORCE.name, TORQUE.name}
-    assert told["before"][FORCE.name] > told["points"][0]["first"]
-    assert [point["second"] for point in told["points"]] == traded().values[:, 1].tolist()
-    assert told["points"][2]["changes"][0]["link"] == "crank"
+    content = json.loads(json.dumps(traded().to_dict()))
+    assert set(content["before"]) == {FORCE.name, TORQUE.name}
+    assert content["before"][FORCE.name] > content["points"][0]["first"]
+    assert [point["second"] for point in content["points"]] == traded().values[:, 1].tolist()
+    assert content["points"][2]["changes"][0]["link"] == "crank"
 
 
 def test_limits_of_the_plan_are_kept() -> None:
@@ -317,10 +319,10 @@ def test_limits_of_the_plan_are_kept() -> None:
     assert np.min(front.values[:, 0]) >= traded().values[0, 0] * (1 - 1e-7)
 
 
-def test_progress_is_told() -> None:
-    told: list[tuple[int, int]] = []
-    trade_off(MACHINE, FORCE, TORQUE, PLAN, 3, lambda *pair: told.append(pair))
-    assert told == [(1, 3), (2, 3), (3, 3)]
+def test_progress_is_reported() -> None:
+    texts: list[tuple[int, int]] = []
+    trade_off(MACHINE, FORCE, TORQUE, PLAN, 3, lambda *pair: texts.append(pair))
+    assert texts == [(1, 3), (2, 3), (3, 3)]
 
 
 def test_what_cannot_be_traded() -> None:

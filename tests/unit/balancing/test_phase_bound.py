@@ -60,11 +60,11 @@ def test_closed_forms(rows: tuple[tuple[float, ...], ...], best: float) -> None:
 
 
 def test_two_rows_of_one_order_are_opposed() -> None:
-    found = choose_phases(
+    phasing = choose_phases(
         side_by_side(TYPE_II, (0.0, 0.3)), [Objective("shaking_force.y", orders=(1,))]
     )
-    assert found.phases[1] == pytest.approx(pi)
-    assert (found.combined[1], found.bound) == pytest.approx((0.0, 0.0), abs=1e-12)
+    assert phasing.phases[1] == pytest.approx(pi)
+    assert (phasing.combined[1], phasing.bound) == pytest.approx((0.0, 0.0), abs=1e-12)
 
 
 WISHES: dict[str, tuple[list[Objective], Combine]] = {
@@ -87,19 +87,19 @@ CHOSEN = {(case, 4.0) for case in WISHES} - {("squares", 4.0)} | {("force", 10.0
 @pytest.mark.exhaustive(but=["size-4.0", "area-4.0", "force-10.0"])
 @pytest.mark.parametrize(
     ("case", "step"),
-    [pytest.param(*one, marks=() if one in CHOSEN else EXHAUSTIVE) for one in CASES],
+    [pytest.param(*item, marks=() if item in CHOSEN else EXHAUSTIVE) for item in CASES],
 )
 def test_no_grid_is_below_the_bound(case: str, step: float) -> None:
     """Every arrangement of two rows at 4 deg, of three at 10 deg."""
     wishes, combine = WISHES[case]
     count = 2 if step < 5 else 3
     machine = side_by_side(TYPE_II, [0.4 * k * k for k in range(count)])
-    found = choose_phases(machine, wishes, combine=combine)
+    phasing = choose_phases(machine, wishes, combine=combine)
     grid = np.radians(np.arange(0, 360, step))
     phases = np.array([(0.0, *others) for others in product(grid, repeat=count - 1)])
     values = PhaseSearch(machine, tuple(wishes), Phases(), combine).cost.values(phases)
-    assert np.min(values) >= found.combined[1] * (1 - 1e-12)
-    assert found.bound <= found.combined[1] <= found.bound + CLOSE * found.combined[0]
+    assert np.min(values) >= phasing.combined[1] * (1 - 1e-12)
+    assert phasing.bound <= phasing.combined[1] <= phasing.bound + CLOSE * phasing.combined[0]
 
 
 @pytest.mark.parametrize(

@@ -39,7 +39,7 @@ MACHINE = eq.load("yamashita-2")
 
 
 @pytest.mark.parametrize("count", range(2, 17))
-def test_names_tell_the_number_of_rows_and_lead_back(count: int) -> None:
+def test_names_report_the_number_of_rows_and_lead_back(count: int) -> None:
     patterns = patterns_for(count)
     assert patterns
     assert len({pattern.name for pattern in patterns}) == len(patterns)
@@ -89,9 +89,9 @@ def test_arranged_about_the_middle() -> None:
 def test_arranged_keeps_an_offset_and_takes_a_pattern() -> None:
     machine = MACHINE.with_rows([Row(offset=(0.1, -0.2)), Row(phase=1.0)])
     pattern = Pattern("mine", ((0, 1), (1, 3), (2, 3)))
-    found = arranged(machine, pattern, 0.25)
-    assert {row.offset for row in found.rows} == {(0.1, -0.2)}
-    assert [row.lateral for row in found.rows] == [-0.25, 0.0, 0.25]
+    result = arranged(machine, pattern, 0.25)
+    assert {row.offset for row in result.rows} == {(0.1, -0.2)}
+    assert [row.lateral for row in result.rows] == [-0.25, 0.0, 0.25]
     assert dict(pattern.remaining) == pytest.approx({3: 3.0})
 
 
@@ -136,9 +136,9 @@ def test_values_of_patterns() -> None:
 
 @pytest.mark.parametrize("count", [2, 3, 4, 6, 8])
 def test_patterns_printed(count: int) -> None:
-    told = words(pattern_blocks(MACHINE, count, 0.3))
-    assert all(pattern.name in told for pattern in patterns_for(count))
-    assert "all in phase" in told
+    reported = words(pattern_blocks(MACHINE, count, 0.3))
+    assert all(pattern.name in reported for pattern in patterns_for(count))
+    assert "all in phase" in reported
 
 
 TYPE_II = eq.load("yamashita-2")
@@ -247,46 +247,46 @@ def test_distinct_arrangements() -> None:
 
 
 def test_step_that_does_not_divide_a_turn_is_made_smaller() -> None:
-    found = choose_phases(rows(2), [FORCE], Phases(radians(7)))
-    assert np.degrees(found.step) == pytest.approx(360 / 52)
-    assert np.degrees(found.phases[1]) == pytest.approx(180.0, abs=1e-6)
+    phasing = choose_phases(rows(2), [FORCE], Phases(radians(7)))
+    assert np.degrees(phasing.step) == pytest.approx(360 / 52)
+    assert np.degrees(phasing.phases[1]) == pytest.approx(180.0, abs=1e-6)
 
 
 def test_row_1_keeps_its_phase_and_rows_their_places() -> None:
     machine = rows(3, 0.3).with_rows(replace(row, phase=row.phase + 8.0) for row in rows(3).rows)
-    found = choose_phases(machine, [FORCE])
-    assert found.phases[0] == 8.0
-    assert [row.phase for row in found.machine.rows] == list(found.phases)
-    assert [row.lateral for row in found.machine.rows] == [row.lateral for row in machine.rows]
+    phasing = choose_phases(machine, [FORCE])
+    assert phasing.phases[0] == 8.0
+    assert [row.phase for row in phasing.machine.rows] == list(phasing.phases)
+    assert [row.lateral for row in phasing.machine.rows] == [row.lateral for row in machine.rows]
 
 
 @pytest.mark.exhaustive(but=["squares"])
 @pytest.mark.parametrize("combine", ["sum", "squares"])
 def test_combined_value(combine: str) -> None:
     wishes = [replace(FORCE, weight=2.0), Objective("drive_torque", "ripple")]
-    found = choose_phases(rows(3, 0.5), wishes, combine=combine)  # type: ignore[arg-type]
-    shares = np.array([found.after[w.name] / found.before[w.name] for w in wishes])
+    phasing = choose_phases(rows(3, 0.5), wishes, combine=combine)  # type: ignore[arg-type]
+    shares = np.array([phasing.after[w.name] / phasing.before[w.name] for w in wishes])
     weights = np.array([2.0, 1.0])
     expected = weights @ shares if combine == "sum" else np.sqrt(weights @ shares**2)
-    assert found.combined[1] == pytest.approx(expected, rel=1e-12)
-    assert found.combined[0] == pytest.approx(3.0 if combine == "sum" else np.sqrt(3.0))
+    assert phasing.combined[1] == pytest.approx(expected, rel=1e-12)
+    assert phasing.combined[0] == pytest.approx(3.0 if combine == "sum" else np.sqrt(3.0))
 
 
 def test_objective_that_is_0_before_counts_over_all_rows_alone() -> None:
-    found = choose_phases(rows(2), [FORCE, ROLL])
-    assert found.before[ROLL.name] == 0.0
-    assert any("rms of roll_moment is 0 before" in str(note) for note in found.notes)
-    one = choose_phases(rows(2, 0.7), [ROLL]).before[ROLL.name]
-    assert found.after[ROLL.name] >= 0.0
-    assert one > 0
+    phasing = choose_phases(rows(2), [FORCE, ROLL])
+    assert phasing.before[ROLL.name] == 0.0
+    assert any("rms of roll_moment is 0 before" in str(note) for note in phasing.notes)
+    first = choose_phases(rows(2, 0.7), [ROLL]).before[ROLL.name]
+    assert phasing.after[ROLL.name] >= 0.0
+    assert first > 0
 
 
 # Rows are counted in the tests above.
 @pytest.mark.exhaustive
 def test_many_rows_are_noted() -> None:
-    found = choose_phases(rows(6), [FORCE])
-    assert np.degrees(found.step) == pytest.approx(10.0)
-    assert "a grid of 5 deg has too many arrangements: one of 10 deg" in str(found.notes[0])
+    phasing = choose_phases(rows(6), [FORCE])
+    assert np.degrees(phasing.step) == pytest.approx(10.0)
+    assert "a grid of 5 deg has too many arrangements: one of 10 deg" in str(phasing.notes[0])
     more = choose_phases(rows(13), [FORCE, ROLL], combine="squares")
     assert more.combinations == 0
     assert 0 <= more.bound < more.combined[1]
@@ -300,29 +300,29 @@ def test_many_rows_are_noted() -> None:
 def test_many_equal_rows_are_laid_out_too() -> None:
     """More orders than can be tried: no swap of two rows twists less."""
     machine = rows(10)
-    found = choose_phases(machine, [FORCE], Phases(radians(30)))
-    assert found.remaining[0] == 10.0
-    twist = np.hypot(*(after for _, after in found.lateral.values()))
+    phasing = choose_phases(machine, [FORCE], Phases(radians(30)))
+    assert phasing.remaining[0] == 10.0
+    twist = np.hypot(*(after for _, after in phasing.lateral.values()))
     sorted_rows = machine.with_rows(
         replace(row, phase=phase)
-        for row, phase in zip(machine.rows, sorted(found.phases), strict=True)
+        for row, phase in zip(machine.rows, sorted(phasing.phases), strict=True)
     )
     again = choose_phases(sorted_rows, [FORCE], Phases(radians(30)))
     assert twist < 0.5 * np.hypot(*(before for before, _ in again.lateral.values()))
 
 
-def parts_told(objective: Objective) -> list[list[tuple[int, int]]]:
+def progress_by_parts(objective: Objective) -> list[list[tuple[int, int]]]:
     """What a search of 3 rows tells, by the parts of the work: each has a total of its own."""
-    told: list[tuple[int, int]] = []
-    choose_phases(rows(3), [objective], progress=lambda done, total: told.append((done, total)))
-    return [[*part] for _, part in groupby(told, key=lambda step: step[1])]
+    texts: list[tuple[int, int]] = []
+    choose_phases(rows(3), [objective], progress=lambda done, total: texts.append((done, total)))
+    return [[*part] for _, part in groupby(texts, key=lambda step: step[1])]
 
 
 @pytest.mark.exhaustive(but=["rms"])
 @pytest.mark.parametrize("measure", ["rms", "peak"])
-def test_progress_is_told(measure: Statistic) -> None:
+def test_progress_is_reported(measure: Statistic) -> None:
     """Of the grid, of the refining and of the proof; each goes on and never back."""
-    grid, refining, proof = parts_told(replace(FORCE, measure=measure))
+    grid, refining, proof = progress_by_parts(replace(FORCE, measure=measure))
     for part in (grid, refining, proof):
         done = [step for step, _ in part]
         assert done == sorted(done)
@@ -334,9 +334,9 @@ def test_progress_is_told(measure: Statistic) -> None:
 
 # Progress: the test above.
 @pytest.mark.exhaustive
-def test_each_arrangement_tells_of_its_steps() -> None:
+def test_each_arrangement_reports_of_its_steps() -> None:
     """Which takes a minute where a cycle has many turns and peaks count."""
-    _, refining, _ = parts_told(replace(FORCE, measure="peak"))
+    _, refining, _ = progress_by_parts(replace(FORCE, measure="peak"))
     cost = PhaseSearch(rows(3), (replace(FORCE, measure="peak"),), Phases(), "sum").cost
     cells = refining[-1][1] // most_steps(cost)
     assert 1 <= cells <= MOST_KINKED
@@ -375,8 +375,8 @@ def test_a_long_cycle_of_few_orders_is_computed_from_these() -> None:
 
 
 def test_values() -> None:
-    found = choose_phases(rows(2), [FORCE])
-    values = json.loads(json.dumps(found.to_dict()))
+    phasing = choose_phases(rows(2), [FORCE])
+    values = json.loads(json.dumps(phasing.to_dict()))
     assert values["phases"] == pytest.approx([0.0, np.pi])
     assert values["objectives"][0]["name"] == "rms of shaking_force"
     assert values["remaining_orders"][:3] == [2.0, 4.0, 6.0]
@@ -388,9 +388,9 @@ def test_values() -> None:
 
 
 def test_printed() -> None:
-    told = printed(choose_phases(rows(4), [FORCE, ROLL]).blocks())
-    assert "Remaining orders of the shaking force: 2, 4, 6, 8" in told
-    assert [line.split() for line in told.splitlines() if line.startswith("4 ")] == [
+    reported = printed(choose_phases(rows(4), [FORCE, ROLL]).blocks())
+    assert "Remaining orders of the shaking force: 2, 4, 6, 8" in reported
+    assert [line.split() for line in reported.splitlines() if line.startswith("4 ")] == [
         ["4", "450.0", "0", "0", "0.0"]
     ]
-    assert "roll moment" in told
+    assert "roll moment" in reported

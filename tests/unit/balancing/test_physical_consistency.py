@@ -17,12 +17,12 @@ def test_in_line_slider_crank() -> None:
 
     For both, J / l^2 + m_piston = 0, which no masses meet.
     """
-    found = feasibility(slider_crank())
-    assert found.force.masses_kept
-    assert found.moment.masses_kept
-    assert not found.both.possible
-    assert not found.both.by_points
-    proof = found.both.proof
+    result = feasibility(slider_crank())
+    assert result.force.masses_kept
+    assert result.moment.masses_kept
+    assert not result.both.possible
+    assert not result.both.by_points
+    proof = result.both.proof
     assert proof is not None
     assert proof.text == "rod.inertia / (1000 mm)^2 + piston.mass"
     assert proof.unit == "kg"
@@ -30,10 +30,10 @@ def test_in_line_slider_crank() -> None:
 
 
 def test_four_bar() -> None:
-    found = feasibility(crank_rocker())
-    assert found.force.masses_kept
-    assert found.force.by_points
-    for answer in (found.moment, found.both):
+    result = feasibility(crank_rocker())
+    assert result.force.masses_kept
+    assert result.force.by_points
+    for answer in (result.moment, result.both):
         assert answer.added_mass is None
         assert not answer.masses_kept
         assert answer.by_points
@@ -52,14 +52,14 @@ def test_four_bar_of_mass_points() -> None:
 
 
 def test_lone_crank() -> None:
-    found = feasibility(machine({"A": ORIGIN}, {"crank": heavy(A=ORIGIN, B=(0.3, 0.0))}))
-    assert all(answer.masses_kept for answer in found.answers)
-    assert found.force.reason == "The shaking force can be made zero, with every mass as it is."
+    result = feasibility(machine({"A": ORIGIN}, {"crank": heavy(A=ORIGIN, B=(0.3, 0.0))}))
+    assert all(answer.masses_kept for answer in result.answers)
+    assert result.force.reason == "The shaking force can be made zero, with every mass as it is."
 
 
 def test_wheels_that_turn_evenly() -> None:
-    found = feasibility(two_gears(eq.Gear("crank", "wheel", -1.0)))
-    assert all(answer.masses_kept for answer in found.answers)
+    result = feasibility(two_gears(eq.Gear("crank", "wheel", -1.0)))
+    assert all(answer.masses_kept for answer in result.answers)
 
 
 def test_opposed_pistons_must_weigh_the_same() -> None:
@@ -81,12 +81,12 @@ def test_opposed_pistons_must_weigh_the_same() -> None:
             eq.Slider("right", "T", "frame", "H", 0.0),
         ),
     )
-    found = feasibility(given).force
-    assert found.possible
-    assert not found.masses_kept
-    assert found.added_mass is not None
-    assert dict(found.added_mass) == pytest.approx({"right": 0.3}, rel=1e-4)
-    assert found.reason == (
+    force = feasibility(given).force
+    assert force.possible
+    assert not force.masses_kept
+    assert force.added_mass is not None
+    assert dict(force.added_mass) == pytest.approx({"right": 0.3}, rel=1e-4)
+    assert force.reason == (
         "The shaking force can be made zero, but not with every mass as it is: "
         "it takes 300 g on right."
     )
@@ -94,23 +94,23 @@ def test_opposed_pistons_must_weigh_the_same() -> None:
 
 def test_a_link_without_mass_needs_some() -> None:
     given = slider_crank().with_link("rod", mass=0.0, inertia=0.0, center_of_mass=ORIGIN)
-    found = feasibility(given).force
-    assert found.possible
-    assert dict(found.added_mass or {}) == {"rod": 0.0}
-    assert "some mass, however little, on rod" in found.reason
+    force = feasibility(given).force
+    assert force.possible
+    assert dict(force.added_mass or {}) == {"rod": 0.0}
+    assert "some mass, however little, on rod" in force.reason
 
 
 def test_a_yoke_cannot_be_balanced() -> None:
-    found = feasibility(eq.load("scotch-yoke")).force
-    assert found.proof is not None
-    assert (found.proof.text, found.proof.unit) == ("yoke.mass", "kg")
-    assert found.proof.least == pytest.approx(1.2, rel=1e-6)
+    force = feasibility(eq.load("scotch-yoke")).force
+    assert force.proof is not None
+    assert (force.proof.text, force.proof.unit) == ("yoke.mass", "kg")
+    assert force.proof.least == pytest.approx(1.2, rel=1e-6)
 
 
 def test_plain_data() -> None:
-    found = json.loads(json.dumps(feasibility(slider_crank()).to_dict()))
-    assert list(found) == ["shaking_force", "shaking_moment", "shaking_force_and_moment"]
-    assert found["shaking_force"] == {
+    content = json.loads(json.dumps(feasibility(slider_crank()).to_dict()))
+    assert list(content) == ["shaking_force", "shaking_moment", "shaking_force_and_moment"]
+    assert content["shaking_force"] == {
         "possible": True,
         "masses_kept": True,
         "added_mass": {},
@@ -118,5 +118,5 @@ def test_plain_data() -> None:
         "reason": "The shaking force can be made zero, with every mass as it is.",
         "proof": None,
     }
-    assert found["shaking_force_and_moment"]["proof"]["unit"] == "kg"
+    assert content["shaking_force_and_moment"]["proof"]["unit"] == "kg"
     assert str(feasibility(slider_crank())).count("\n") == 2

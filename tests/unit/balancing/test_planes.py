@@ -42,7 +42,7 @@ def eccentric(mass: float, radius: float, direction: float, plane: float) -> Bod
 
 def rotor(*more: Body) -> Machine:
     """Return a shaft in two bearings with what is eccentric on it."""
-    bodies = (*(eccentric(*one) for one in UNBALANCES), *more)
+    bodies = (*(eccentric(*unbalance) for unbalance in UNBALANCES), *more)
     return Machine(
         title="rotor",
         drive=Drive("shaft", 40.0),
@@ -60,8 +60,8 @@ def textbook() -> list[complex]:
     given = [(mass * radius * np.exp(1j * radians(way)), z) for mass, radius, way, z in UNBALANCES]
     left, right = PLANES
     return [
-        -sum(one * (z - right) for one, z in given) / (left - right),
-        -sum(one * (z - left) for one, z in given) / (right - left),
+        -sum(first * (z - right) for first, z in given) / (left - right),
+        -sum(first * (z - left) for first, z in given) / (right - left),
     ]
 
 
@@ -87,13 +87,13 @@ def test_balance_finds_them(wanted: tuple[str, str]) -> None:
         ],
         objectives=[Objective(name) for name in wanted],
     )
-    found = eq.balance(rotor().with_balance(plan))
-    added = found.machine.links["shaft"].bodies[len(UNBALANCES) :]
+    balanced = eq.balance(rotor().with_balance(plan))
+    added = balanced.machine.links["shaft"].bodies[len(UNBALANCES) :]
     assert [body.plane for body in added] == [*PLANES]
     for body, moment in zip(added, textbook(), strict=True):
         assert body.mass * complex(*body.at) == pytest.approx(moment, rel=1e-7)
     for name in wanted:
-        assert eq.analyze(found.machine, 24).summary[name].peak < 1e-3
+        assert eq.analyze(balanced.machine, 24).summary[name].peak < 1e-3
 
 
 def test_a_weight_beside_a_link_of_numbers_makes_bodies_of_it() -> None:
@@ -159,16 +159,16 @@ def test_a_pin_lies_in_one_plane() -> None:
         machine.with_link("rod-1", planes={"B1": 0.02})
 
 
-def test_what_statics_leaves_open_is_told() -> None:
+def test_what_statics_leaves_open_is_reported() -> None:
     """A coupler between joints in planes of their own hands couples on; one in its own does not."""
     machine = eq.load("yamashita-1").with_link("coupler", plane=0.02)
     assert not [*statics(assemble(machine)).notes()]
     bent = machine.with_link("rocker", planes={"C": 0.05})
     assert statics(assemble(bent)).open == ("B", "C")
-    assert any("tilting moments" in str(one) for one in linkage_remarks(assemble(bent)))
+    assert any("tilting moments" in str(remark) for remark in linkage_remarks(assemble(bent)))
 
 
-def test_what_statics_leaves_open_is_told_without_masses_too() -> None:
+def test_what_statics_leaves_open_is_reported_without_masses_too() -> None:
     """`analyze` prints no joint forces then, beside which it stands else."""
     machine = eq.load("yamashita-1").with_link("coupler", plane=0.02)
     for link in machine.links:
@@ -180,7 +180,7 @@ def test_what_statics_leaves_open_is_told_without_masses_too() -> None:
     assert sum("tilting moments" in str(note) for note in notes) == 1
 
 
-def test_a_plan_tells_two_counterweights_on_one_shaft_apart() -> None:
+def test_a_plan_reports_two_counterweights_on_one_shaft_apart() -> None:
     masses = tuple(AddedMass("shaft", "A", Weight(plane=plane)) for plane in (None, *PLANES))
     assert list(freedoms(Balance(masses=masses))) == [
         "any mass on shaft about A",
@@ -223,23 +223,23 @@ def two_cylinders(*planes: float) -> eq.Machine:
 
 def test_plates_beside_the_planes_of_pins_do_not_lie_over_them() -> None:
     """Seen along the shaft they cover both; they are 10 mm and more from the planes of these."""
-    found = eq.balance(two_cylinders(-0.06, 0.06))
-    for change, pin in zip(found.changes, (-0.03, 0.03), strict=True):
+    balanced = eq.balance(two_cylinders(-0.06, 0.06))
+    for change, pin in zip(balanced.changes, (-0.03, 0.03), strict=True):
         assert any(covers(piece, 0j, complex(pin)) for piece in change.values["pieces"])
-    assert not any("lies over" in str(note) for note in found.notes)
+    assert not any("lies over" in str(note) for note in balanced.notes)
 
 
 @pytest.mark.parametrize(("z", "count"), [(0.0, 1), (0.004, 1), (-0.1, 0), (0.1, 0)])
 def test_a_plate_lies_over_a_pin_whose_plane_it_takes_up(z: float, count: int) -> None:
     """A plate about z = 0 on a crank with its pin at z."""
     machine = eq.load("four-stroke-engine")
-    found = eq.balance(machine.with_link("crank", planes={"B": z}))
-    assert len([note for note in found.notes if "lies over pin B" in str(note)]) == count
+    balanced = eq.balance(machine.with_link("crank", planes={"B": z}))
+    assert len([note for note in balanced.notes if "lies over pin B" in str(note)]) == count
 
 
 def test_what_was_nothing_has_no_speed_at_which_it_is_as_before() -> None:
     """The pins cancel: no shaking moment or force along x before, and rounding of it after."""
-    found = eq.balance(two_cylinders(-0.06, 0.06))
+    balanced = eq.balance(two_cylinders(-0.06, 0.06))
     names = {f"shaking_force{part}.{measure}" for part in ("", ".y") for measure in ("rms", "peak")}
-    assert set(found.equivalent_speeds) == names
-    assert found.equivalent_speeds["shaking_force.rms"] == pytest.approx(125.0)
+    assert set(balanced.equivalent_speeds) == names
+    assert balanced.equivalent_speeds["shaking_force.rms"] == pytest.approx(125.0)

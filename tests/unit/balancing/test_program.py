@@ -39,15 +39,15 @@ def factory(hours: float = 18.0) -> Program:
 
 
 def test_linear_program() -> None:
-    found = factory().solve()
-    assert found.x == pytest.approx([2.0, 6.0], abs=CLOSE)
-    assert found.value == pytest.approx(-36.0, abs=CLOSE)
-    assert found.bound <= found.value
-    assert found.value - found.bound < 1e-7
-    assert found.prices == pytest.approx({"first": 0.0, "second": 1.5, "third": 1.0}, abs=1e-7)
+    solution = factory().solve()
+    assert solution.x == pytest.approx([2.0, 6.0], abs=CLOSE)
+    assert solution.value == pytest.approx(-36.0, abs=CLOSE)
+    assert solution.bound <= solution.value
+    assert solution.value - solution.bound < 1e-7
+    assert solution.prices == pytest.approx({"first": 0.0, "second": 1.5, "third": 1.0}, abs=1e-7)
 
 
-def test_a_solution_tells_its_cuts_and_leaves_the_program_as_it_is() -> None:
+def test_a_solution_reports_its_cuts_and_leaves_the_program_as_it_is() -> None:
     """Least -x - y in the unit circle, of which the program knows no more than tangents: each round
     adds that where the ray through the last solution leaves the circle.
     """
@@ -123,9 +123,9 @@ def away(radius: float, weight: float = 2.0) -> Program:
 
 
 def test_second_order_cone() -> None:
-    found = away(0.5).solve()
-    assert found.x == pytest.approx(1 - 0.5 * np.array([1, 2]) / np.sqrt(5), abs=1e-7)
-    assert found.value == pytest.approx(3 - 0.5 * np.sqrt(5), abs=CLOSE)
+    solution = away(0.5).solve()
+    assert solution.x == pytest.approx(1 - 0.5 * np.array([1, 2]) / np.sqrt(5), abs=1e-7)
+    assert solution.value == pytest.approx(3 - 0.5 * np.sqrt(5), abs=CLOSE)
 
 
 @pytest.mark.parametrize("radius", [0.3, 1.7])
@@ -160,9 +160,9 @@ def test_rotated_cone() -> None:
     both = Affine(np.eye(2), np.array(z), np.zeros(2))
     program.rotated(row([x], [1.0]), row([y], [1.0]), both)
     program.cost = {x: 1.0, y: 4.0}
-    found = program.solve()
-    assert found.value == pytest.approx(20.0, abs=1e-7)
-    assert found.x[:2] == pytest.approx([10.0, 2.5], abs=1e-4)
+    solution = program.solve()
+    assert solution.value == pytest.approx(20.0, abs=1e-7)
+    assert solution.x[:2] == pytest.approx([10.0, 2.5], abs=1e-4)
 
 
 def test_rotated_cone_over_sums_that_share_numbers() -> None:
@@ -171,9 +171,9 @@ def test_rotated_cone_over_sums_that_share_numbers() -> None:
     x, t = map(int, program.numbers(2))
     program.rotated(row([x], [1.0], 1.0), row([x], [-1.0], 2.0), row([t], [1.0]))
     program.cost = {t: -1.0}
-    found = program.solve()
-    assert found.x == pytest.approx([0.5, 1.5], abs=1e-5)
-    assert found.value == pytest.approx(-1.5, abs=CLOSE)
+    solution = program.solve()
+    assert solution.x == pytest.approx([0.5, 1.5], abs=1e-5)
+    assert solution.value == pytest.approx(-1.5, abs=CLOSE)
 
 
 def test_sparse_rows_do_what_full_ones_do() -> None:
@@ -218,15 +218,15 @@ def round_about(gradual: bool) -> Program:
 def test_rows_that_are_taken_in_one_by_one() -> None:
     """Few of them, and those between them: the circle instead of the polygon that they make."""
     program, whole = round_about(True), round_about(False).solve()
-    found = program.solve()
-    assert found.value == pytest.approx(-2 * np.sqrt(5), abs=1e-8)
-    assert found.value == pytest.approx(whole.value, abs=1e-6)
-    assert found.x == pytest.approx(whole.x, abs=2e-3)
-    assert found.bound <= found.value + 1e-9
-    assert found.prices["radius"] == pytest.approx(np.sqrt(5), rel=1e-5)
-    taken_in = (*program.blocks, *(block for cuts in found.cuts for block in cuts))
+    solution = program.solve()
+    assert solution.value == pytest.approx(-2 * np.sqrt(5), abs=1e-8)
+    assert solution.value == pytest.approx(whole.value, abs=1e-6)
+    assert solution.x == pytest.approx(whole.x, abs=2e-3)
+    assert solution.bound <= solution.value + 1e-9
+    assert solution.prices["radius"] == pytest.approx(np.sqrt(5), rel=1e-5)
+    taken_in = (*program.blocks, *(block for cuts in solution.cuts for block in cuts))
     assert sum(block.groups for block in taken_in) < 400
-    assert program.waiting[0].slack(found.x).min() > -1e-8
+    assert program.waiting[0].slack(solution.x).min() > -1e-8
     assert program.without({"radius"}).waiting == []
 
 
@@ -272,27 +272,27 @@ def size_of(program: Program, columns: list[int], factors: list[float], constant
     return size
 
 
-def proved(found: ProvedSolution, gap: float = 1e-8) -> bool:
-    return found.bound <= found.value and found.value - found.bound < gap
+def proved(result: ProvedSolution, gap: float = 1e-8) -> bool:
+    return result.bound <= result.value and result.value - result.bound < gap
 
 
 def test_exact_where_the_square_is_wanted_small() -> None:
     """Least y^2 + y at -1/2: one program is enough."""
     program, square = toy()
     program.cost = {0: 1.0, 1: 1.0}
-    found = minimise(program, [square])
-    assert found.value == pytest.approx(-0.25, abs=1e-9)
-    assert found.nodes == 1
-    assert proved(found)
+    minimum = minimise(program, [square])
+    assert minimum.value == pytest.approx(-0.25, abs=1e-9)
+    assert minimum.nodes == 1
+    assert proved(minimum)
 
 
 def test_square_wanted_large() -> None:
     """Least y - y^2 over [-2, 1.5] is -6 at -2."""
     program, square = toy(-2.0, 1.5)
     program.cost = {0: -1.0, 1: 1.0}
-    found = minimise(program, [square])
-    assert found.x[:2] == pytest.approx([4.0, -2.0], abs=1e-6)
-    assert proved(found)
+    minimum = minimise(program, [square])
+    assert minimum.x[:2] == pytest.approx([4.0, -2.0], abs=1e-6)
+    assert proved(minimum)
 
 
 def hollows(towards: float) -> tuple[Program, Square]:
@@ -308,11 +308,11 @@ def hollows(towards: float) -> tuple[Program, Square]:
 def test_two_hollows(towards: float) -> None:
     """The deeper one is found, though the first program lies between them."""
     program, square = hollows(towards)
-    found = minimise(program, [square])
-    assert found.x[1] == pytest.approx(np.sign(towards), abs=1e-7)
-    assert found.value == pytest.approx(0.1 * (1 - abs(towards)), abs=1e-8)
-    assert proved(found)
-    assert found.nodes > 1
+    minimum = minimise(program, [square])
+    assert minimum.x[1] == pytest.approx(np.sign(towards), abs=1e-7)
+    assert minimum.value == pytest.approx(0.1 * (1 - abs(towards)), abs=1e-8)
+    assert proved(minimum)
+    assert minimum.nodes > 1
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -327,15 +327,15 @@ def test_against_a_grid(seed: int) -> None:
     second.keep_between(program, -1.0, 1.0)
     sizes = [size_of(program, [0, 1, lift, z], list(f[:4]), f[4]) for f in factors]
     program.cost = dict.fromkeys(sizes, 1.0)
-    found = minimise(program, [first, second])
+    minimum = minimise(program, [first, second])
     y, z = np.meshgrid(np.linspace(-1, 1, 801), np.linspace(-1, 1, 801))
     grid = sum(abs(f[0] * y**2 + f[1] * y + f[2] * z**2 + f[3] * z + f[4]) for f in factors)
     least = float(np.min(grid))
-    assert found.bound <= least + 1e-9
-    assert found.value <= least + 1e-8
-    assert found.value > least - 0.02  # the grid's own step
-    assert proved(found)
-    assert all(square.excess(found.x) < 1e-7 for square in (first, second))
+    assert minimum.bound <= least + 1e-9
+    assert minimum.value <= least + 1e-8
+    assert minimum.value > least - 0.02  # the grid's own step
+    assert proved(minimum)
+    assert all(square.excess(minimum.x) < 1e-7 for square in (first, second))
 
 
 def test_square_over_a_mass() -> None:
@@ -352,21 +352,21 @@ def test_square_over_a_mass() -> None:
     program.nonnegative(Affine.of(m, 1.0))
     size = size_of(program, [lift], [1.0], -0.5)
     program.cost = {size: 1.0, m: 0.1, y: 0.01}
-    found = minimise(program, [square])
-    assert found.x[:3] == pytest.approx([0.5, -0.5, 0.5], abs=1e-6)
-    assert found.value == pytest.approx(0.045, abs=1e-8)
-    assert proved(found)
+    minimum = minimise(program, [square])
+    assert minimum.x[:3] == pytest.approx([0.5, -0.5, 0.5], abs=1e-6)
+    assert minimum.value == pytest.approx(0.045, abs=1e-8)
+    assert proved(minimum)
 
 
 def test_a_ratio_without_limits() -> None:
     """|y^2 - 30| + |y - 7| over all y: at the root of 30."""
     program, square = toy(-np.inf, np.inf)
-    one = size_of(program, [0], [1.0], -30.0)
+    first = size_of(program, [0], [1.0], -30.0)
     other = size_of(program, [1], [1.0], -7.0)
-    program.cost = {one: 1.0, other: 1.0}
-    found = minimise(program, [square], 30.0)
-    assert found.x[1] == pytest.approx(np.sqrt(30), abs=1e-6)
-    assert proved(found, 1e-6)
+    program.cost = {first: 1.0, other: 1.0}
+    minimum = minimise(program, [square], 30.0)
+    assert minimum.x[1] == pytest.approx(np.sqrt(30), abs=1e-6)
+    assert proved(minimum, 1e-6)
 
 
 def test_price_of_a_limit_that_moves_the_ratio() -> None:
@@ -375,9 +375,9 @@ def test_price_of_a_limit_that_moves_the_ratio() -> None:
     slope = Affine.fixed(1.0)
     program.nonnegative(Affine.of(1, -1.0, 1.5), "most", slope)
     program.cost = {0: -1.0}
-    found = minimise(program, [square])
-    assert found.value == pytest.approx(-2.25, abs=1e-8)
-    assert found.prices["most"] == pytest.approx(3.0, rel=1e-3)
+    minimum = minimise(program, [square])
+    assert minimum.value == pytest.approx(-2.25, abs=1e-8)
+    assert minimum.prices["most"] == pytest.approx(3.0, rel=1e-3)
 
 
 def test_what_cannot_be_met() -> None:
@@ -396,10 +396,10 @@ def test_what_no_square_meets() -> None:
         minimise(program, [square])
 
 
-def test_progress_is_told() -> None:
+def test_progress_is_reported() -> None:
     program, square = hollows(0.2)
-    told: list[tuple[int, int]] = []
-    found = minimise(program, [square], progress=lambda *pair: told.append(pair))
-    assert told
-    assert told[-1][0] == found.nodes
-    assert all(done <= total for done, total in told)
+    texts: list[tuple[int, int]] = []
+    minimum = minimise(program, [square], progress=lambda *pair: texts.append(pair))
+    assert texts
+    assert texts[-1][0] == minimum.nodes
+    assert all(done <= total for done, total in texts)

@@ -44,18 +44,18 @@ def rms(machine: Machine, output: str = "shaking_force.y") -> float:
 
 
 def test_values_are_those_of_the_machine_that_comes_back() -> None:
-    found = eq.balance(
+    balanced = eq.balance(
         side_by_side(TYPE_II, (0.0, 0.4, 1.6)),
         Balance(masses=(POINT,), phases=PHASES, objectives=(LIFT,)),
     )
-    before, after = found.objectives[LIFT.name]
-    assert before == pytest.approx(rms(found.original), rel=1e-9)
-    assert after == pytest.approx(rms(found.machine), rel=1e-7)
-    assert found.cost == pytest.approx(after / before, rel=1e-9)
-    assert [change.kind for change in found.changes] == ["added mass", "phases"]
-    assert found.phasing is not None
-    assert found.phasing.phases == tuple(row.phase for row in found.machine.rows)
-    assert 0 <= found.gap <= CLOSE * (1 + 1e-6)
+    before, after = balanced.objectives[LIFT.name]
+    assert before == pytest.approx(rms(balanced.original), rel=1e-9)
+    assert after == pytest.approx(rms(balanced.machine), rel=1e-7)
+    assert balanced.cost == pytest.approx(after / before, rel=1e-9)
+    assert [change.kind for change in balanced.changes] == ["added mass", "phases"]
+    assert balanced.phasing is not None
+    assert balanced.phasing.phases == tuple(row.phase for row in balanced.machine.rows)
+    assert 0 <= balanced.gap <= CLOSE * (1 + 1e-6)
 
 
 def test_together_where_one_after_the_other_is_worse() -> None:
@@ -67,21 +67,21 @@ def test_together_where_one_after_the_other_is_worse() -> None:
     with refused(eq.EquipoiseError, name="rms of shaking_force.y"):
         eq.balance(machine, plan)
     alone = choose_phases(machine, [LIFT])
-    found = eq.balance(machine, replace(plan, phases=PHASES))
-    before, after = found.objectives[LIFT.name]
+    balanced = eq.balance(machine, replace(plan, phases=PHASES))
+    before, after = balanced.objectives[LIFT.name]
     assert after < 0.6 * alone.after[LIFT.name]
-    assert after == pytest.approx(rms(found.machine), rel=1e-7)
-    assert found.bound <= after / before <= found.bound + CLOSE * (1 + 1e-6)
+    assert after == pytest.approx(rms(balanced.machine), rel=1e-7)
+    assert balanced.bound <= after / before <= balanced.bound + CLOSE * (1 + 1e-6)
 
 
 # Rows with masses: `test_values_are_those_of_the_machine_that_comes_back`.
 @pytest.mark.exhaustive
 def test_riding_transplanter() -> None:
     """Its rows are in phases in which no mass on the crank does anything to the vertical force."""
-    found = eq.balance(RIDING, Balance(masses=(POINT,), phases=PHASES, objectives=(LIFT,)))
+    balanced = eq.balance(RIDING, Balance(masses=(POINT,), phases=PHASES, objectives=(LIFT,)))
     alone = choose_phases(RIDING, [LIFT])
-    assert found.objectives[LIFT.name][1] < 0.5 * alone.after[LIFT.name]
-    assert found.gap <= CLOSE * (1 + 1e-6)
+    assert balanced.objectives[LIFT.name][1] < 0.5 * alone.after[LIFT.name]
+    assert balanced.gap <= CLOSE * (1 + 1e-6)
 
 
 # Together they are better than one after the other: the test above.
@@ -91,17 +91,17 @@ def test_no_phases_on_a_grid_with_their_best_masses_are_better() -> None:
     wishes = (LIFT, Objective("shaking_force.x", weight=0.5))
     plan = Balance(masses=(POINT,), objectives=wishes, combine="squares")
     machine = side_by_side(TYPE_II, (0.0, 0.4))
-    found = eq.balance(machine, replace(plan, phases=PHASES))
-    old = [found.objectives[one.name][0] for one in wishes]
+    balanced = eq.balance(machine, replace(plan, phases=PHASES))
+    old = [balanced.objectives[wish.name][0] for wish in wishes]
     for phase in np.radians(np.arange(0, 360, 10)):
         turned = machine.with_rows([machine.rows[0], replace(machine.rows[1], phase=phase)])
         try:
-            one = eq.balance(turned, plan).machine
+            first = eq.balance(turned, plan).machine
         except eq.EquipoiseError:  # where masses do nothing
-            one = turned
-        shares = np.array([rms(one, w.output) for w in wishes]) / old * [1.0, np.sqrt(0.5)]
-        assert np.linalg.norm(shares) >= found.cost - CLOSE
-        assert np.linalg.norm(shares) >= found.bound - 1e-9
+            first = turned
+        shares = np.array([rms(first, w.output) for w in wishes]) / old * [1.0, np.sqrt(0.5)]
+        assert np.linalg.norm(shares) >= balanced.cost - CLOSE
+        assert np.linalg.norm(shares) >= balanced.bound - 1e-9
 
 
 CASES: dict[str, Balance] = {
@@ -119,11 +119,11 @@ CASES: dict[str, Balance] = {
 def test_no_machine_tried_at_random_is_below_the_bound(case: str) -> None:
     plan = CASES[case]
     machine = side_by_side(TYPE_II, (0.0, 0.4, 1.6))
-    found = eq.balance(machine, replace(plan, phases=PHASES))
-    assert found.bound <= found.cost < found.whole
+    balanced = eq.balance(machine, replace(plan, phases=PHASES))
+    assert balanced.bound <= balanced.cost < balanced.whole
     rng = np.random.default_rng(7)
     for share in rng.uniform(0, 1, 20):
-        near = [row.phase for row in found.machine.rows] + share * rng.normal(size=3)
+        near = [row.phase for row in balanced.machine.rows] + share * rng.normal(size=3)
         link = "coupler" if plan.moves else "crank"
         body = TYPE_II.links[link]
         assert body.mass is not None and body.center_of_mass is not None
@@ -143,11 +143,15 @@ def test_no_machine_tried_at_random_is_below_the_bound(case: str) -> None:
             )
         turned = side_by_side(changed, near)
         value = 0.0
-        for one in plan.objectives:
-            signal = in_time(turned, one.output)
-            size = np.max(np.abs(signal)) if one.measure == "peak" else rms(turned, one.output)
-            value += size / found.objectives[one.name][0]
-        assert value >= found.bound - 1e-6
+        for objective in plan.objectives:
+            signal = in_time(turned, objective.output)
+            size = (
+                np.max(np.abs(signal))
+                if objective.measure == "peak"
+                else rms(turned, objective.output)
+            )
+            value += size / balanced.objectives[objective.name][0]
+        assert value >= balanced.bound - 1e-6
 
 
 def test_a_force_that_can_vanish() -> None:
@@ -157,12 +161,12 @@ def test_a_force_that_can_vanish() -> None:
         phases=PHASES,
         objectives=(Objective("shaking_force"),),
     )
-    found = eq.balance(side_by_side(TYPE_II, (0.0, 0.4)), plan)
-    assert found.cost == pytest.approx(0.0, abs=1e-9)
-    assert found.bound == pytest.approx(0.0, abs=1e-9)
-    (x, y) = found.changes[0].values["to"]
+    balanced = eq.balance(side_by_side(TYPE_II, (0.0, 0.4)), plan)
+    assert balanced.cost == pytest.approx(0.0, abs=1e-9)
+    assert balanced.bound == pytest.approx(0.0, abs=1e-9)
+    (x, y) = balanced.changes[0].values["to"]
     assert (1e3 * x, 1e3 * y) == pytest.approx((-3.118, 0.0), abs=1e-3)
-    assert found.machine.rows[1].phase == pytest.approx(pi, abs=1e-6)
+    assert balanced.machine.rows[1].phase == pytest.approx(pi, abs=1e-6)
 
 
 @EXHAUSTIVE
@@ -170,11 +174,11 @@ def test_limits_are_kept_in_other_phases() -> None:
     """Of phases alone, and with masses, of which none could keep the limit in the phases before."""
     machine = side_by_side(TYPE_II, (0.0, 0.0, 0.0, 0.0))
     roll = Limit(Objective("roll_moment"), at_most=1.0)
-    found = eq.balance(machine, Balance(phases=PHASES, objectives=(LIFT,), limits=(roll,)))
-    assert rms(found.machine, "roll_moment") <= 1.0 * (1 + 1e-6)
+    balanced = eq.balance(machine, Balance(phases=PHASES, objectives=(LIFT,), limits=(roll,)))
+    assert rms(balanced.machine, "roll_moment") <= 1.0 * (1 + 1e-6)
     free = choose_phases(machine, [LIFT]).after[LIFT.name]
-    assert free < rms(found.machine) < 0.5 * rms(machine)
-    assert found.bound <= found.cost
+    assert free < rms(balanced.machine) < 0.5 * rms(machine)
+    assert balanced.bound <= balanced.cost
     machine = side_by_side(TYPE_II, (0.0, 0.0))
     along = Limit(Objective("shaking_force.x"), ratio=0.2)
     plan = Balance(masses=(POINT,), objectives=(LIFT,), limits=(along,))
@@ -196,11 +200,11 @@ def test_mass_that_does_nothing_is_not_added() -> None:
     """A disc that is too light to do better than phases alone do without it."""
     disc = AddedMass("crank", "A", Weight("disc", 0.06, thickness=0.012, density=7850.0))
     machine = side_by_side(TYPE_II, [0.0] * 4)
-    found = eq.balance(machine, Balance(masses=(disc,), phases=PHASES, objectives=(LIFT,)))
-    assert [change.kind for change in found.changes] == ["phases"]
-    assert found.added_mass == 0.0
-    assert found.cost == pytest.approx(choose_phases(machine, [LIFT]).combined[1], rel=1e-9)
-    assert found.gap <= CLOSE * (1 + 1e-6)
+    balanced = eq.balance(machine, Balance(masses=(disc,), phases=PHASES, objectives=(LIFT,)))
+    assert [change.kind for change in balanced.changes] == ["phases"]
+    assert balanced.added_mass == 0.0
+    assert balanced.cost == pytest.approx(choose_phases(machine, [LIFT]).combined[1], rel=1e-9)
+    assert balanced.gap <= CLOSE * (1 + 1e-6)
 
 
 @EXHAUSTIVE
@@ -208,21 +212,21 @@ def test_gauges_at_several_speeds() -> None:
     """Masses that only move, so that the support carries the same."""
     end = Objective("gauges.left_end", speeds=(20.0, 25.0))
     plan = Balance(moves=(COUPLER,), phases=PHASES, objectives=(end,))
-    found = eq.balance(RIDING, plan)
+    balanced = eq.balance(RIDING, plan)
     alone = choose_phases(RIDING, [end]).after[end.name]
-    _, after = found.objectives[end.name]
+    _, after = balanced.objectives[end.name]
     assert after <= alone * (1 + 1e-9)
     loudest = max(
-        float(eq.respond(found.machine, speed).gauges["left_end"].displacement.vibration_rms)
+        float(eq.respond(balanced.machine, speed).gauges["left_end"].displacement.vibration_rms)
         for speed in end.speeds
     )
     assert after == pytest.approx(loudest, rel=1e-6)
-    assert found.bound <= found.cost
+    assert balanced.bound <= balanced.cost
 
 
 # The scope of rows: the other tests of this file.
 @pytest.mark.exhaustive
-def test_gears_are_told_in_the_scope() -> None:
+def test_gears_are_reported_in_the_scope() -> None:
     weight = Weight("any", 0.04, at_most=0.3)
     plan = Balance(
         geared=(GearedWeight("crank", weight, ratio=(1.0, 1.0), axis=(0.1, 0.0)),),
@@ -230,6 +234,6 @@ def test_gears_are_told_in_the_scope() -> None:
         objectives=(LIFT,),
     )
     machine = TYPE_II.with_rows([Row(0.0, -0.15), Row(0.5, 0.15)])
-    found = eq.balance(machine, plan)
-    assert "for the gears taken" in " and ".join(map(str, found.scope))
-    assert rms(found.machine) <= choose_phases(machine, [LIFT]).after[LIFT.name] * (1 + 1e-9)
+    balanced = eq.balance(machine, plan)
+    assert "for the gears taken" in " and ".join(map(str, balanced.scope))
+    assert rms(balanced.machine) <= choose_phases(machine, [LIFT]).after[LIFT.name] * (1 + 1e-9)

@@ -24,10 +24,10 @@ def test_parts_give_what_all_crank_angles_at_once_do(
     whole = sensitivities(machine, output, 90)
     monkeypatch.setattr(sensitivity, "AT_ONCE", 7 * sensitivity.FOR_EACH * len(machine.links) ** 2)
     parts = sensitivities(machine, output, 90)  # of seven crank angles
-    for name, one in whole.by_name.items():
+    for name, value in whole.by_name.items():
         other = parts.by_name[name]
-        assert other.values == pytest.approx(one.values, rel=1e-9, abs=1e-9 * one.rms)
-        assert np.allclose(other.no_effect_at, one.no_effect_at)
+        assert other.values == pytest.approx(value.values, rel=1e-9, abs=1e-9 * value.rms)
+        assert np.allclose(other.no_effect_at, value.no_effect_at)
 
 
 def test_many_crank_angles_take_little_memory() -> None:

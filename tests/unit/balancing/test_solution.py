@@ -58,14 +58,14 @@ NUMBERS = PROBLEM.project_feasible(
 
 
 def test_machine_of_numbers() -> None:
-    found = PROBLEM.machine_with(NUMBERS)
+    result = PROBLEM.machine_with(NUMBERS)
     length = PROBLEM.parts[0].length  # type: ignore[attr-defined]
-    coupler, old = found.links["coupler"], MACHINE.links["coupler"]
+    coupler, old = result.links["coupler"], MACHINE.links["coupler"]
     assert coupler.center_of_mass == pytest.approx((-0.2 * length, 0.1 * length))
     assert (coupler.mass, coupler.inertia) == pytest.approx((old.mass, old.inertia))
-    assert found.links["crank"].mass == pytest.approx(MACHINE.links["crank"].mass + 0.4)
-    assert found.links["rocker"].mass == pytest.approx(MACHINE.links["rocker"].mass + 0.2)
-    (spring,) = found.springs
+    assert result.links["crank"].mass == pytest.approx(MACHINE.links["crank"].mass + 0.4)
+    assert result.links["rocker"].mass == pytest.approx(MACHINE.links["rocker"].mass + 0.2)
+    (spring,) = result.springs
     assert spring.stiffness == pytest.approx(40.0)
 
 
@@ -119,7 +119,7 @@ def test_squares_that_matter() -> None:
     assert not lifts & set(map(int, crank))
 
 
-def test_limits_are_told_with_their_names() -> None:
+def test_limits_are_reported_with_their_names() -> None:
     limit = Limit(Objective("joints.A", "peak"), at_most=50.0)
     problem = Problem.of(MACHINE, replace(WHOLE, limits=(limit,)))
     names = problem.built.program.names
@@ -198,8 +198,8 @@ def test_refusals(
 def test_the_least_mass_of_equally_good_ones_is_taken() -> None:
     """A limit that is met with less: the first order of y alone takes one first moment."""
     wish = Objective("shaking_force.y", "rms", (1.0,))
-    found = eq.balance(MACHINE, Balance(masses=(CRANK,), objectives=(wish,)))
-    change = found.changes[0].values
+    balanced = eq.balance(MACHINE, Balance(masses=(CRANK,), objectives=(wish,)))
+    change = balanced.changes[0].values
     assert change["mass"] < 0.8
     assert change["moment"] == pytest.approx(0.06 * change["mass"], rel=1e-4)
 
@@ -259,42 +259,42 @@ PLANS = {
 
 @pytest.mark.parametrize("name", PLANS)
 def test_the_cone_program_finds_the_same(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = balance(MACHINE, PLANS[name])
-    assert (str(found.method), found.gap, found.looked_at) == ("closed form", 0.0, 0)
+    balanced = balance(MACHINE, PLANS[name])
+    assert (str(balanced.method), balanced.gap, balanced.looked_at) == ("closed form", 0.0, 0)
     monkeypatch.setattr("equipoise.balancing.solution.closed_form", lambda problem: None)
     program = balance(MACHINE, PLANS[name])
     assert str(program.method) == "cone program"
-    assert found.cost == pytest.approx(program.cost, abs=1e-8)
-    assert found.cost <= program.cost + 1e-12
-    assert program.bound <= found.cost + 1e-9
+    assert balanced.cost == pytest.approx(program.cost, abs=1e-8)
+    assert balanced.cost <= program.cost + 1e-12
+    assert program.bound <= balanced.cost + 1e-9
 
 
 @pytest.mark.parametrize("weight", [0.2, 2.0, 9.0])
 def test_weights_multiply_the_squares(weight: float) -> None:
     """What is least is weight * x^2 + y^2, over values before: against Nelder and Mead."""
     both = (replace(LIFT, weight=weight), Objective("shaking_force.x"))
-    found = balance(MACHINE, Balance(moves=(MOVE,), objectives=both, combine="squares"))
-    before = np.array([Problem.value_of(MACHINE, one) for one in both])
+    balanced = balance(MACHINE, Balance(moves=(MOVE,), objectives=both, combine="squares"))
+    before = np.array([Problem.value_of(MACHINE, item) for item in both])
 
     def cost(place: np.ndarray[Any, Any]) -> float:
         moved = MACHINE.with_link("coupler", center_of_mass=tuple(map(float, place)))
-        shares = [Problem.value_of(moved, one) for one in both] / before
+        shares = [Problem.value_of(moved, item) for item in both] / before
         return float(np.sqrt(weight * shares[0] ** 2 + shares[1] ** 2))
 
     start = MACHINE.links["coupler"].center_of_mass
     blind = minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
-    assert found.cost == pytest.approx(blind.fun, rel=1e-8)
-    assert found.machine.links["coupler"].center_of_mass == pytest.approx(blind.x, abs=1e-6)
+    assert balanced.cost == pytest.approx(blind.fun, rel=1e-8)
+    assert balanced.machine.links["coupler"].center_of_mass == pytest.approx(blind.x, abs=1e-6)
 
 
 def test_the_least_squares_is_flat_there() -> None:
     """Any step of the coupler's centre makes it worse."""
-    found = balance(MACHINE, PLANS["a moved centre"])
-    x, y = found.machine.links["coupler"].center_of_mass
+    balanced = balance(MACHINE, PLANS["a moved centre"])
+    x, y = balanced.machine.links["coupler"].center_of_mass
     for step in np.exp(1j * np.arange(0, 6, 0.5)) * 1e-4:
         place = (x + step.real, y + step.imag)
         beside = MACHINE.with_link("coupler", center_of_mass=place)
-        assert Problem.value_of(beside, LIFT) > found.objectives[LIFT.name][1]
+        assert Problem.value_of(beside, LIFT) > balanced.objectives[LIFT.name][1]
 
 
 LIMITED = {
@@ -341,10 +341,10 @@ def least_of(objective: Objective, *limits: Limit) -> float:
     return eq.balance(MACHINE, plan).objectives[objective.name][1]
 
 
-def told_number(text: str) -> float:
-    found = re.search(r"can become ([\d.e+-]+) ", text)
-    assert found is not None, text
-    return float(found[1])
+def printed_number(text: str) -> float:
+    match = re.search(r"can become ([\d.e+-]+) ", text)
+    assert match is not None, text
+    return float(match[1])
 
 
 def test_one_that_cannot_be_met() -> None:
@@ -356,7 +356,7 @@ def test_one_that_cannot_be_met() -> None:
     )
     assert text.endswith(" N at the least")
     least = least_of(Objective("shaking_force", "peak"))
-    assert told_number(text) == pytest.approx(least, rel=1e-3)
+    assert printed_number(text) == pytest.approx(least, rel=1e-3)
 
 
 def test_absolute_limits_have_units() -> None:
@@ -370,13 +370,13 @@ def test_two_that_clash() -> None:
     y = limit("shaking_force.y", "rms", ratio=0.26)
     harmless = limit("drive_torque", "peak", ratio=50.0)
     text = refusal(harmless, x, y)
-    for one in (x, y):
-        assert least_of(FORCE, one) > 0
+    for item in (x, y):
+        assert least_of(FORCE, item) > 0
     assert text.startswith("these limits clash: rms of shaking_force.x at most 2.9 N and ")
     assert " and rms of shaking_force.y at most 26 % of before; " in text
     assert "drive_torque" not in text
     assert text.endswith(" while the other is kept")
-    assert told_number(text) == pytest.approx(least_of(x.objective, y), rel=1e-3)
+    assert printed_number(text) == pytest.approx(least_of(x.objective, y), rel=1e-3)
 
 
 def test_mass_that_is_lacking_is_named() -> None:

@@ -76,7 +76,7 @@ def test_no_body_reaches_beyond_its_room(shape: WeightShape) -> None:
     """The largest first moment of a given mass, by the bodies' own formulas."""
     weight = replace(ROOMS[shape], at_most=None, mass=0.3)
     part = part_of(weight)
-    found = least(part, {"x": -1.0})
+    result = least(part, {"x": -1.0})
     plate, room, inner = 0.008 * 7850.0, weight.radius, weight.inner_radius
     half = 0.3 / (plate * (room**2 - inner**2))
     wanted = {
@@ -85,7 +85,7 @@ def test_no_body_reaches_beyond_its_room(shape: WeightShape) -> None:
         "disc": 0.3 * (room - np.sqrt(0.3 / (pi * plate))),
         "sector": 2 / 3 * plate * (room**3 - inner**3) * np.sin(half),
     }[shape]
-    assert found[1] * part.mass_unit * part.reach == pytest.approx(wanted, rel=1e-7)
+    assert result[1] * part.mass_unit * part.reach == pytest.approx(wanted, rel=1e-7)
 
 
 @pytest.mark.parametrize("angle", [0.3, 1.2, pi / 2, 2.4, 3.1])
@@ -94,16 +94,16 @@ def test_moment_of_a_sector_follows_the_sine(angle: float) -> None:
     weight = ROOMS["sector"]
     mass = 0.008 * 7850.0 * (weight.radius**2 - weight.inner_radius**2) * angle
     part = part_of(replace(weight, mass=mass))
-    found = least(part, {"x": -0.6, "y": -0.8})
+    result = least(part, {"x": -0.6, "y": -0.8})
     most = 2 / 3 * 0.008 * 7850.0 * (weight.radius**3 - weight.inner_radius**3)
-    moment = np.hypot(*found[1:]) * part.mass_unit * part.reach
+    moment = np.hypot(*result[1:]) * part.mass_unit * part.reach
     assert moment == pytest.approx(most * np.sin(angle), rel=1e-6)
 
 
 def test_the_best_sector_is_half_a_ring() -> None:
     part = part_of(ROOMS["sector"])
-    found = least(part, {"x": -1.0})
-    assert found[0] * part.mass_unit == pytest.approx(largest_mass(part.weight) / 2, rel=1e-4)
+    result = least(part, {"x": -1.0})
+    assert result[0] * part.mass_unit == pytest.approx(largest_mass(part.weight) / 2, rel=1e-4)
 
 
 def test_sectors_that_there_can_be_are_not_cut_off() -> None:
@@ -119,10 +119,10 @@ def test_sectors_that_there_can_be_are_not_cut_off() -> None:
 def test_the_best_disc() -> None:
     """m (R - sqrt(m / (pi plate))) is largest where the disc's radius is two thirds of the room."""
     part = part_of(ROOMS["disc"])
-    found = least(part, {"y": -1.0})
+    result = least(part, {"y": -1.0})
     plate = 0.008 * 7850.0
-    assert found[0] * part.mass_unit == pytest.approx(plate * pi * (0.04) ** 2, rel=1e-4)
-    assert found[2] * part.mass_unit * part.reach == pytest.approx(plate * pi * 0.04**2 * 0.02)
+    assert result[0] * part.mass_unit == pytest.approx(plate * pi * (0.04) ** 2, rel=1e-4)
+    assert result[2] * part.mass_unit * part.reach == pytest.approx(plate * pi * 0.04**2 * 0.02)
 
 
 @SHAPED
@@ -137,8 +137,8 @@ def test_without_a_moment_there_is_no_mass(shape: WeightShape) -> None:
 @pytest.mark.parametrize("shape", ["disc", "ring", "sector"])
 def test_no_more_mass_than_fits(shape: WeightShape) -> None:
     part = part_of(ROOMS[shape])
-    found = least(part, {"m": -1.0})
-    assert found[0] * part.mass_unit == pytest.approx(largest_mass(part.weight), rel=1e-6)
+    result = least(part, {"m": -1.0})
+    assert result[0] * part.mass_unit == pytest.approx(largest_mass(part.weight), rel=1e-6)
 
 
 @SHAPED
@@ -198,9 +198,9 @@ def test_inertia_that_does_not_matter_is_least() -> None:
 
 def test_a_trace_of_mass_is_none() -> None:
     part = part_of(ROOMS["point"])
-    found = part.project_feasible(np.array([1e-8, 1e-8, 0, 1e-8, 0]), np.ones(5, bool))
-    assert not np.any(found)
-    (change,) = part.changes(found)
+    result = part.project_feasible(np.array([1e-8, 1e-8, 0, 1e-8, 0]), np.ones(5, bool))
+    assert not np.any(result)
+    (change,) = part.changes(result)
     assert change.values["pieces"] == []
     assert change.values["moment"] == change.values["radius"] == 0.0
 
@@ -211,13 +211,13 @@ def test_change_as_the_workshop_reads_it(shape: WeightShape) -> None:
     numbers, (mass, x, y, _) = random_numbers(part, np.random.default_rng(8))
     (change,) = part.changes(numbers)
     moment = complex(x, y) - mass * part.center
-    told = change.to_dict()
-    assert (told["kind"], told["link"], told["at"]) == ("added mass", "crank", "R")
-    assert told["mass"] == pytest.approx(mass, rel=1e-5)
-    assert told["moment"] == pytest.approx(abs(moment), rel=1e-4, abs=1e-9)
+    content = change.to_dict()
+    assert (content["kind"], content["link"], content["at"]) == ("added mass", "crank", "R")
+    assert content["mass"] == pytest.approx(mass, rel=1e-5)
+    assert content["moment"] == pytest.approx(abs(moment), rel=1e-4, abs=1e-9)
     if shape != "ring":
-        assert told["direction"] == pytest.approx(np.angle(moment), abs=1e-5)
-        assert told["radius"] == pytest.approx(abs(moment) / mass, rel=1e-4)
+        assert content["direction"] == pytest.approx(np.angle(moment), abs=1e-5)
+        assert content["radius"] == pytest.approx(abs(moment) / mass, rel=1e-4)
 
 
 # -- moved centres of mass -------------------------------------------------------------------------
@@ -232,8 +232,8 @@ def best_center(part: MovedCenter, *cost: float) -> tuple[Array, dict[str, float
     places = program.numbers(4)
     part.constrain(program, places)
     program.cost = dict(zip(map(int, places), cost, strict=True))
-    found = program.solve()
-    return found.x[places], found.prices
+    solution = program.solve()
+    return solution.x[places], solution.prices
 
 
 def test_effect_of_a_moved_center() -> None:
@@ -250,8 +250,8 @@ def test_effect_of_a_moved_center() -> None:
 
 def test_center_stays_in_its_rectangle() -> None:
     part = moved(x=(-0.2, 0.3), y=(-0.1, 0.1))
-    found, _ = best_center(part, -1.0, 1.0, 0.0, 0.0)
-    assert found[:2] * part.length == pytest.approx([0.3, -0.1], abs=1e-7)
+    actual, _ = best_center(part, -1.0, 1.0, 0.0, 0.0)
+    assert actual[:2] * part.length == pytest.approx([0.3, -0.1], abs=1e-7)
     lifted, _ = best_center(part, 0.0, 0.0, -1.0, -1.0)
     assert lifted[2] * part.length**2 == pytest.approx(0.3**2)
     with pytest.raises(NoSolutionError):
@@ -261,8 +261,8 @@ def test_center_stays_in_its_rectangle() -> None:
 def test_center_stays_in_its_circle() -> None:
     """And a unit more of radius moves it a unit farther."""
     part = moved(center=(0.1, 0.05), radius=0.04)
-    found, prices = best_center(part, -0.6, -0.8, 0.0, 0.0)
-    assert found[:2] * part.length == pytest.approx([0.124, 0.082], abs=1e-7)
+    actual, prices = best_center(part, -0.6, -0.8, 0.0, 0.0)
+    assert actual[:2] * part.length == pytest.approx([0.124, 0.082], abs=1e-7)
     (price,) = prices.values()
     assert price * part.length == pytest.approx(1.0, rel=1e-6)
 
@@ -272,9 +272,9 @@ def check(part: AddedWeight, numbers: Array, within: float) -> list[dict[str, ob
     (change,) = part.changes(numbers)
     pieces = change.values["pieces"]
     wanted = numbers @ part.effect
-    found = sum(moments_of(piece, part.center) for piece in pieces)
+    result = sum(moments_of(piece, part.center) for piece in pieces)
     scale = np.array([1, part.reach, part.reach, part.reach**2]) * wanted[0]
-    assert (found - wanted) / scale == pytest.approx(np.zeros(4), abs=within)
+    assert (result - wanted) / scale == pytest.approx(np.zeros(4), abs=within)
     assert sum(piece["mass"] for piece in pieces) == pytest.approx(wanted[0])
     for piece in pieces:
         assert farthest(piece, part.center) <= part.weight.radius * (1 + 1e-9)
@@ -298,16 +298,16 @@ def test_sectors_that_throw_less_are_two(seed: int) -> None:
     rng = np.random.default_rng(seed)
     numbers, _ = random_numbers(part, rng)
     numbers[1:] *= rng.uniform(0.0, 0.95)
-    one, other = check(part, numbers, 1e-7)
-    apart = abs(np.angle(np.exp(1j * (one["direction"] - other["direction"]))))
-    assert apart >= one["angle"] * (1 - 1e-9)
-    assert one["angle"] == other["angle"]
+    first, other = check(part, numbers, 1e-7)
+    apart = abs(np.angle(np.exp(1j * (first["direction"] - other["direction"]))))
+    assert apart >= first["angle"] * (1 - 1e-9)
+    assert first["angle"] == other["angle"]
 
 
 def test_sectors_without_moment_face_each_other() -> None:
     part = part_of(ROOMS["sector"])
-    one, other = check(part, np.array([0.4, 0.0, 0.0]), 1e-7)
-    assert abs(one["direction"] - other["direction"]) == pytest.approx(pi)
+    first, other = check(part, np.array([0.4, 0.0, 0.0]), 1e-7)
+    assert abs(first["direction"] - other["direction"]) == pytest.approx(pi)
 
 
 def test_a_full_ring_of_a_sector_is_one_piece() -> None:
@@ -334,10 +334,10 @@ def test_a_spread_of_rounding_is_one_point() -> None:
 
 
 def test_spread_mass_about_the_centre_itself() -> None:
-    one, other = pieces_of(Weight("any", 0.06), 0.4, 0j, 0.4 * 0.05**2, 1 + 1j)
-    both = complex(*one["place"]) + complex(*other["place"])
+    first, other = pieces_of(Weight("any", 0.06), 0.4, 0j, 0.4 * 0.05**2, 1 + 1j)
+    both = complex(*first["place"]) + complex(*other["place"])
     assert both == pytest.approx(2 + 2j)
-    assert abs(complex(*one["place"]) - 1 - 1j) == pytest.approx(0.05)
+    assert abs(complex(*first["place"]) - 1 - 1j) == pytest.approx(0.05)
 
 
 def test_sizes_of_disc_and_ring() -> None:

@@ -26,7 +26,7 @@ from unit.balancing.test_beyond_masses import beyond, said
 
 def first_lines(name: str) -> list[str]:
     """Of the short answer."""
-    return [one.text for one in advice_for(name).headline(alone=True) if isinstance(one, Text)]
+    return [item.text for item in advice_for(name).headline(alone=True) if isinstance(item, Text)]
 
 
 # -- weights before plates -------------------------------------------------------------------------
@@ -36,13 +36,13 @@ def test_half_a_piston_stands_before_the_plate_that_brings_less() -> None:
     """A gang frame saw that shakes its ground with 20 times its weight is not to be left as it is;
     the mass of the weight is what a whole analysis of the changed machine needs.
     """
-    found, piston = advice_for("frame-saw"), beyond("frame-saw").piston
+    actual, piston = advice_for("frame-saw"), beyond("frame-saw").piston
     first, *_ = first_lines("frame-saw")
     assert first.startswith("Nothing of what reciprocates is balanced on crank: ")
     assert "by 74 kg m (245 kg at 300 mm) added on crank at 180° in its axes" in first
     assert "Leave" not in said("frame-saw") and piston is not None
-    link = found.original.links["crank"].with_added(245.0, (-0.3, 0.0), 0.0)
-    changed = found.original.with_link("crank", mass=link.mass, inertia=link.inertia,
+    link = actual.original.links["crank"].with_added(245.0, (-0.3, 0.0), 0.0)
+    changed = actual.original.with_link("crank", mass=link.mass, inertia=link.inertia,
                                        center_of_mass=link.center_of_mass)  # fmt: skip
     force = eq.analyze(changed, acceleration=0.0).summary
     assert force["shaking_force.y"].peak == pytest.approx(piston.half_along, rel=5e-3)
@@ -51,31 +51,31 @@ def test_half_a_piston_stands_before_the_plate_that_brings_less() -> None:
 
 def test_a_reason_names_the_measure_in_which_a_figure_hardly_falls() -> None:
     """27 % of the RMS for 12 % of mass is within the rule; the peak falls by 23 %."""
-    found = advice_for("frame-saw")
-    peaks = [eq.analyze(one, acceleration=0.0).summary["shaking_force"].peak
-             for one in (found.original, found.machine)]  # fmt: skip
+    advice = advice_for("frame-saw")
+    peaks = [eq.analyze(item, acceleration=0.0).summary["shaking_force"].peak
+             for item in (advice.original, advice.machine)]  # fmt: skip
     gone = 1 - peaks[1] / peaks[0]
-    assert found.gain > 0.25 > gone
-    assert why_not(found) == f"shaking force, peak, falls by only {100 * gone:.1f} %"
+    assert advice.gain > 0.25 > gone
+    assert why_not(advice) == f"shaking force, peak, falls by only {100 * gone:.1f} %"
     assert "too much for this reduction" not in said("frame-saw")
 
 
 def test_a_weight_against_order_1_may_hold_what_the_crank_lifts() -> None:
     """Of a beam pump, most of which is the load of its rods: three tonnes and more on the crank."""
-    found, weight = advice_for("beam-pump"), beyond("beam-pump").counterbalance
+    actual, weight = advice_for("beam-pump"), beyond("beam-pump").counterbalance
     assert isinstance(weight, Counterbalance)
     first, *_ = first_lines("beam-pump")
     assert first.startswith("A weight of 2963 kg m (3292 kg at 900 mm) on crank, at -1° in its")
-    machine = found.original
+    machine = actual.original
     assert weight.moment > machine.mass * weight.radius
     assert weight.radius == pytest.approx(0.9)
     place = weight.moment / 3000 * np.exp(1j * weight.direction)
     link = machine.links["crank"].with_added(3000.0, (place.real, place.imag), 0.0)
     changed = machine.with_link("crank", mass=link.mass, inertia=link.inertia,
                                 center_of_mass=link.center_of_mass)  # fmt: skip
-    swings = [np.std(eq.analyze(one, 720).forces.drive_torque) for one in (machine, changed)]
+    swings = [np.std(eq.analyze(item, 720).forces.drive_torque) for item in (machine, changed)]
     assert 1 - swings[1] / swings[0] == pytest.approx(weight.gain, abs=2e-3)
-    sizes = [np.ptp(eq.analyze(one, 720).forces.drive_torque) for one in (machine, changed)]
+    sizes = [np.ptp(eq.analyze(item, 720).forces.drive_torque) for item in (machine, changed)]
     assert sizes[1] < 0.4 * sizes[0]
 
 
@@ -87,8 +87,8 @@ def test_the_radius_of_a_crank_is_from_its_pivot() -> None:
     assert crank.center_of_mass is not None
     center = (crank.center_of_mass[0] + 0.4, crank.center_of_mass[1])
     moved = machine.with_link("crank", points=points, center_of_mass=center)
-    found = [advise(one).advice for one in (machine, moved)]
-    weights = [one.beyond.counterbalance for one in found if one is not None]
+    actual = [advise(item).advice for item in (machine, moved)]
+    weights = [item.beyond.counterbalance for item in actual if item is not None]
     assert weights[0] is not None and weights[1] is not None
     assert weights[1].radius == pytest.approx(weights[0].radius) == pytest.approx(0.7)
 
@@ -111,10 +111,10 @@ def test_lengths_stand_before_masses_where_a_dyad_is_nearly_dead() -> None:
 
 @pytest.mark.exhaustive(but=["beam-pump", "frame-saw"])
 @pytest.mark.parametrize("name", ["reciprocating-saw", "frame-saw", "beam-pump", "wiper"])
-def test_who_is_told_what_to_do_is_not_told_to_leave_it(name: str) -> None:
-    told = " ".join(first_lines(name))
+def test_advice_on_what_to_do_does_not_say_to_leave_it(name: str) -> None:
+    text = " ".join(first_lines(name))
     assert not advice_for(name).helps
-    assert "Leave" not in told and "No other change that was tried is worth building" in told
+    assert "Leave" not in text and "No other change that was tried is worth building" in text
 
 
 # -- room ------------------------------------------------------------------------------------------
@@ -123,10 +123,10 @@ def test_who_is_told_what_to_do_is_not_told_to_leave_it(name: str) -> None:
 @pytest.mark.exhaustive(but=["kim-chung-b"])
 @pytest.mark.parametrize("name", ["kim-chung-b", "transplanter"])
 def test_a_counterweight_keeps_over_what_is_planted(name: str) -> None:
-    found = advice_for(name)
-    machine = found.original
-    assert found.helps and machine.planting is not None
-    for change in found.changes:
+    advice = advice_for(name)
+    machine = advice.original
+    assert advice.helps and machine.planting is not None
+    for change in advice.changes:
         pivot = machine.frame[change.values["at"]][1]
         for piece in change.values["pieces"]:
             lowest = pivot - piece["outer_radius"] - surface_of(machine)
@@ -137,13 +137,13 @@ def test_a_counterweight_keeps_over_what_is_planted(name: str) -> None:
 @pytest.mark.exhaustive
 def test_a_weight_that_passes_a_slot_has_a_plane_of_its_own() -> None:
     """The block of a scotch yoke goes 30 mm up and down in it, across which the sector turns."""
-    found = advice_for("scotch-yoke")
-    (change,) = found.changes
-    motion = eq.move(found.original, 360)
+    advice = advice_for("scotch-yoke")
+    (change,) = advice.changes
+    motion = eq.move(advice.original, 360)
     block, yoke = (motion.points[name].place for name in "BY")
     along = np.imag(block - yoke)
     ends = (yoke + 1j * np.min(along), yoke + 1j * np.max(along))
-    pivot = complex(*found.original.frame["A"])
+    pivot = complex(*advice.original.frame["A"])
     (piece,) = change.values["pieces"]
     crossed = False
     for share in np.linspace(0, 1, 61):
@@ -156,18 +156,18 @@ def test_a_weight_that_passes_a_slot_has_a_plane_of_its_own() -> None:
     assert next(in_short(change)).endswith("in a plane of its own beside yoke")
 
 
-def test_a_plan_of_the_file_is_told_of_the_pin_that_its_plate_covers() -> None:
+def test_a_plan_of_the_file_is_reported_of_the_pin_that_its_plate_covers() -> None:
     """The pin of a crank is 27 mm from its pivot, in the sector from 15 to 34 mm towards it."""
-    found = eq.balance(eq.load("four-stroke-engine"))
-    (note,) = (str(one) for one in found.notes if "lies over" in str(one))
+    result = eq.balance(eq.load("four-stroke-engine"))
+    (note,) = (str(item) for item in result.notes if "lies over" in str(item))
     assert note.startswith("the plate on crank lies over pin B: put it in a plane of its own, or")
     assert "take 2256 g mm off crank on the other side of A" in note
-    (change,) = found.changes
+    (change,) = result.changes
     (piece,) = change.values["pieces"]
     assert covers(piece, 0j, 0.027 + 0j) and not covers(piece, 0j, -0.027 + 0j)
     assert not covers(piece, 0j, 0.036 + 0j) and not covers(piece, 0j, 0.014 + 0j)
     balanced = eq.balance(eq.load("balance-shafts"))
-    assert not any("lies over" in str(one) for one in balanced.notes)
+    assert not any("lies over" in str(item) for item in balanced.notes)
 
 
 @pytest.mark.parametrize(
@@ -183,8 +183,8 @@ def test_a_plan_of_the_file_is_told_of_the_pin_that_its_plate_covers() -> None:
 def test_what_a_plate_covers(
     piece: dict[str, object], inside: tuple[complex, ...], outside: tuple[complex, ...]
 ) -> None:
-    assert all(covers(piece, 0j, complex(one)) for one in inside)
-    assert not any(covers(piece, 0j, complex(one)) for one in outside)
+    assert all(covers(piece, 0j, complex(item)) for item in inside)
+    assert not any(covers(piece, 0j, complex(item)) for item in outside)
 
 
 @pytest.mark.parametrize("combine", ["sum", "squares"])
@@ -197,7 +197,7 @@ def test_shapes_are_compared_by_the_weights_that_a_plan_has(
     plan = Balance(objectives=aims, combine=combine)
     before = Problem.values_of(machine, aims)
     room, shape = room_about(machine, "crank"), Sector(0.05, 0.01, 0.01, -150, 120)
-    known = {one.name: value for one, value in zip(aims, before, strict=True)}
+    known = {aim.name: value for aim, value in zip(aims, before, strict=True)}
     comparison = Comparison(machine, plan, (room,), (), None, known)
     changed, _ = with_sectors(machine, (room,), (shape,))
     force, moment = np.array(Problem.values_of(changed, aims)) / before
@@ -215,22 +215,22 @@ def test_shapes_are_compared_by_the_weights_that_a_plan_has(
 @pytest.mark.exhaustive
 def test_a_mass_of_two_points_names_both() -> None:
     """Their middle alone has another moment of inertia."""
-    found = eq.balance(eq.load("balance-geared-a"))
-    change = found.changes[-1]
+    balanced = eq.balance(eq.load("balance-geared-a"))
+    change = balanced.changes[-1]
     assert len(change.values["pieces"]) == 2
     lines = [*in_short(change)]
     assert lines == [*sentences(change)] and len(lines) == 3
     assert [line.split("made as: ")[1].startswith("point mass of 117.6 g") for line in lines[1:]]
-    assert " ".join(benefit_sentences(found)).count("point mass of ") == 2
+    assert " ".join(benefit_sentences(balanced)).count("point mass of ") == 2
 
 
 def test_a_plate_names_its_material() -> None:
-    found = eq.balance(eq.load("balance-shafts"))
-    (facts,) = (one for one in found.headline(alone=True) if isinstance(one, Facts))
+    balanced = eq.balance(eq.load("balance-shafts"))
+    (facts,) = (item for item in balanced.headline(alone=True) if isinstance(item, Facts))
     crank, *shafts = facts.items
     assert "25.00 mm of cast iron" in crank
-    assert len(shafts) == 2 and all("30.00 mm of steel" in one for one in shafts)
-    for change in found.changes:
+    assert len(shafts) == 2 and all("30.00 mm of steel" in shaft for shaft in shafts)
+    for change in balanced.changes:
         for piece in change.values["pieces"]:
             area = piece["angle"] / 2 * (piece["outer_radius"] ** 2 - piece["inner_radius"] ** 2)
             whole = area * piece["thickness"] * piece["density"]
@@ -248,10 +248,10 @@ def test_a_mass_of_another_density_names_that() -> None:
 
 # Holes: `test_holes_take_off_what_is_too_heavy` of test_advice.py.
 @pytest.mark.exhaustive
-def test_mass_that_is_taken_off_is_told_as_a_hole() -> None:
+def test_mass_that_is_taken_off_is_reported_as_a_hole() -> None:
     """67 g of steel are 8.5 cm3."""
-    found = advice_for("yamashita-rig-counterweight")
-    (change,) = found.changes
+    advice = advice_for("yamashita-rig-counterweight")
+    (change,) = advice.changes
     assert change.kind == "removed mass"
     (text,) = in_short(change)
     assert text.endswith(", as much as a hole of 28 mm through 13.9 mm of steel")

@@ -49,7 +49,7 @@ def test_no_place_nearby_is_better(measure: Literal["rms", "peak"]) -> None:
 
     balanced = eq.balance(RUBBING, plan)
     without = eq.balance(RUBBING.without_friction(), plan)
-    own, other = (complex(*found.changes[0].values["to"]) for found in (balanced, without))
+    own, other = (complex(*result.changes[0].values["to"]) for result in (balanced, without))
     after = value_at(own)
     assert after == pytest.approx(balanced.objectives[objective.name][1], rel=1e-9)
     assert after < value_at(other) * (1 + 1e-9)

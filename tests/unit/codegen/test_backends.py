@@ -69,10 +69,10 @@ def test_numpy_gathers_the_same(base: Machine, signals: tuple[str, ...], turns: 
     tops = GridTops(2 * np.pi * turns)
     got = run_loop(source, table, grid, tops)
     with tempfile.TemporaryDirectory() as folder, by_numpy(Path(folder)):
-        told = run_loop(source, table, grid, tops)
+        reported = run_loop(source, table, grid, tops)
     own = len(set(source.watched))
     weakest, compiled = (
-        f[:, source.weakest][:, :own].min(axis=1, initial=1.0) for f in (told, got)
+        f[:, source.weakest][:, :own].min(axis=1, initial=1.0) for f in (reported, got)
     )
     assert np.array_equal(weakest < 0, compiled < 0)
     moved = weakest > 1e-3
@@ -81,11 +81,11 @@ def test_numpy_gathers_the_same(base: Machine, signals: tuple[str, ...], turns: 
     for (signal, kind), k in places.items():
         if kind.endswith("_at"):  # of two equal extremes either may be told
             continue
-        apart, size = np.abs(got - told)[moved, k], np.abs(told[moved, k]).max()
+        apart, size = np.abs(got - reported)[moved, k], np.abs(reported[moved, k]).max()
         near = apart * weakest[moved] <= 1e-12 * size
         if kind == "dip":  # of a size near zero, its square is what is computed
-            whole = np.abs(told[moved, places[signal, "highest"]]).max()
-            near |= apart * np.abs(told[moved, k]) * weakest[moved] <= 1e-13 * whole**2
+            whole = np.abs(reported[moved, places[signal, "highest"]]).max()
+            near |= apart * np.abs(reported[moved, k]) * weakest[moved] <= 1e-13 * whole**2
         assert np.all(near), kind
 
 
@@ -139,17 +139,17 @@ def test_functions_of_loops() -> None:
 
 @pytest.fixture
 def without_numba(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = backends.importlib.util.find_spec
+    actual = backends.importlib.util.find_spec
 
     def find_spec(name: str, package: str | None = None) -> Any:
-        return None if name == "numba" else found(name, package)
+        return None if name == "numba" else actual(name, package)
 
     monkeypatch.setattr(backends.importlib.util, "find_spec", find_spec)
     monkeypatch.setattr(backends, "engine", cache(engine.__wrapped__))
     monkeypatch.setattr(backends, "_loop_of", cache(backends._loop_of.__wrapped__))
 
 
-def test_missing_numba_is_told_once(
+def test_missing_numba_is_reported_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, without_numba: None,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
@@ -209,18 +209,18 @@ def test_file_is_written_once(fresh: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert written(fresh) == [path.name]
 
 
-def test_names_tell_content_and_backend(fresh: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    one = backends._file_of("a = 1\n")
+def test_names_report_content_and_backend(fresh: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = backends._file_of("a = 1\n")
     other = backends._file_of("a = 2\n")
-    assert one != other
-    told = backends.inspect.getsource
+    assert first != other
+    reported = backends.inspect.getsource
 
     def changed(what: Any) -> str:
-        text: str = told(what)
+        text: str = reported(what)
         return text.replace("0.0", "0.25") if what is backends else text
 
     monkeypatch.setattr(backends.inspect, "getsource", changed)
-    assert backends._file_of("a = 1\n") not in (one, other)
+    assert backends._file_of("a = 1\n") not in (first, other)
     assert len(written(fresh)) == 3
 
 
@@ -318,12 +318,12 @@ def test_processes_that_start_at_once(tmp_path: Path) -> None:
     processes = [started(folder) for _ in range(2)]
     answers = [process.communicate("go\n", timeout=300) for process in processes]
     assert {error for _, error in answers} == {""}
-    told = np.array([[0.5**0.5], [2**0.5]])
+    reported = np.array([[0.5**0.5], [2**0.5]])
     (answer,) = {out for out, _ in answers}
     got = np.frombuffer(bytes.fromhex(answer)).reshape(2, 1)
-    assert got == pytest.approx(told)
+    assert got == pytest.approx(reported)
     files = sorted(path.suffix for path in folder.glob("**/*") if path.is_file())
-    assert [one for one in files if one != ".pyc"] == [".nbc", ".nbi", ".py"]
+    assert [file for file in files if file != ".pyc"] == [".nbc", ".nbi", ".py"]
     stamps = {path: path.stat().st_mtime_ns for path in folder.glob("**/*")}
     late = started(folder)
     assert late.communicate("go\n", timeout=300) == (answer, "")

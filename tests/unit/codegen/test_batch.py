@@ -60,16 +60,16 @@ def same_reasons(
     base: Machine, numbers: Sequence[Number], values: Array, counts: Sequence[int | None] = COUNTS
 ) -> list[int]:
     """Compare the reasons with those of each design's own machine, however many crank angles."""
-    told = [reason_of(base, numbers, row) for row in values]
+    texts = [reason_of(base, numbers, row) for row in values]
     for count in counts:
         figures, reasons = Batch(base, paths_of(numbers), RMS, angles=count)(values)
-        off = [k for k, why in enumerate(told) if why != reasons[k]]
+        off = [k for k, why in enumerate(texts) if why != reasons[k]]
         assert not off, (
             f"{len(off)} of {len(values)} differ at {count} crank angles, such as "
-            f"{values[off[0]].tolist()}: {reasons[off[0]]}, not {told[off[0]]}"
+            f"{values[off[0]].tolist()}: {reasons[off[0]]}, not {texts[off[0]]}"
         )
         assert np.array_equal(np.isnan(figures).any(axis=1), reasons != 0)
-    return told
+    return texts
 
 
 # -- why designs fail ------------------------------------------------------------------------------
@@ -180,16 +180,16 @@ def test_pitch_curves_that_cannot_be_made(mean: float, numpy_engine: None) -> No
     base = elliptic(mean, 0.1)
     path, e = "gears[1].shape.eccentricity", np.linspace(-0.1, 1.1, 61)[:, None]
     _, reasons = Batch(base, [path], RMS, angles=60)(e)
-    told = []
-    for (one,) in e:
+    texts = []
+    for (first,) in e:
         try:
-            elliptic(mean, float(one))
+            elliptic(mean, float(first))
         except ModelError:
-            told.append(4)
+            texts.append(4)
         else:
-            told.append(0)
-    assert reasons.tolist() == told
-    assert len(set(told)) == 2
+            texts.append(0)
+    assert reasons.tolist() == texts
+    assert len(set(texts)) == 2
 
 
 @pytest.mark.parametrize("kind", WRITTEN)
@@ -200,10 +200,10 @@ def test_designs_of_every_kind(kind: str, numpy_engine: None) -> None:
     base = make(kind, 0).machine
     numbers = geometry_of(base, 0.15)
     values = drawn(numbers, 12, 0)
-    told = np.array([reason_of(base, numbers, row) for row in values])
+    reported = np.array([reason_of(base, numbers, row) for row in values])
     _, reasons = Batch(base, paths_of(numbers), RMS, angles=60)(values)
-    reasons[(reasons == 6) & (told == 0) & bool(base.couplings or base.torsion_springs)] = 0
-    assert np.array_equal(reasons, told)
+    reasons[(reasons == 6) & (reported == 0) & bool(base.couplings or base.torsion_springs)] = 0
+    assert np.array_equal(reasons, reported)
 
 
 def to_the_border(
@@ -353,9 +353,9 @@ def test_order_and_splitting_change_no_bit(angles: int | None) -> None:
 @pytest.mark.parametrize("angles", few([None, 360], {360}))
 def test_threads_change_no_bit(angles: int | None) -> None:
     values = mixed(4500)
-    one, four = (compiled_batch(angles, threads)(values) for threads in (1, 4))
-    assert one[0].tobytes() == four[0].tobytes()
-    assert np.array_equal(one[1], four[1])
+    first, four = (compiled_batch(angles, threads)(values) for threads in (1, 4))
+    assert first[0].tobytes() == four[0].tobytes()
+    assert np.array_equal(first[1], four[1])
 
 
 def test_numpy_changes_no_bit_either(numpy_engine: None) -> None:
@@ -378,10 +378,10 @@ def test_values_may_lie_in_memory_as_they_like() -> None:
 # What is not asked for: `test_each_figure_alone`.
 @pytest.mark.exhaustive
 def test_nothing_varies_and_nothing_is_wanted() -> None:
-    told = eq.analyze(FOUR, 60).summary["drive_torque"].rms
+    reported = eq.analyze(FOUR, 60).summary["drive_torque"].rms
     batch = Batch(FOUR, [], wanted_of(SIGNALS, "rms"), angles=60)
     figures, reasons = batch(np.empty((3, 0)))
-    assert figures[:, 2] == pytest.approx([told] * 3, rel=1e-12)
+    assert figures[:, 2] == pytest.approx([reported] * 3, rel=1e-12)
     assert not reasons.any()
     figures, reasons = Batch(FOUR, ["drive.speed"], [], angles=60)(np.ones((2, 1)))
     assert figures.shape == (2, 0)
@@ -421,7 +421,7 @@ def test_a_load_of_two_turns(driver: str | None, numpy_engine: None) -> None:
     base = replace(base, loads=(Load("coupler", table=table),))
     assert assemble(base).cycle.turns == 2
     numbers = named(base, *LENGTHS)
-    values = np.array([[one.value for one in numbers]])
+    values = np.array([[number.value for number in numbers]])
     figures, reasons = Batch(base, paths_of(numbers), wanted_of(SIGNALS, "rms"), angles=60)(values)
     known = known_of(design(base, numbers, values[0]), 60, SIGNALS)
     assert list(reasons) == [0]
@@ -604,9 +604,11 @@ def test_each_figure_alone(name: str, numpy_engine: None) -> None:
     figures, _ = batch(np.array([[10.0], [-10.0]]))
     vy = motion.points["C"].vy
     for k, sign in enumerate((1, -1)):
-        told = of_samples(name, motion.crank_angle, sign * vy)
+        reported = of_samples(name, motion.crank_angle, sign * vy)
         # Sixty crank angles give extremes to 1e-8, dense ones the places of these to half a step.
-        assert figures[k, 0] == pytest.approx(told, rel=1e-7, abs=1e-4 if "_at" in name else 1e-9)
+        assert figures[k, 0] == pytest.approx(
+            reported, rel=1e-7, abs=1e-4 if "_at" in name else 1e-9
+        )
 
 
 def test_names_of_figures() -> None:
@@ -624,7 +626,7 @@ def test_names_of_figures() -> None:
 
 
 @pytest.mark.parametrize(("count", "kind"), [(120, "max_at"), (120, "peak_at"), (None, "max_at")])
-def test_of_equal_extremes_the_first_is_told(
+def test_of_equal_extremes_the_first_is_reported(
     count: int | None, kind: str, numpy_engine: None
 ) -> None:
     """A yoke shakes as much at either end, and rounding does not decide which end is told."""
@@ -639,10 +641,10 @@ def test_of_equal_extremes_the_first_is_told(
 def test_equal_extremes_of_two_sets_of_angles() -> None:
     gathered = Gathered.of([Figure("s", "max_at")])
     highest, at = (gathered.columns.index(("s", kind)) for kind in ("top", "top_at"))
-    one, other = np.zeros((2, 3, len(gathered.columns)))
-    one[:, highest], one[:, at] = (1.0, 1.0 - 1e-15, 1.0), 2.0
+    first, other = np.zeros((2, 3, len(gathered.columns)))
+    first[:, highest], first[:, at] = (1.0, 1.0 - 1e-15, 1.0), 2.0
     other[:, highest], other[:, at] = (1.0 - 1e-15, 1.0, 1.1), (3.0, 1.0, 3.0)
-    assert list(gathered.joined(one, other)[:, at]) == [2.0, 1.0, 3.0]
+    assert list(gathered.joined(first, other)[:, at]) == [2.0, 1.0, 3.0]
 
 
 def test_fingers_in_soil_whose_motion_no_design_changes() -> None:

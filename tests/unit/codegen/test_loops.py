@@ -38,15 +38,15 @@ WANTED = [
 ANGLES = 90
 
 
-def told(base: Machine, numbers: Sequence[Number], row: Array) -> list[float] | int:
+def figures_or_reason(base: Machine, numbers: Sequence[Number], row: Array) -> list[float] | int:
     """Figures of a design's own machine, or the reason why it has none."""
     try:
-        found = eq.analyze(design(base, numbers, row), ANGLES)
+        analysis = eq.analyze(design(base, numbers, row), ANGLES)
     except ModelError:
         return 4
     except MotionError:
         return NO_FULL_TURN
-    forces, motion = found.forces, found.motion
+    forces, motion = analysis.forces, analysis.motion
     turning = motion.figures(motion.links["plate"].angular_acceleration)
     return [
         float(np.sqrt(np.mean(forces.shaking_force.y**2))),
@@ -74,16 +74,16 @@ def test_designs_are_what_their_own_machines_are() -> None:
     batch, numbers = compiled()
     values = np.concatenate([designs(2, 0.01), designs(8, 0.06)])
     figures, reasons = batch(values)
-    own = [told(TRIAD, numbers, row) for row in values]
+    own = [figures_or_reason(TRIAD, numbers, row) for row in values]
     assert {COMPUTED, NO_FULL_TURN} <= set(reasons)
-    for row, reason, found in zip(figures, reasons, own, strict=True):
+    for row, reason, actual in zip(figures, reasons, own, strict=True):
         if reason == NOT_COMPUTED:  # from another start perhaps: one by one
             continue
-        assert (reason == COMPUTED) == isinstance(found, list)
-        if isinstance(found, list):
-            np.testing.assert_allclose(row, found, rtol=1e-9, atol=1e-9)
+        assert (reason == COMPUTED) == isinstance(actual, list)
+        if isinstance(actual, list):
+            np.testing.assert_allclose(row, actual, rtol=1e-9, atol=1e-9)
         else:
-            assert reason == found
+            assert reason == actual
 
 
 # Loops against dyads, compiled: `test_loops_give_what_dyads_give`.
@@ -98,32 +98,32 @@ def test_numpy_gives_the_same(tmp_path: Path) -> None:
     np.testing.assert_allclose(figures, right, rtol=1e-9, atol=1e-9)
 
 
-def test_a_study_tells_of_every_design_what_its_machine_does() -> None:
+def test_a_study_reports_of_every_design_what_its_machine_does() -> None:
     """Also of those that a loop leaves open, which go one by one."""
     numbers = named(TRIAD, "links.crank.points.B.x")
     given = study("class-three", numbers[0].path, "shaking_force.y.rms", angles=ANGLES)
-    found = evaluator(given)
-    assert isinstance(found, Routes) and found.compiled
+    result = evaluator(given)
+    assert isinstance(result, Routes) and result.compiled
     values = np.array([[0.02], [0.024], [0.05], [0.1], [0.3]])
-    outcome = found(values)
-    own = [told(TRIAD, numbers, row) for row in values]
-    expected = [COMPUTED if isinstance(one, list) else one for one in own]
+    outcome = result(values)
+    own = [figures_or_reason(TRIAD, numbers, row) for row in values]
+    expected = [COMPUTED if isinstance(item, list) else item for item in own]
     assert outcome.reason.tolist() == expected
     assert len(set(expected)) > 1
 
 
 @pytest.mark.parametrize("angle", few([0.3, -2.0, 7.0], {7.0}))
-def test_the_march_begins_where_the_file_tells_the_pose(angle: float, tmp_path: Path) -> None:
+def test_the_march_begins_where_the_file_reports_the_pose(angle: float, tmp_path: Path) -> None:
     points = places_of(eq.move(TRIAD, [angle]), "BCPQ")
     moved = replace(TRIAD, position=eq.mechanism.Position(angle, points))
     values = np.array([[0.105], [0.106]])
     paths = ["links.rod.points.C.x"]
     with by_numpy(tmp_path):
-        (right, _), (found, reasons) = (
+        (right, _), (actual, reasons) = (
             Batch(machine, paths, WANTED, ANGLES, threads=1)(values) for machine in (TRIAD, moved)
         )
     assert not reasons.any()
-    np.testing.assert_allclose(found, right, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(actual, right, rtol=1e-9, atol=1e-9)
 
 
 @pytest.mark.exhaustive(but=["floating_watt", "slider-crank-engine", "scotch-yoke"])
@@ -140,10 +140,10 @@ def test_loops_give_what_dyads_give(name: str, tmp_path: Path) -> None:
         with only_loops():
             rough = with_position(given)
             assert can_emit(assemble(rough))
-            found, reasons = Batch(rough, paths_of(numbers), wanted, ANGLES)(values)
+            actual, reasons = Batch(rough, paths_of(numbers), wanted, ANGLES)(values)
     np.testing.assert_array_equal(reasons, why)
     scale = np.nanmax(np.abs(right))
-    np.testing.assert_allclose(found, right, rtol=0, atol=1e-9 * scale)
+    np.testing.assert_allclose(actual, right, rtol=0, atol=1e-9 * scale)
 
 
 def test_far_crank_angles_are_come_to_by_small_steps() -> None:

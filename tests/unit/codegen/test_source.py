@@ -52,11 +52,11 @@ def test_a_loop_is_arithmetic_on_what_it_knows(kind: str) -> None:
 
 def test_numbers_are_not_in_the_source() -> None:
     """Machines of one build share a loop, whatever their lengths, masses and speed."""
-    one = make("crank_rocker", 1).machine
-    numbers = numbers_of(one, 0.02)
-    other = design(one, numbers, drawn(numbers, 1, 3)[0])
-    assert other != one
-    assert source_of(one).text == source_of(other).text
+    first = make("crank_rocker", 1).machine
+    numbers = numbers_of(first, 0.02)
+    other = design(first, numbers, drawn(numbers, 1, 3)[0])
+    assert other != first
+    assert source_of(first).text == source_of(other).text
 
 
 def test_only_what_is_asked_for() -> None:
@@ -122,10 +122,10 @@ def same_under_other_names(
     plain = [Figure(signal, "rms") for signal in signals]
     called = [Figure(pattern.format_map(new), "rms") for pattern in signals.values()]
     figures, reasons = Batch(other, paths_of(numbers), called, angles=24)(values)
-    told, why = Batch(base, paths_of(numbers_of(base, 1e-3)), plain, angles=24)(values)
+    text, why = Batch(base, paths_of(numbers_of(base, 1e-3)), plain, angles=24)(values)
     assert not reasons.any()
     assert not why.any()
-    assert np.array_equal(figures, told)
+    assert np.array_equal(figures, text)
     known = known_of(other, 24, [figure.signal for figure in called])
     same_figures(figures[0], called, known, 24, 1e-10)
 

@@ -51,7 +51,7 @@ def test_plain_numbers_are_computed_at_once() -> None:
     assert terms.inverse(0.0) == math.inf
 
 
-def test_masks_tell_what_a_term_depends_on() -> None:
+def test_masks_report_what_a_term_depends_on() -> None:
     graph = Graph()
     a, d = graph.argument("a", ANGLE), graph.argument("d", DESIGN)
     total = a * a + (d * d) * a
@@ -88,7 +88,7 @@ def test_random_programs_give_the_same_numbers(
             plain.append(result)
             values.append(OPERATIONS[number](x, y))
     computed = on_arrays(values[3:])
-    used = {one.args[0] for one in terms.reached(values[3:]) if one.op == "argument"}
+    used = {item.args[0] for item in terms.reached(values[3:]) if item.op == "argument"}
     got = computed(**{k: v for k, v in zip(NAMES, numbers, strict=True) if k in used})
     scale = max(map(abs, plain))
     assert np.allclose(
@@ -100,7 +100,7 @@ def test_vectors_are_complex_numbers() -> None:
     a, b, c = arguments()
     z, w = VectorTerm(a, b), VectorTerm(c, 1.0)
     results = [z * w, z + w, z - 2j, 1j * z, z / c, z / w, 1 / w, -z, z.conjugate() * w, abs(z) * w]
-    flat = [part for one in results for part in (one.real, one.imag)]
+    flat = [part for result in results for part in (result.real, result.imag)]
     x, y, u = 0.3, -1.2, 0.7
     p, q = complex(x, y), complex(u, 1.0)
     known = [p * q, p + q, p - 2j, 1j * p, p / u, p / q, 1 / q, -p, p.conjugate() * q, abs(p) * q]

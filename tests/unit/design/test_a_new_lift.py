@@ -56,16 +56,16 @@ def study(*variables: eq.design.Variable, designs: int = 8) -> eq.studies.Study:
 
 
 def test_studies_and_searches_take_a_lift_of_ones_own(scaled: None) -> None:
-    one = eq.design.Variable("mass_scale", eq.design.Range(0.5, 2.0))
-    asked = study(one, designs=40)
+    first = eq.design.Variable("mass_scale", eq.design.Range(0.5, 2.0))
+    asked = study(first, designs=40)
     base = eq.load("yamashita-1")
     values = np.array([[0.5], [2.0]])
     summaries = (eq.analyze(heavier(base, scale)).summary for scale in (0.5, 2.0))
-    heavy = [one["shaking_force.y"].rms for one in summaries]
+    heavy = [summary["shaking_force.y"].rms for summary in summaries]
     np.testing.assert_allclose(evaluator(asked)(values).figures[:, 0], heavy, rtol=1e-3)
-    found = eq.studies.search(asked, population=8, generations=5)
-    assert found.values[0, 0] == pytest.approx(0.5, abs=0.06)
-    assert found.machine().links["crank"].mass < base.links["crank"].mass
+    searched = eq.studies.search(asked, population=8, generations=5)
+    assert searched.values[0, 0] == pytest.approx(0.5, abs=0.06)
+    assert searched.machine().links["crank"].mass < base.links["crank"].mass
 
 
 def test_a_search_varies_it_around_balance(scaled: None) -> None:
@@ -79,22 +79,25 @@ def test_a_search_varies_it_around_balance(scaled: None) -> None:
         outputs=(eq.studies.Output("after.shaking_force.y.rms", "balance", make="smallest"),),
         sampling=eq.studies.Sampling("sobol", 8),
     )
-    found = eq.studies.search(asked, population=8, generations=1, workers=1)
-    assert found.proof is not None and found.values[0, 0] == 0.5
+    searched = eq.studies.search(asked, population=8, generations=1, workers=1)
+    assert searched.proof is not None and searched.values[0, 0] == 0.5
     machine = heavier(eq.load("balance-crank"), 0.5)
     after = eq.balance(machine).after["shaking_force.y.rms"]
-    assert found.figures[0, 0] == pytest.approx(after, rel=1e-6)
+    assert searched.figures[0, 0] == pytest.approx(after, rel=1e-6)
 
 
 def test_the_page_opens_designs_of_it_as_machines(
     scaled: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(processes, "Processes", processes.Threads)  # others know nothing of it
-    one = eq.design.Variable("mass_scale", eq.design.Range(0.5, 2.0))
-    eq.studies.sweep(study(one), tmp_path / "scaled.zarr", workers=1)
+    first = eq.design.Variable("mass_scale", eq.design.Range(0.5, 2.0))
+    eq.studies.sweep(study(first), tmp_path / "scaled.zarr", workers=1)
     desk = StoreDesk.load(str(tmp_path / "scaled.zarr"))
-    told = desk.reply(1).content
-    assert [column["name"] for column in told["columns"]] == ["mass_scale", "shaking_force.y.rms"]
+    content = desk.reply(1).content
+    assert [column["name"] for column in content["columns"]] == [
+        "mass_scale",
+        "shaking_force.y.rms",
+    ]
     scale = desk.store.read(range(3, 4)).values[0, 0]
     assert desk.model(3).mass == pytest.approx(scale * eq.load("yamashita-1").mass)
 
@@ -102,7 +105,7 @@ def test_the_page_opens_designs_of_it_as_machines(
 def test_the_search_of_geometry_takes_it_too(scaled: None) -> None:
     machine = eq.load("kim-chung-a")
     designs = Designs(machine, {"mass_scale": (0.5, 2.0), "crank": (0.03, 0.05)})
-    assert [one.path for one in designs.variables] == ["mass_scale", "crank"]
+    assert [variable.path for variable in designs.variables] == ["mass_scale", "crank"]
     made = designs.build([2.0, 0.04])
     points = made.links["crank"].points
     assert np.ptp(list(points.values()), axis=0) == pytest.approx([0.04, 0.0], abs=1e-12)
@@ -132,11 +135,11 @@ def test_a_study_varies_the_length_of_a_link() -> None:
 def test_a_map_is_over_lifts_too() -> None:
     template = Template.load("yamashita-1")
     over = {"crank": [0.032, 0.035], "links.crank.mass": [0.1, 0.2]}
-    found = eq.studies.landscape(template, over, eq.balancing.Objective("shaking_force.y"))
+    landscape = eq.studies.landscape(template, over, eq.balancing.Objective("shaking_force.y"))
     longer = template.machine({"crank": 0.035, "links.crank.mass": 0.1})
     wanted = eq.analyze(longer).summary["shaking_force.y"].rms  # type: ignore[arg-type]
-    assert wanted == pytest.approx(found.values[0, 1], rel=1e-6) or wanted == pytest.approx(
-        found.values[1, 0], rel=1e-6
+    assert wanted == pytest.approx(landscape.values[0, 1], rel=1e-6) or wanted == pytest.approx(
+        landscape.values[1, 0], rel=1e-6
     )
 
 

@@ -65,7 +65,7 @@ def test_a_study_file_asks_for_it_and_a_search_keeps_it(added: None) -> None:
     assert (force.at_least, force.at_most, force.limited) == (-16.0, 16.0, True)
     free = eq.loads(STUDY.replace(', within = "16 N"', ""))
     few = {"population": 8, "generations": 8}
-    kept, unbound = (eq.studies.search(one, **few).figures[0, 1] for one in (study, free))
+    kept, unbound = (eq.studies.search(item, **few).figures[0, 1] for item in (study, free))
     assert 15.0 < kept <= 16.0 < unbound
     assert eq.loads(eq.dumps(study)).outputs == study.outputs
     made = eq.studies.Study(
@@ -80,13 +80,13 @@ def test_a_study_file_asks_for_it_and_a_search_keeps_it(added: None) -> None:
 
 def test_the_page_shows_which_designs_keep_it(added: None, tmp_path: Path) -> None:
     sweep(eq.loads(STUDY), tmp_path / "masses.zarr", workers=1)
-    _, told = ask_desk(begun(str(tmp_path / "masses.zarr"))(), "ready")
-    assert [one["limits"] for one in told.content["columns"]] == [
+    _, text = ask_desk(begun(str(tmp_path / "masses.zarr"))(), "ready")
+    assert [entry["limits"] for entry in text.content["columns"]] == [
         [None, None], [-0.01, 0.01], [-16.0, 16.0],
     ]  # fmt: skip
-    highest = column(told, "column.shaking_force.y.max")
-    np.testing.assert_array_equal(column(told, "kept") == 1, highest <= 16.0)
-    assert 0 < told.content["kept"] < 64
+    highest = column(text, "column.shaking_force.y.max")
+    np.testing.assert_array_equal(column(text, "kept") == 1, highest <= 16.0)
+    assert 0 < text.content["kept"] < 64
 
 
 PLAN = (
@@ -119,9 +119,9 @@ def test_balance_keeps_it_as_it_keeps_an_upper_limit(added: None) -> None:
     text = f'"{most} N m"'
     machine = eq.loads(PLAN + f"within = {text}\n")
     assert machine.balance is not None and machine.balance.limits[0].asks[0][0] == "within"
-    found, wanted = eq.balance(machine), eq.balance(eq.loads(PLAN + f"at_most = {text}\n"))
-    assert found.cost == pytest.approx(wanted.cost, rel=1e-9)
-    reached = eq.analyze(found.machine, 720).summary["drive_torque"].peak
+    actual, wanted = eq.balance(machine), eq.balance(eq.loads(PLAN + f"at_most = {text}\n"))
+    assert actual.cost == pytest.approx(wanted.cost, rel=1e-9)
+    reached = eq.analyze(actual.machine, 720).summary["drive_torque"].peak
     assert reached == pytest.approx(most, rel=1e-5)
     assert eq.loads(eq.dumps(machine)).balance == machine.balance
 
@@ -132,10 +132,10 @@ def test_the_page_balances_within_it(added: None, tmp_path: Path) -> None:
     session = Session()
     session.open(opened_file(path))
     ask(session, "ready")
-    told, _ = ask(session, "balance")
-    found = eq.balance(eq.load(path))
-    aim = told.content["aims"][0]
-    assert aim["after"] == pytest.approx(found.after["shaking_force.y.rms"], rel=1e-3)
+    reply, _ = ask(session, "balance")
+    balanced = eq.balance(eq.load(path))
+    aim = reply.content["aims"][0]
+    assert aim["after"] == pytest.approx(balanced.after["shaking_force.y.rms"], rel=1e-3)
 
 
 def test_a_target_file_asks_a_search_of_geometry_for_it(added: None, tmp_path: Path) -> None:

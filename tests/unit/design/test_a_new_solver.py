@@ -62,7 +62,7 @@ def added() -> Iterator[RandomSearch]:
 
 
 def study(spreads: Any, *makes: str) -> eq.studies.Study:
-    vary = [eq.design.Variable(path, one) for path, one in zip(MASSES, spreads, strict=True)]
+    vary = [eq.design.Variable(path, spread) for path, spread in zip(MASSES, spreads, strict=True)]
     return eq.studies.Study(
         title="",
         model=Template.load("yamashita-1"),
@@ -75,33 +75,33 @@ def study(spreads: Any, *makes: str) -> eq.studies.Study:
     )
 
 
-def told(found: Searched) -> list[str]:
-    return [str(one) for one in searched_blocks(found) if isinstance(one, Text | Notes)]
+def printed_texts(result: Searched) -> list[str]:
+    return [str(block) for block in searched_blocks(result) if isinstance(block, Text | Notes)]
 
 
 RANGES = (Range(0.1, 0.3), Range(0.1, 0.4))
 
 
 def test_a_search_takes_a_solver_of_ones_own(added: RandomSearch) -> None:
-    found = search(study(RANGES))
-    assert (found.solver, found.proof, found.computed) == ("random search", None, 16)
-    assert found.stood_still, "it had no further designs"
-    values = evaluator(found.study)(found.tried.values).figures[:, 0]
-    assert found.figures[0, 0] == np.min(values)
-    assert found.to_dict()["proved"] is False
-    assert any("the optimum is not proved" in one for one in told(found))
+    searched = search(study(RANGES))
+    assert (searched.solver, searched.proof, searched.computed) == ("random search", None, 16)
+    assert searched.stood_still, "it had no further designs"
+    values = evaluator(searched.study)(searched.tried.values).figures[:, 0]
+    assert searched.figures[0, 0] == np.min(values)
+    assert searched.to_dict()["proved"] is False
+    assert any("the optimum is not proved" in item for item in printed_texts(searched))
 
 
 @EXHAUSTIVE  # On every change: `test_the_page_balances_by_it`, of the same machine.
 def test_balance_chooses_gears_by_it(added: RandomSearch) -> None:
     """As good as the best of its own few choices, and no better than all of them tried."""
     machine = eq.load("balance-geared-a")
-    found = eq.balance(machine)
+    balanced = eq.balance(machine)
     (problem,) = added.seen
     assert len(problem.costs) <= 16  # type: ignore[attr-defined]
-    assert found.cost == pytest.approx(min(problem.costs.values()), abs=1e-6)  # type: ignore[attr-defined]
+    assert balanced.cost == pytest.approx(min(problem.costs.values()), abs=1e-6)  # type: ignore[attr-defined]
     SOLVERS.remove(added)
-    assert eq.balance(machine).cost <= found.cost + 1e-8
+    assert eq.balance(machine).cost <= balanced.cost + 1e-8
     SOLVERS.insert(0, added)
 
 
@@ -109,20 +109,20 @@ def test_the_page_balances_by_it(added: RandomSearch) -> None:
     session, _ = opened("balance-geared-a")
     shown, _ = ask(session, "balance")
     assert len(added.seen) == 1
-    found = eq.balance(eq.load("balance-geared-a"))
+    balanced = eq.balance(eq.load("balance-geared-a"))
     assert shown.content["aims"][0]["after"] == pytest.approx(
-        next(iter(found.objectives.values()))[1], rel=1e-3
+        next(iter(balanced.objectives.values()))[1], rel=1e-3
     )
 
 
 def test_phases_are_chosen_by_it_without_a_proof(added: RandomSearch) -> None:
     machine = eq.load("walking-transplanter")
-    found = eq.balancing.choose_phases(machine, [eq.balancing.Objective("shaking_force")])
-    assert found.bound == 0.0 and found.looked_at == 0
-    assert any("before the optimum was proved" in str(one) for one in found.notes)
+    phasing = eq.balancing.choose_phases(machine, [eq.balancing.Objective("shaking_force")])
+    assert phasing.bound == 0.0 and phasing.looked_at == 0
+    assert any("before the optimum was proved" in str(note) for note in phasing.notes)
     SOLVERS.remove(added)
     best = eq.balancing.choose_phases(machine, [eq.balancing.Objective("shaking_force")])
-    assert 0.0 < best.bound <= best.combined[1] <= found.combined[1] + 1e-12
+    assert 0.0 < best.bound <= best.combined[1] <= phasing.combined[1] + 1e-12
     SOLVERS.insert(0, added)
 
 
@@ -130,16 +130,16 @@ def test_phases_are_chosen_by_it_without_a_proof(added: RandomSearch) -> None:
 @pytest.mark.exhaustive
 def test_the_search_of_geometry_takes_it(added: RandomSearch) -> None:
     goal = Requirement("curve.height", make="smallest")
-    found = fit_planting(eq.load("kim-chung-a"), [goal], {"crank": (0.03, 0.05)})
-    assert found.solver == "random search" and not found.proved
-    assert found.after["curve.height"] < eq.plant(eq.load("kim-chung-a"))["curve.height"]
+    fit = fit_planting(eq.load("kim-chung-a"), [goal], {"crank": (0.03, 0.05)})
+    assert fit.solver == "random search" and not fit.proved
+    assert fit.after["curve.height"] < eq.plant(eq.load("kim-chung-a"))["curve.height"]
 
 
 # Searches of studies take it: the first test of this file.
 @pytest.mark.exhaustive
 def test_a_tool_is_designed_by_it(added: RandomSearch) -> None:
-    found = design_tool(eq.load("brush-cutter"))
-    assert found.to_dict()["solver"] == "random search" and not found.to_dict()["proved"]
+    design = design_tool(eq.load("brush-cutter"))
+    assert design.to_dict()["solver"] == "random search" and not design.to_dict()["proved"]
 
 
 def test_without_it_the_solver_follows_from_the_problem() -> None:
@@ -156,16 +156,18 @@ def test_without_it_the_solver_follows_from_the_problem() -> None:
 def test_lists_are_computed_one_and_all_and_that_is_a_proof(makes: tuple[str, ...]) -> None:
     """Against each machine by an analysis of its own."""
     spreads = tuple(Choices(values) for values in MASSES.values())
-    found = search(replace(study(spreads, *makes), angles=720), population=8)
-    assert isinstance(found.proof, Note) and found.stood_still
-    assert found.computed == 12 and found.to_dict()["proved"] is True
-    assert any("no other design is better" in one for one in told(found))
+    searched = search(replace(study(spreads, *makes), angles=720), population=8)
+    assert isinstance(searched.proof, Note) and searched.stood_still
+    assert searched.computed == 12 and searched.to_dict()["proved"] is True
+    assert any("no other design is better" in item for item in printed_texts(searched))
     costs = []
     for crank, rocker in product(*MASSES.values()):
         machine = eq.load("yamashita-1").with_link("crank", mass=crank)
         summary = eq.analyze(machine.with_link("rocker", mass=rocker), 720).summary
         costs.append([summary["shaking_force.y"].rms, summary["drive_torque"].rms][: len(makes)])
     every = np.array(costs)
-    beaten = [np.any(np.all(every <= one, axis=1) & np.any(every < one, axis=1)) for one in every]
+    beaten = [
+        np.any(np.all(every <= item, axis=1) & np.any(every < item, axis=1)) for item in every
+    ]
     front = every[~np.array(beaten)]
-    np.testing.assert_allclose(found.figures, front[np.argsort(front[:, 0])], rtol=1e-9)
+    np.testing.assert_allclose(searched.figures, front[np.argsort(front[:, 0])], rtol=1e-9)

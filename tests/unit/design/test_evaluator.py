@@ -61,11 +61,11 @@ def test_processes_give_the_figures_in_the_order_of_the_designs(at_once: list[An
     values = samples(some, 0, 23)
     values[5] = -values[5]  # no machine
     with pooled(some, 2) as evaluate:
-        found, again = evaluate(values), evaluate(values[::-1])
+        actual, again = evaluate(values), evaluate(values[::-1])
     alone = evaluator(some)(values)
     assert alone.reason[5] != 0
     assert np.isfinite(alone.figures).any()
-    for outcome, order in ((found, slice(None)), (again, slice(None, None, -1))):
+    for outcome, order in ((actual, slice(None)), (again, slice(None, None, -1))):
         np.testing.assert_array_equal(outcome.figures[order], alone.figures)
         np.testing.assert_array_equal(outcome.reason[order], alone.reason)
     assert sum(len(part.values) for part in at_once) == 22 + 23
@@ -147,13 +147,13 @@ def test_a_map_is_the_same_with_any_number_of_workers(at_once: list[Any]) -> Non
         "links.crank.points.B.x": np.linspace(0.011, 0.081, 5),
         "links.coupler.points.C.x": np.linspace(0.041, 0.151, 5),
     }
-    one, two = (
+    first, two = (
         landscape(Template.load("yamashita-1"), over, Objective("shaking_force"), workers=k)
         for k in (1, 2)
     )
-    assert 0 < np.isnan(one.values).sum() < 25
-    assert np.array_equal(one.values, two.values, equal_nan=True)
-    assert (one.best, one.least, one.before) == (two.best, two.least, two.before)
+    assert 0 < np.isnan(first.values).sum() < 25
+    assert np.array_equal(first.values, two.values, equal_nan=True)
+    assert (first.best, first.least, first.before) == (two.best, two.least, two.before)
     assert sum(len(part.values) for part in at_once) == 24, "all but the first"
 
 
@@ -164,9 +164,9 @@ def test_a_search_of_geometry_is_the_same_with_any_number_of_workers(at_once: li
         Requirement("max_speed.value", make="smallest"),
     ]
     machine, few = load("kim-chung-c"), {"seed": 3, "generations": 2, "population": 8}
-    one, two = (fit_planting(machine, goals, workers=k, **few) for k in (1, 2))  # type: ignore[arg-type]
-    assert one.to_dict() == two.to_dict()
-    assert (one.machine, one.judged) == (two.machine, two.judged)
+    first, two = (fit_planting(machine, goals, workers=k, **few) for k in (1, 2))  # type: ignore[arg-type]
+    assert first.to_dict() == two.to_dict()
+    assert (first.machine, first.judged) == (two.machine, two.judged)
     assert at_once
 
 

@@ -88,9 +88,9 @@ def test_a_study_has_them() -> None:
     given, masses = study(tolerance=1e-5), np.array([[mass_of("crank")]])
     assert evaluator(given)(masses).figures[0] == pytest.approx(known, rel=CLOSE)
     assert OneByOne(given)(masses).figures[0] == pytest.approx(known, rel=CLOSE)
-    found = search(given)
-    (same,) = np.flatnonzero(found.values[:, 0] == mass_of("crank"))
-    assert found.figures[same] == pytest.approx(known, rel=CLOSE)
+    searched = search(given)
+    (same,) = np.flatnonzero(searched.values[:, 0] == mass_of("crank"))
+    assert searched.figures[same] == pytest.approx(known, rel=CLOSE)
 
 
 def test_balance_has_them() -> None:
@@ -113,11 +113,11 @@ def test_balance_has_them() -> None:
 
 def test_a_map_has_them() -> None:
     over = {f"links.{link}.mass": mass_of(link) * np.array([1.0, 2.0]) for link in LINKS}
-    found = landscape(Template.load(NAME), over, Objective("shaking_force", "peak"))
-    assert found.values[0, 0] == pytest.approx(of_analysis("shaking_force.peak"), rel=CLOSE)
+    result = landscape(Template.load(NAME), over, Objective("shaking_force", "peak"))
+    assert result.values[0, 0] == pytest.approx(of_analysis("shaking_force.peak"), rel=CLOSE)
 
 
 def test_tables_have_them() -> None:
-    told = [*values_of(analysis().blocks())]
+    texts = [*values_of(analysis().blocks())]
     for path in ("drive_torque.peak", "shaking_force.peak"):
-        assert of_analysis(path) in told
+        assert of_analysis(path) in texts

@@ -53,15 +53,15 @@ DENSITY = {("balance-shafts", "crank"): 7200.0}
 
 def drawn(what: object, path: Path, **options: str) -> ezdxf.document.Drawing:
     eq.export(what, path, crank_angle=START, **options)  # type: ignore[arg-type]
-    found = ezdxf.readfile(path)
-    assert found.units == ezdxf.units.MM
-    assert found.audit().errors == []
-    return found
+    result = ezdxf.readfile(path)
+    assert result.units == ezdxf.units.MM
+    assert result.audit().errors == []
+    return result
 
 
 def on_layer(drawing: ezdxf.document.Drawing, name: str) -> list[ezdxf.entities.DXFEntity]:
     assert name in drawing.layers
-    return [one for one in drawing.modelspace() if one.dxf.layer == name]
+    return [item for item in drawing.modelspace() if item.dxf.layer == name]
 
 
 def corners(line: ezdxf.entities.DXFEntity) -> list[tuple[complex, float]]:
@@ -84,15 +84,17 @@ def test_linkage_and_paths(name: str, tmp_path: Path) -> None:
     for body, link in machine.links.items():
         if len(link.points) == 2:
             (line,) = on_layer(drawing, f"link {body}")
-            wanted = {complex(1e3 * motion.points[one].place[0]) for one in link.points}
-            found = [place for place, _ in corners(line)]
-            assert all(min(abs(one - place) for one in wanted) < SAME for place in found)
-    for point in {one for link in machine.links.values() for one in link.points} - {*machine.frame}:
+            wanted = {complex(1e3 * motion.points[item].place[0]) for item in link.points}
+            actual = [place for place, _ in corners(line)]
+            assert all(min(abs(item - place) for item in wanted) < SAME for place in actual)
+    for point in {item for link in machine.links.values() for item in link.points} - {
+        *machine.frame
+    }:
         (line,) = on_layer(drawing, f"path {point}")
         path = np.array([place for place, _ in corners(line)])
         assert line.closed
         np.testing.assert_allclose(path, 1e3 * cycle.points[point].place, rtol=0, atol=SAME)
-    texts = {one.dxf.text for one in on_layer(drawing, "names")}
+    texts = {item.dxf.text for item in on_layer(drawing, "names")}
     assert {*motion.points} <= texts
 
 
@@ -100,23 +102,25 @@ def test_gears_are_drawn_by_their_pitch_circles(tmp_path: Path) -> None:
     machine = eq.load("geared-counterweight")
     drawing = drawn(machine, tmp_path / "x.dxf")
     (gear,) = machine.gears
-    radii = [on_layer(drawing, f"gears {one}")[0].dxf.radius for one in (gear.driver, gear.driven)]
+    radii = [
+        on_layer(drawing, f"gears {item}")[0].dxf.radius for item in (gear.driver, gear.driven)
+    ]
     assert radii[0] / radii[1] == pytest.approx(abs(gear.speed_ratio))
 
 
 def test_cams_are_drawn_by_their_surfaces(tmp_path: Path) -> None:
     drawing = drawn(eq.load("cam-pusher"), tmp_path / "x.dxf")
     (surface,) = on_layer(drawing, "cams crank")
-    (axis,) = (one.dxf.insert for one in on_layer(drawing, "names") if one.dxf.text == "B")
+    (axis,) = (item.dxf.insert for item in on_layer(drawing, "names") if item.dxf.text == "B")
     reach = [abs(complex(x - axis.x, y - axis.y)) for x, y, *_ in surface.get_points()]
     assert min(reach) == pytest.approx(18, abs=1e-3)
     assert max(reach) == pytest.approx(18 + 12, abs=0.01)
     (pitch,) = on_layer(drawing, "pitch curve crank to pusher")
     assert pitch.closed
-    cut, way = (np.array([place for place, _ in corners(one)]) for one in (surface, pitch))
+    cut, way = (np.array([place for place, _ in corners(item)]) for item in (surface, pitch))
     apart = np.min(np.abs(cut[:, None] - way), axis=0)
     np.testing.assert_allclose(apart, 6.0, atol=0.01)
-    (roller,) = (one.dxf.insert for one in on_layer(drawing, "names") if one.dxf.text == "R")
+    (roller,) = (item.dxf.insert for item in on_layer(drawing, "names") if item.dxf.text == "R")
     assert np.min(np.abs(way - complex(roller.x, roller.y))) < 0.2
     links = import_machine(tmp_path / "x.dxf").outline.links
     assert {*links} == {*eq.load("cam-pusher").links, "block1"}
@@ -129,11 +133,11 @@ def test_counterweights_weigh_what_they_are_to(name: str, tmp_path: Path) -> Non
 
     Those of a plan have whole sizes.
     """
-    found, _ = in_whole_sizes(eq.balancing.advise(eq.load(name)))
-    drawing = drawn(found, tmp_path / "x.dxf")
-    tree = svg(found, tmp_path / "x.svg")
+    actual, _ = in_whole_sizes(eq.balancing.advise(eq.load(name)))
+    drawing = drawn(actual, tmp_path / "x.dxf")
+    tree = svg(actual, tmp_path / "x.svg")
     seen = 0
-    for change in found.changes:
+    for change in actual.changes:
         for number, piece in enumerate(change.values.get("pieces", ()), 1):
             label = f"{change.link}, counterweight {number}"
             (line,) = on_layer(drawing, f"part {label.replace(',', '_')}")
@@ -151,24 +155,24 @@ def test_a_workshop_drawing_gives_what_was_advised(name: str, tmp_path: Path) ->
     """Of the outline read back: area x thickness x density is the mass in words, and its moment
     about the link's room is that of the advice, or of the plan's result in whole sizes.
     """
-    found, _ = in_whole_sizes(eq.balancing.advise(eq.load(name)))
-    drawing = drawn(found, tmp_path / "x.dxf")
-    eq.export(found, tmp_path / "x.pdf")
+    actual, _ = in_whole_sizes(eq.balancing.advise(eq.load(name)))
+    drawing = drawn(actual, tmp_path / "x.dxf")
+    eq.export(actual, tmp_path / "x.pdf")
     pages = 0
-    for change in found.changes:
+    for change in actual.changes:
         moment = 0j
         for number, piece in enumerate(change.values.get("pieces", ()), 1):
             label = f"{change.link}_ counterweight {number}"
             (line,) = on_layer(drawing, f"part {label}")
             beside = on_layer(drawing, f"dimensions {label}")
-            words = [one.dxf.text for one in beside if one.dxftype() == "TEXT"]
-            dims = [one for one in beside if one.dxftype() == "DIMENSION"]
+            words = [item.dxf.text for item in beside if item.dxftype() == "TEXT"]
+            dims = [item for item in beside if item.dxftype() == "DIMENSION"]
             edges = corners(line)
             mass = area(edges) * 1e-6 * piece["thickness"] * piece["density"]
             assert f"mass {1e3 * mass:.0f} g" in words
             assert f"thickness {in_mm(1e3 * piece['thickness'])} mm" in words
-            assert any(one.startswith("material: ") for one in words)
-            sizes = {round(one.get_measurement(), 6) for one in dims}
+            assert any(word.startswith("material: ") for word in words)
+            sizes = {round(dim.get_measurement(), 6) for dim in dims}
             assert {
                 round(1e3 * piece["outer_radius"], 6),
                 round(1e3 * piece["inner_radius"], 6),
@@ -176,8 +180,8 @@ def test_a_workshop_drawing_gives_what_was_advised(name: str, tmp_path: Path) ->
             wide = np.degrees(piece["angle"])
             assert round(wide, 6) in sizes
             assert len(dims) == 3  # each radius and the angle once, which say all
-            assert any(f"about the axis, over {in_mm(wide)}°" in one for one in words)
-            axis = next(complex(*one.dxf.defpoint.vec2) for one in dims if one.dimtype == 4)
+            assert any(f"about the axis, over {in_mm(wide)}°" in word for word in words)
+            axis = next(complex(*dim.dxf.defpoint.vec2) for dim in dims if dim.dimtype == 4)
             moment += mass * (centroid(edges) - axis) * 1e-3
             pages += 1
         wanted = change.values["moment"] * np.exp(1j * change.values["direction"])
@@ -192,16 +196,16 @@ def test_a_workshop_drawing_gives_what_was_advised(name: str, tmp_path: Path) ->
 @pytest.mark.parametrize("name", ["yamashita-1", "kim-chung-c", "yamashita-rig"])
 def test_measures_that_are_advised_are_whole(name: str) -> None:
     """Millimetres and degrees, and the figures are those of the shape that has them."""
-    found = findings_of(name)
-    assert isinstance(found, Findings) and found.balanced is not None and found.helped
-    drawn_parts = parts(Job(found.balanced.machine, 0.0, found.balanced.changes))
+    findings = findings_of(name)
+    assert isinstance(findings, Findings) and findings.balanced is not None and findings.helped
+    drawn_parts = parts(Job(findings.balanced.machine, 0.0, findings.balanced.changes))
     assert drawn_parts
     for part in drawn_parts:
-        texts = [one.text for one in part.curves]
+        texts = [curve.text for curve in part.curves]
         said = [line for line in part.lines[4:] if "Ø" not in line and "screws" not in line]
         numbers = re.findall(r"[\d.]+", " ".join((*texts, *said, part.lines[1])))
-        assert len(numbers) >= 5 and not [one for one in numbers if "." in one], part.lines
-        assert part.mass == pytest.approx(found.balanced.added_mass, rel=1e-9)
+        assert len(numbers) >= 5 and not [number for number in numbers if "." in number], part.lines
+        assert part.mass == pytest.approx(findings.balanced.added_mass, rel=1e-9)
 
 
 @pytest.mark.parametrize("name", ["yamashita-1", "yamashita-rig", "sieve"])
@@ -209,9 +213,9 @@ def test_sectors_are_screwed_on(name: str, tmp_path: Path) -> None:
     """By two threads, clear of the outline and of each other, whose steel weighs as much as the
     screws; on a crank of constant speed their friction holds its force twice.
     """
-    found = findings_of(name)
-    assert isinstance(found, Findings) and found.balanced is not None
-    whole, _ = in_whole_sizes(found.balanced)
+    findings = findings_of(name)
+    assert isinstance(findings, Findings) and findings.balanced is not None
+    whole, _ = in_whole_sizes(findings.balanced)
     drawing = drawn(whole, tmp_path / "x.dxf")
     speed = whole.machine.drive.speed
     names = [part.name for part in parts(Job(whole.machine, 0.0, whole.changes)) if part.threads]
@@ -244,7 +248,7 @@ def test_sectors_are_screwed_on(name: str, tmp_path: Path) -> None:
     assert any("mm deep in holes of" in t for t in texts) == (not through)
     assert any(t.startswith("the threads are filled by steel screws") for t in texts)
     circles = svg(whole, tmp_path / "x.svg").findall("{*}g/{*}circle")
-    assert [float(one.get("r", "0")) for one in circles] == [first.dxf.radius] * 2
+    assert [float(item.get("r", "0")) for item in circles] == [first.dxf.radius] * 2
 
 
 def test_larger_forces_get_larger_threads() -> None:
@@ -313,8 +317,8 @@ def test_more_screws_hold_where_two_have_no_room() -> None:
     for speed in (100.0, 170.0, 190.0, 250.0):  # 2 x 1 kg x 90 mm x speed^2 to be held
         threads = threads_of(piece, 0j, eq.move(machine.with_drive(speed=speed), 36), "crank")
         counts.append(len(threads.places) if threads else 0)
-        for one, other in pairwise(threads.places if threads else ()):
-            assert abs(one - other) >= 3e-3 * threads.size  # type: ignore[union-attr]
+        for first, other in pairwise(threads.places if threads else ()):
+            assert abs(first - other) >= 3e-3 * threads.size  # type: ignore[union-attr]
     assert counts == [2, 3, 4, 0]  # two M8 hold 3.57 kN, three 5.35 kN, four 7.13 kN
 
 
@@ -347,7 +351,7 @@ def test_texts_of_drawings_are_in_the_language_asked_for(
     language: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """English where no font has its letters, and that is said; names of layers stay."""
-    found = findings_of("yamashita-1").balanced  # type: ignore[union-attr]
+    balanced = findings_of("yamashita-1").balanced  # type: ignore[union-attr]
     shown: list[str] = []
     sheet = workshop_sheet._sheet
 
@@ -356,27 +360,27 @@ def test_texts_of_drawings_are_in_the_language_asked_for(
         return sheet(part, lines)
 
     monkeypatch.setattr(workshop_sheet, "_sheet", keep)
-    drawing = drawn(found, tmp_path / "x.dxf", language=language)
+    drawing = drawn(balanced, tmp_path / "x.dxf", language=language)
     texts = on_layer(drawing, "dimensions crank_ counterweight 1")
-    assert words in {one.dxf.text for one in texts if one.dxftype() == "TEXT"}
-    (font,) = {one.dxf.style for one in texts if one.dxftype() == "TEXT"}
+    assert words in {text.dxf.text for text in texts if text.dxftype() == "TEXT"}
+    (font,) = {text.dxf.style for text in texts if text.dxftype() == "TEXT"}
     assert drawing.styles.get(font).dxf.font == KNOWN[language].drawing_font
-    group = svg(found, tmp_path / "x.svg", language=language).find("{*}g/{*}title")
+    group = svg(balanced, tmp_path / "x.svg", language=language).find("{*}g/{*}title")
     assert group is not None and group.text is not None and not group.text.isascii()
     for signs, wanted in (("", words), ("厚", "thickness 25 mm")):
         shown.clear()
         monkeypatch.setattr(workshop_sheet, "fonts_for", lambda _, signs=signs: ((), signs))
-        notes = eq.export(found, tmp_path / "x.pdf", language=language)  # type: ignore[arg-type]
+        notes = eq.export(balanced, tmp_path / "x.pdf", language=language)  # type: ignore[arg-type]
         assert wanted in shown and bool(notes) == bool(signs)
-        assert all("for which this computer has no font" in one for one in notes)
+        assert all("for which this computer has no font" in note for note in notes)
     with refused(UsageError, names="en, de, ja, ko"):
-        eq.export(found, tmp_path / "x.pdf", language="fr")  # type: ignore[arg-type]
+        eq.export(balanced, tmp_path / "x.pdf", language="fr")  # type: ignore[arg-type]
 
 
 def test_what_is_written_keeps_the_edges_of_the_sheet() -> None:
-    found = findings_of("yamashita-rig")
-    assert isinstance(found, Findings) and found.balanced is not None
-    rounded, sizes = in_whole_sizes(found.balanced)
+    findings = findings_of("yamashita-rig")
+    assert isinstance(findings, Findings) and findings.balanced is not None
+    rounded, sizes = in_whole_sizes(findings.balanced)
     job = Job(rounded.machine, 0.0, rounded.changes, sizes=str(sizes))
     with workshop_sheet.sheets(job) as figures:
         for figure in figures:
@@ -387,9 +391,9 @@ def test_what_is_written_keeps_the_edges_of_the_sheet() -> None:
 
 
 def test_counterweights_of_a_link_in_several_planes_have_numbers_of_their_own() -> None:
-    found = findings_of("twin-engine")
-    assert isinstance(found, Findings) and found.balanced is not None
-    job = Job(found.balanced.machine, 0.0, found.balanced.changes)
+    findings = findings_of("twin-engine")
+    assert isinstance(findings, Findings) and findings.balanced is not None
+    job = Job(findings.balanced.machine, 0.0, findings.balanced.changes)
     names = [part.name for part in parts(job)]
     assert {"crank, counterweight 1", "crank, counterweight 2"} < {*names}
     assert len({*names}) == len(names)
@@ -398,9 +402,9 @@ def test_counterweights_of_a_link_in_several_planes_have_numbers_of_their_own() 
 @pytest.mark.parametrize("name", ["sieve", "lee-kim-c", "yamashita-rig"])
 def test_measures_of_a_workshop_drawing_are_on_the_sheet_and_below_its_text(name: str) -> None:
     """A long sector went through the text, and the x axis over the edge of the sheet."""
-    found = findings_of(name)
-    assert isinstance(found, Findings) and found.balanced is not None
-    rounded, sizes = in_whole_sizes(found.balanced)
+    findings = findings_of(name)
+    assert isinstance(findings, Findings) and findings.balanced is not None
+    rounded, sizes = in_whole_sizes(findings.balanced)
     job = Job(rounded.machine, 0.0, rounded.changes, sizes=str(sizes))
     with workshop_sheet.sheets(job) as figures:
         assert figures
@@ -426,9 +430,9 @@ def centroid(edges: list[tuple[complex, float]]) -> complex:
 # Files of other kinds are the same too: tests/unit/figures/test_other_charts.py.
 @pytest.mark.exhaustive
 def test_workshop_drawings_are_the_same_bytes_on_every_run(tmp_path: Path) -> None:
-    found = eq.balancing.advise(eq.load("balance-shafts"))
+    advice = eq.balancing.advise(eq.load("balance-shafts"))
     for name in ("a.pdf", "b.pdf"):
-        eq.export(found, tmp_path / name)
+        eq.export(advice, tmp_path / name)
     assert (tmp_path / "a.pdf").read_bytes() == (tmp_path / "b.pdf").read_bytes()
 
 
@@ -436,16 +440,16 @@ def svg(what: object, path: Path, **options: str) -> ET.Element:
     eq.export(what, path, **options)  # type: ignore[arg-type]
     root = ET.parse(path).getroot()
     width, height = (float(root.attrib[key].removesuffix("mm")) for key in ("width", "height"))
-    assert [float(one) for one in root.attrib["viewBox"].split()] == [0.0, 0.0, width, height]
+    assert [float(part) for part in root.attrib["viewBox"].split()] == [0.0, 0.0, width, height]
     return root
 
 
 def same_lengths(root: ET.Element, name: str, edges: list[tuple[complex, float]]) -> None:
     """The corners of a part are as far apart in mm as in the drawing, and its arcs as round."""
-    (path,) = (one.find("{*}path") for one in root if one.get("id") == name)
+    (path,) = (item.find("{*}path") for item in root if item.get("id") == name)
     assert path is not None
     words = re.findall(r"([MLA])([^MLAZ]*)", path.attrib["d"])
-    numbers = [[float(one) for one in rest.split()] for _, rest in words]
+    numbers = [[float(part) for part in rest.split()] for _, rest in words]
     places = np.array([complex(row[-2], -row[-1]) for row in numbers])[: len(edges)]
     wanted = np.array([corner for corner, _ in edges])
     np.testing.assert_allclose(np.diff(places), np.diff(wanted), rtol=0, atol=SAME)
@@ -471,7 +475,7 @@ def test_links_made_of_bodies_and_their_holes(tmp_path: Path) -> None:
     )
     machine = eq.load("yamashita-1").with_link("crank", bodies=(disc,))
     drawing = drawn(machine, tmp_path / "x.dxf")
-    outline, *holes = (area(corners(one)) for one in on_layer(drawing, "part crank_ disc 1"))
+    outline, *holes = (area(corners(item)) for item in on_layer(drawing, "part crank_ disc 1"))
     mass = (outline - sum(holes)) * 1e-6 * 0.01 * STEEL
     assert len(holes) == 2
     assert mass == pytest.approx(machine.links["crank"].mass, rel=1e-6)
@@ -537,18 +541,18 @@ def test_what_is_cut_to_length_is_no_plate(
 def test_a_model_without_outlines_has_no_parts(tmp_path: Path) -> None:
     with refused(eq.EquipoiseError, by="parts"):
         eq.export(eq.load("lee-kim-a"), tmp_path / "x.svg")
-    (told,) = eq.export(eq.load("lee-kim-a"), tmp_path / "x.dxf")
-    assert told.startswith("parts to be cut")
+    (text,) = eq.export(eq.load("lee-kim-a"), tmp_path / "x.dxf")
+    assert text.startswith("parts to be cut")
 
 
 def test_a_balanced_model_without_outlines_is_not_to_be_balanced(tmp_path: Path) -> None:
     """A point mass, a spring, or nothing changed: the advice is not what was done already."""
     point, spring = (eq.balance(eq.load(name)) for name in ("balance-crank", "balance-spring"))
-    for found, expected in (
+    for actual, expected in (
         (point, {"changed": "crank"}),
         (spring, {"changed": "rocker"}),
         (replace(point, changes=()), {}),
     ):
         with refused(eq.EquipoiseError, by="parts", **expected) as caught:
-            eq.export(found, tmp_path / "x.pdf")
+            eq.export(actual, tmp_path / "x.pdf")
         assert "export it balanced" not in str(caught.value)

@@ -42,11 +42,11 @@ def run(machine: eq.Machine, path: Path, turns: float, start: float = START) -> 
 def test_drive_torque(name: str, tmp_path: Path) -> None:
     """Its steps are of second order, 3e-3 rad long; what they begin with dies out in some."""
     machine = replace(eq.load(name), loads=(), balance=None)
-    found = run(machine, tmp_path / "model.py", 0.5)
-    phases = [one.phase for one in machine.rows] or [0.0]
-    moved = (eq.move(machine, found["crank_angle"] + phase) for phase in phases)
-    wanted = sum(eq.forces(one).drive_torque for one in moved)
-    apart = np.abs(found["drive_torque"] - wanted)[STEPS // 10 :]
+    result = run(machine, tmp_path / "model.py", 0.5)
+    phases = [row.phase for row in machine.rows] or [0.0]
+    moved = (eq.move(machine, result["crank_angle"] + phase) for phase in phases)
+    wanted = sum(eq.forces(item).drive_torque for item in moved)
+    apart = np.abs(result["drive_torque"] - wanted)[STEPS // 10 :]
     assert len(apart) == 4 * STEPS // 10 + 1
     assert np.max(apart) < 2e-4 * np.max(np.abs(wanted))
 
@@ -71,15 +71,15 @@ def test_a_support_from_rest(name: str, tmp_path: Path) -> None:
     machine = machine.with_support(
         gauges={**machine.support.gauges, "tilt": eq.Gauge(axis="pitch")}
     )
-    found = run(machine, tmp_path / "model.py", 0.5, start=0.0)["bodies"]["support"]
+    result = run(machine, tmp_path / "model.py", 0.5, start=0.0)["bodies"]["support"]
     times = 0.5 * 2 * np.pi / abs(machine.drive.speed)
-    exact = eq.simulate(machine, times, machine.drive.speed, samples=len(found))
+    exact = eq.simulate(machine, times, machine.drive.speed, samples=len(result))
     center = complex(*machine.support.center_of_mass[:2])
     for gauge, reading in machine.support.gauges.items():
-        moved = found[:, 2]
+        moved = result[:, 2]
         if reading.point is not None:
             arm = complex(*reading.point[:2]) - center
-            shift = found[:, 0] + 1j * found[:, 1] + arm * (np.exp(1j * found[:, 2]) - 1)
+            shift = result[:, 0] + 1j * result[:, 1] + arm * (np.exp(1j * result[:, 2]) - 1)
             x, y, _ = unit_vector(reading.direction)
             moved = shift.real * x + shift.imag * y
         wanted = exact.gauges[gauge]
@@ -92,10 +92,10 @@ def test_dampers_stops_and_resistances(
 ) -> None:
     machine = machine_with(elements)
     assert eq.export(machine, tmp_path / "model.py") == ()
-    found = run(machine, tmp_path / "model.py", 0.5)
-    motion = eq.move(machine, found["crank_angle"])
+    result = run(machine, tmp_path / "model.py", 0.5)
+    motion = eq.move(machine, result["crank_angle"])
     wanted = eq.forces(motion).drive_torque
-    apart = np.abs(found["drive_torque"] - wanted)[STEPS // 10 :]
+    apart = np.abs(result["drive_torque"] - wanted)[STEPS // 10 :]
     assert np.max(apart) < 2e-4 * np.max(np.abs(wanted))
 
 
@@ -112,9 +112,9 @@ def test_a_constant_load(tmp_path: Path) -> None:
     turns = eq.Load("coupler", point="C", force=(-2.0, 5.0), axes="link")
     loads = eq.Load("crank", point="B", force=(3.0, 4.0)), eq.Load("rocker", torque=0.5), turns
     machine = replace(eq.load("yamashita-1"), loads=loads)
-    found = run(machine, tmp_path / "model.py", 0.25)
-    wanted = eq.forces(eq.move(machine, found["crank_angle"])).drive_torque
-    apart = np.abs(found["drive_torque"] - wanted)[STEPS // 10 :]
+    result = run(machine, tmp_path / "model.py", 0.25)
+    wanted = eq.forces(eq.move(machine, result["crank_angle"])).drive_torque
+    apart = np.abs(result["drive_torque"] - wanted)[STEPS // 10 :]
     assert np.max(apart) < 2e-4 * np.max(np.abs(wanted))
 
 

@@ -63,21 +63,23 @@ def run(name: str, path: Path, **options: Any) -> tuple[eq.Machine, Any]:
 @compiled
 @pytest.mark.parametrize("name", [*RUNNING, *MADE])
 def test_every_output_over_a_turn(name: str, tmp_path: Path) -> None:
-    machine, found = run(name, tmp_path / "x.fmu")
-    angle = found["crank_angle"]
+    machine, actual = run(name, tmp_path / "x.fmu")
+    angle = actual["crank_angle"]
     assert angle[0] == START
     assert angle[-1] - START == pytest.approx(np.copysign(2 * np.pi, machine.drive.speed))
     bare = eq.Machine(**{**{key: getattr(machine, key) for key in KEPT}, "loads": ()})
     outputs = eq.analyze(bare, angle).outputs
-    names = [one for one in found.dtype.names if one not in {"time", "crank_angle"}]
+    names = [entry for entry in actual.dtype.names if entry not in {"time", "crank_angle"}]
     assert {"drive_torque", "shaking_force.x", "shaking_moment"} <= {*names}
     sizes: dict[str, float] = {}
-    for one in names:  # what vanishes has the rounding of its like
-        unit, size = outputs[one].unit, float(np.max(np.abs(outputs[one].values)))
+    for item in names:  # what vanishes has the rounding of its like
+        unit, size = outputs[item].unit, float(np.max(np.abs(outputs[item].values)))
         sizes[unit] = max(sizes.get(unit, 0.0), size)
-    for one in names:
-        least = 1e-9 * sizes[outputs[one].unit]
-        np.testing.assert_allclose(found[one], outputs[one].values, rtol=0, atol=least, err_msg=one)
+    for item in names:
+        least = 1e-9 * sizes[outputs[item].unit]
+        np.testing.assert_allclose(
+            actual[item], outputs[item].values, rtol=0, atol=least, err_msg=item
+        )
 
 
 KEPT = ("title", "drive", "frame", "links", "assembly", "sliders", "gears", "racks", "gravity",
@@ -89,13 +91,13 @@ def test_speed_and_acceleration_are_inputs(tmp_path: Path) -> None:
     """Each step goes by those that it begins with."""
     kinds = [("time", float), ("speed", float), ("acceleration", float)]
     given = np.array([(0.0, 5.0, 2.0), (0.2, 5.4, 2.0)], dtype=kinds)
-    machine, found = run(
+    machine, actual = run(
         "yamashita-1", tmp_path / "x.fmu", input=given, stop_time=0.2, output_interval=0.01
     )
-    turned = found["crank_angle"][-1] - START
+    turned = actual["crank_angle"][-1] - START
     assert turned == pytest.approx(5 * 0.2 + 0.5 * 2 * 0.2**2, rel=1e-9)
-    last = eq.analyze(machine, [found["crank_angle"][-1]], speed=5.38, acceleration=2.0)
-    assert found["drive_torque"][-1] == pytest.approx(last.forces.drive_torque[0], rel=1e-9)
+    last = eq.analyze(machine, [actual["crank_angle"][-1]], speed=5.38, acceleration=2.0)
+    assert actual["drive_torque"][-1] == pytest.approx(last.forces.drive_torque[0], rel=1e-9)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs programs that are scripts")
@@ -111,8 +113,8 @@ def test_without_what_a_compiler_makes_it_has_its_sources(
         (tmp_path / "cc").write_text(compiler, encoding="utf-8")
         (tmp_path / "cc").chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
-    (told,) = eq.export(eq.load("yamashita-1"), tmp_path / "x.fmu")
-    assert "fmpy compile" in told
+    (text,) = eq.export(eq.load("yamashita-1"), tmp_path / "x.fmu")
+    assert "fmpy compile" in text
     names = zipfile.ZipFile(tmp_path / "x.fmu").namelist()
     assert names == ["modelDescription.xml", "sources/model.c"]
 
@@ -122,5 +124,5 @@ def test_what_no_c_is_written_of(tmp_path: Path) -> None:
     with refused(eq.EquipoiseError, title="co-simulation (FMI 2.0)"):
         eq.export(eq.load("hydraulic-loader"), path)
     assert not path.exists()
-    told = eq.export(eq.load("riding-transplanter"), path)
-    assert told == ("the support", "all rows but one")
+    exported = eq.export(eq.load("riding-transplanter"), path)
+    assert exported == ("the support", "all rows but one")

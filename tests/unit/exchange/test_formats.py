@@ -22,7 +22,7 @@ from support.refusals import refused
 PAGE = Path(__file__).parents[3] / "docs" / "exchange.md"
 BEGIN, END = "<!-- formats -->\n", "<!-- /formats -->"
 MACHINE = eq.load("yamashita-1")
-OWN = [one for one in FORMATS.values() if not one.of_store]
+OWN = [value for value in FORMATS.values() if not value.of_store]
 
 
 FRICTION = "friction in joints"
@@ -45,11 +45,11 @@ def holding_parts() -> dict[str, tuple[Machine, str, PartKind]]:
     return parts
 
 
-def lacking(one: Format) -> list[str]:
+def lacking(item: Format) -> list[str]:
     """Joints and couplings that a format has none of, and force elements."""
-    parts = [name for name, (*_, part) in holding_parts().items() if not one.has(part)]
-    forces = force_kinds(Machine).values() if one.by_kind else ()
-    return parts + [kind.group for kind in forces if one.name not in kind.exports]
+    parts = [name for name, (*_, part) in holding_parts().items() if not item.has(part)]
+    forces = force_kinds(Machine).values() if item.by_kind else ()
+    return parts + [kind.group for kind in forces if item.name not in kind.exports]
 
 
 def table() -> str:
@@ -58,14 +58,16 @@ def table() -> str:
         "| ending | `--format` | program | what the file holds | has no | needs |",
         "|---|---|---|---|---|---|",
     ]
-    for one in FORMATS.values():
-        needs = "the extra `exchange`" if one.needs else "the extra `studies`" * one.of_store
+    for value in FORMATS.values():
+        needs = "the extra `exchange`" if value.needs else "the extra `studies`" * value.of_store
         cells = (
-            f"`{one.ending}`",
-            f"`{one.name}`",
-            one.title,
-            one.holds,
-            ", ".join([*lacking(one), *([] if one.rubs else [PRESSED if one.drags else FRICTION])]),
+            f"`{value.ending}`",
+            f"`{value.name}`",
+            value.title,
+            value.holds,
+            ", ".join(
+                [*lacking(value), *([] if value.rubs else [PRESSED if value.drags else FRICTION])]
+            ),
             needs,
         )
         rows.append(f"| {' | '.join(cells)} |")
@@ -77,7 +79,7 @@ def test_the_page_lists_every_format() -> None:
     assert shown == table()
 
 
-@pytest.mark.parametrize("name", [one.name for one in OWN if one.needs])
+@pytest.mark.parametrize("name", [item.name for item in OWN if item.needs])
 def test_a_library_that_is_not_installed(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -89,12 +91,12 @@ def test_a_library_that_is_not_installed(
     assert not path.exists()
 
 
-@pytest.mark.parametrize("name", [one.name for one in OWN])
+@pytest.mark.parametrize("name", [item.name for item in OWN])
 def test_each_has_its_module(name: str) -> None:
     assert callable(import_module(FORMATS[name].maker).export_bytes)
 
 
-@pytest.mark.parametrize("name", [one.name for one in OWN if lacking(one)])
+@pytest.mark.parametrize("name", [item.name for item in OWN if lacking(item)])
 def test_joints_that_a_format_lacks(name: str) -> None:
     for special, (machine, where, part) in holding_parts().items():
         if not FORMATS[name].has(part):

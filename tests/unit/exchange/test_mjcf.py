@@ -66,7 +66,7 @@ def test_a_turn_of_the_crank(name: str, tmp_path: Path) -> None:
             place = complex(*data.site(f"{link}{row} {point}").xpos[:2])
             assert abs(place - points[point].place[0]) < 3e-4 * size
     late = angles - machine.drive.speed * model.opt.timestep  # the torque of a step is implicit
-    phases = [one.phase for one in machine.rows] or [0.0]
+    phases = [item.phase for item in machine.rows] or [0.0]
     wanted = sum(eq.forces(eq.move(machine, late + phase)).drive_torque for phase in phases)
     settled = slice(STEPS // 10, None)
     assert np.max(np.abs(torques - wanted)[settled]) < 0.02 * np.max(np.abs(wanted))
@@ -85,8 +85,8 @@ def put_in_motion(
         body = joint.bodyid[0]
         link, parent = model.body(body).name, model.body(model.body(body).parentid[0]).name
         if model.jnt_type[number] == mujoco.mjtJoint.mjJNT_SLIDE:
-            name = next(one.name for one in machine.sliders if one.link == link)
-            now, before = (one.sliders[name] for one in (motion, drawn))
+            name = next(slider.name for slider in machine.sliders if slider.link == link)
+            now, before = (item.sliders[name] for item in (motion, drawn))
             data.qpos[joint.qposadr[0]] = now.travel[0] - before.travel[0]
             data.qvel[joint.dofadr[0]] = now.velocity[0]
             continue
@@ -146,12 +146,12 @@ def test_elastic_stops(tmp_path: Path) -> None:
     """They push where the point is beyond their line, and nowhere else."""
     machine = machine_with({"stops": (Stop("coupler", "P", "A", 300.0, 1.2),)})
     assert eq.export(machine, tmp_path / "m.xml") == ()
-    found = []
+    actual = []
     for at in np.linspace(0.0, 6.0, 13):
         taken = power_of(machine, machine_with({}), START + at, tmp_path)
-        found.append(energy_rate(machine, "stops", START + at))
-        assert taken == pytest.approx(found[-1], rel=1e-9, abs=1e-12)
-    assert 0 < np.count_nonzero(found) < len(found)
+        actual.append(energy_rate(machine, "stops", START + at))
+        assert taken == pytest.approx(actual[-1], rel=1e-9, abs=1e-12)
+    assert 0 < np.count_nonzero(actual) < len(actual)
 
 
 @pytest.mark.parametrize("at", [0.5, 2.5, 4.5])
@@ -233,14 +233,14 @@ def test_a_constant_load(tmp_path: Path) -> None:
     assert data.qfrc_actuator[crank] == pytest.approx(x * 4.0 - y * 3.0 + 0.5)
 
 
-def test_what_is_left_out_is_told(tmp_path: Path) -> None:
-    found = eq.export(eq.load("transplanter"), tmp_path / "m.xml")
-    assert found == ("the soil's force",)
-    found = eq.export(eq.load("slider-crank-engine"), tmp_path / "m.xml")
-    assert found == ("load 1, which is not constant",)
+def test_what_is_left_out_is_reported(tmp_path: Path) -> None:
+    exported = eq.export(eq.load("transplanter"), tmp_path / "m.xml")
+    assert exported == ("the soil's force",)
+    exported = eq.export(eq.load("slider-crank-engine"), tmp_path / "m.xml")
+    assert exported == ("load 1, which is not constant",)
     machine = eq.load("yamashita-1").with_link("coupler", mass=0.0, inertia=0.0)
-    (found,) = eq.export(machine.with_drive(acceleration=0.0), tmp_path / "m.xml")
-    assert found.startswith("that 'coupler' has no mass")
+    (exported,) = eq.export(machine.with_drive(acceleration=0.0), tmp_path / "m.xml")
+    assert exported.startswith("that 'coupler' has no mass")
 
 
 def test_a_linkage_without_masses(tmp_path: Path) -> None:

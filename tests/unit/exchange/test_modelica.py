@@ -46,12 +46,12 @@ def in_motion(machine: eq.Machine, time: float) -> dict[str, Any]:
     for number, link in enumerate(machine.links, 1):
         name = f"{re.sub('[^A-Za-z0-9_]', '_', link)}_{number}"
         center, turning = motion.mass_centers[link], motion.links[link]
-        told = {
+        content = {
             "x": (center.x, center.vx, center.ax),
             "y": (center.y, center.vy, center.ay),
             "phi": (turning.angle, turning.angular_velocity, turning.angular_acceleration),
         }
-        for key, (place, speed, change) in told.items():
+        for key, (place, speed, change) in content.items():
             known |= {f"{key}_{name}": place[0], f"v{key}_{name}": speed[0]}
             known |= {f"d_{key}_{name}": speed[0], f"d_v{key}_{name}": change[0]}
     return known
@@ -93,29 +93,29 @@ def check_equations(machine: eq.Machine, tmp_path: Path, time: float = 0.02) -> 
     assert all(lines)
     assert len(lines) == len(declared) == len(set(declared))
     known = in_motion(machine, time)
-    unknown = [one for one in declared if one not in known]
+    unknown = [item for item in declared if item not in known]
     for line in lines:  # lengths, speeds and what follows from them
         if (
             line
             and line[1] in unknown
-            and not any(re.search(rf"\b{one}\b", line[2]) for one in unknown)
+            and not any(re.search(rf"\b{item}\b", line[2]) for item in unknown)
         ):
             known[line[1]] = left(line[2], known)
             unknown.remove(line[1])
 
     def rest(values: np.ndarray) -> np.ndarray:
         given = known | dict(zip(unknown, values, strict=True))
-        return np.array([left(f"({one[1]}) - ({one[2]})", given) for one in lines if one])
+        return np.array([left(f"({item[1]}) - ({item[2]})", given) for item in lines if item])
 
     nothing = rest(np.zeros(len(unknown)))
     columns = np.array([rest(row) - nothing for row in np.eye(len(unknown))]).T
-    found, *_ = np.linalg.lstsq(columns, -nothing, rcond=None)
+    actual, *_ = np.linalg.lstsq(columns, -nothing, rcond=None)
     size = max(1.0, float(np.max(np.abs(nothing))))
-    np.testing.assert_allclose(columns @ found + nothing, 0.0, atol=1e-9 * size)
+    np.testing.assert_allclose(columns @ actual + nothing, 0.0, atol=1e-9 * size)
     angle = [START + machine.drive.speed * time]
     wanted = eq.forces(eq.move(machine, angle, acceleration=0.0)).drive_torque[0]
     torques = eq.forces(eq.move(machine, acceleration=0.0)).drive_torque
-    torque = float(found[unknown.index("tau")])
+    torque = float(actual[unknown.index("tau")])
     assert torque == pytest.approx(wanted, abs=1e-8 * np.ptp(torques))
     return torque
 
@@ -127,5 +127,5 @@ def left(expression: str, known: dict[str, Any]) -> float:
 
 
 def test_what_is_left_out(tmp_path: Path) -> None:
-    told = eq.export(eq.load("riding-transplanter"), tmp_path / "x.mo")
-    assert told == ("the support", "all rows but one")
+    exported = eq.export(eq.load("riding-transplanter"), tmp_path / "x.mo")
+    assert exported == ("the support", "all rows but one")

@@ -27,19 +27,19 @@ def test_places_across(suffix: str, tmp_path: Path) -> None:
     made, file = machine(), tmp_path / f"model{suffix}"
     eq.export(made, file)
     root = ET.parse(file).getroot()
-    found: dict[str, float] = {}
+    actual: dict[str, float] = {}
     if suffix == ".urdf":
         for joint in root.iter("joint"):
             across = float(joint.find("origin").get("xyz").split()[2])
             parent = joint.find("parent").get("link")
-            found[joint.find("child").get("link")] = found.get(parent, 0.0) + across
+            actual[joint.find("child").get("link")] = actual.get(parent, 0.0) + across
     else:
         parents = {child: parent for parent in root.iter("body") for child in parent}
         for body in root.iter("body"):
-            above = found.get(parents[body].get("name"), 0.0) if body in parents else 0.0
-            found[body.get("name")] = above + float(body.get("pos").split()[2])
+            above = actual.get(parents[body].get("name"), 0.0) if body in parents else 0.0
+            actual[body.get("name")] = above + float(body.get("pos").split()[2])
     for name, link in made.links.items():
-        assert found[name] == pytest.approx(link.plane)
+        assert actual[name] == pytest.approx(link.plane)
 
 
 @pytest.mark.parametrize("suffix", [".xml", ".urdf"])
@@ -60,7 +60,7 @@ def test_names_with_quotes_of_both_kinds(suffix: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("suffix", [".py", ".mo"])
 def test_planar_formats_tell(suffix: str, tmp_path: Path) -> None:
     left_out = eq.export(machine().with_springs(()), tmp_path / f"model{suffix}")
-    assert any("planes of links" in one for one in left_out)
+    assert any("planes of links" in item for item in left_out)
 
 
 def test_products_of_inertia_of_a_dumbbell() -> None:

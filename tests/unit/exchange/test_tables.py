@@ -42,16 +42,16 @@ def test_signals_and_summary(analysis: Any, book: Any) -> None:
     assert book.sheetnames == ["Summary", "Links", "Points", "Charts", "Signals"]
     names, units, *rows = book["Signals"].values
     values = dict(zip(names, np.array(rows, float).T, strict=True))
-    assert {*names} == {"crank_angle", *(one.name for one in analysis.outputs.arrays)}
+    assert {*names} == {"crank_angle", *(item.name for item in analysis.outputs.arrays)}
     np.testing.assert_allclose(values["crank_angle"], analysis.crank_angle, rtol=1e-14)
-    for one in analysis.outputs.arrays:
-        assert units[names.index(one.name)] == one.unit
-        np.testing.assert_allclose(values[one.name], one.values, rtol=1e-14, atol=1e-300)
+    for array in analysis.outputs.arrays:
+        assert units[names.index(array.name)] == array.unit
+        np.testing.assert_allclose(values[array.name], array.values, rtol=1e-14, atol=1e-300)
     head, *figures = book["Summary"].values
     assert head[:5] == ("output", "what it is", "unit", "mean", "rms")
-    told = {row[0]: dict(zip(head, row, strict=True)) for row in figures}
-    for name, one in analysis.summary.items():
-        assert told[name]["peak_at [rad]"] == pytest.approx(one.peak_at, rel=1e-14)
+    content = {row[0]: dict(zip(head, row, strict=True)) for row in figures}
+    for name, array in analysis.summary.items():
+        assert content[name]["peak_at [rad]"] == pytest.approx(array.peak_at, rel=1e-14)
     assert [*book["Links"].values][1][:2] == ("crank", 0.9)
     assert ("rod", "C", 0.09, 0.0) in [*book["Points"].values]
 
@@ -96,8 +96,8 @@ def test_charts_show_every_signal(analysis: Any, book: Any) -> None:
 
 
 def test_what_balancing_changes(tmp_path: Path) -> None:
-    found = eq.balance(eq.load("balance-crank"))
-    book = opened(found, tmp_path / "x.xlsx")
+    balanced = eq.balance(eq.load("balance-crank"))
+    book = opened(balanced, tmp_path / "x.xlsx")
     (_,), (first,), *_ = book["Changes"].values
     assert first.startswith("crank: add a counterweight of")
 
@@ -118,29 +118,29 @@ def test_a_machine_without_masses_has_its_motion(tmp_path: Path) -> None:
         "x", MACHINE.drive, MACHINE.frame, links, MACHINE.assembly, MACHINE.sliders
     )
     eq.export(machine, tmp_path / "x.mat")
-    found = loadmat(tmp_path / "x.mat", simplify_cells=True)["equipoise"]
-    assert np.isnan(found["links"]["rod"]["mass"])
-    assert "points_C_x" in found["signals"]
-    assert "shaking_force_x" not in found["signals"]
+    result = loadmat(tmp_path / "x.mat", simplify_cells=True)["equipoise"]
+    assert np.isnan(result["links"]["rod"]["mass"])
+    assert "points_C_x" in result["signals"]
+    assert "shaking_force_x" not in result["signals"]
 
 
 def test_matlab(analysis: Any, tmp_path: Path) -> None:
     assert eq.export(MACHINE, tmp_path / "x.mat") == ()
-    found = loadmat(tmp_path / "x.mat", simplify_cells=True)["equipoise"]
-    assert found["title"] == str(MACHINE.title)
-    assert found["speed"] == MACHINE.drive.speed
-    signals = {one["name"]: one for one in found["signals"].values()}
-    for one in analysis.outputs.arrays:
-        assert signals[one.name]["unit"] == one.unit
-        np.testing.assert_array_equal(signals[one.name]["values"], one.values)
-    assert found["signals"]["joints_piston_on_frame_normal"]["unit"] == "N"
-    assert found["summary"]["drive_torque"]["rms"] == analysis.summary["drive_torque"].rms
-    np.testing.assert_array_equal(found["links"]["rod"]["points"]["C"], (0.09, 0.0))
+    result = loadmat(tmp_path / "x.mat", simplify_cells=True)["equipoise"]
+    assert result["title"] == str(MACHINE.title)
+    assert result["speed"] == MACHINE.drive.speed
+    signals = {item["name"]: item for item in result["signals"].values()}
+    for array in analysis.outputs.arrays:
+        assert signals[array.name]["unit"] == array.unit
+        np.testing.assert_array_equal(signals[array.name]["values"], array.values)
+    assert result["signals"]["joints_piston_on_frame_normal"]["unit"] == "N"
+    assert result["summary"]["drive_torque"]["rms"] == analysis.summary["drive_torque"].rms
+    np.testing.assert_array_equal(result["links"]["rod"]["points"]["C"], (0.09, 0.0))
 
 
 def test_names_for_matlab_are_each_once(tmp_path: Path) -> None:
     points = {"A": (0.0, 0.0), "A b": (1.0, 0.0), "A-b": (2.0, 0.0), "1": (3.0, 0.0)}
     machine = eq.Machine("x", eq.Drive("k", 1.0), {"A": (0.0, 0.0)}, {"k": eq.Link(points=points)})
     eq.export(machine, tmp_path / "x.mat")
-    found = loadmat(tmp_path / "x.mat", simplify_cells=True)["equipoise"]["links"]["k"]["points"]
-    assert {name: at[0] for name, at in found.items()} == {"A": 0, "A_b": 1, "A_b2": 2, "x1": 3}
+    result = loadmat(tmp_path / "x.mat", simplify_cells=True)["equipoise"]["links"]["k"]["points"]
+    assert {name: at[0] for name, at in result.items()} == {"A": 0, "A_b": 1, "A_b2": 2, "x1": 3}

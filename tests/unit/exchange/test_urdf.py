@@ -20,8 +20,8 @@ CUT = ["yamashita-1", "quick-return", "scotch-yoke", "class-three", "slider-cran
 
 
 def opened(machine: eq.Machine, path: Path) -> tuple[pin.Model, tuple[str, ...]]:
-    told = eq.export(machine, path, crank_angle=START)
-    return pin.buildModelFromUrdf(str(path)), told
+    exported = eq.export(machine, path, crank_angle=START)
+    return pin.buildModelFromUrdf(str(path)), exported
 
 
 def coordinate(machine: eq.Machine, model: pin.Model, number: int, motion: object) -> list[float]:
@@ -29,7 +29,9 @@ def coordinate(machine: eq.Machine, model: pin.Model, number: int, motion: objec
     link = model.names[number]
     parent = model.names[model.parents[number]]
     turned = motion.links[link].angle  # type: ignore[attr-defined]
-    slider = next((one for one in machine.sliders if {link, parent} == {one.link, one.on}), None)
+    slider = next(
+        (item for item in machine.sliders if {link, parent} == {item.link, item.on}), None
+    )
     slider = slider or next(
         (s for s in machine.sliders if s.on == "frame" and s.link == link), None
     )
@@ -47,9 +49,9 @@ def test_drive_torque_of_the_tree(name: str, tmp_path: Path) -> None:
     """Virtual work of all joints, speeds and accelerations by differences over 1e-4 rad: 1e-6."""
     machine = eq.load(name)
     machine = eq.Machine(**{**{k: getattr(machine, k) for k in KEPT}, "loads": ()})
-    model, told = opened(machine, tmp_path / "x.urdf")
+    model, text = opened(machine, tmp_path / "x.urdf")
     assert model.nv == len(machine.links)
-    assert any("closes a loop" in one for one in told)
+    assert any("closes a loop" in item for item in text)
     step = 1e-4
     motion = eq.move(machine, [START, LATER - step, LATER, LATER + step], acceleration=0.0)
     ways = np.array([coordinate(machine, model, k, motion) for k in range(1, model.njoints)])
@@ -84,14 +86,14 @@ def test_damping_and_drag_of_joints(tmp_path: Path) -> None:
         JointProperties("joints.plunger on frame", damping=30.0, drag_force=12.0),
     )
     machine = replace(eq.load("plunger-pump"), loads=(), joints=given)
-    model, told = opened(machine, tmp_path / "x.urdf")
+    model, text = opened(machine, tmp_path / "x.urdf")
     joints = {model.names[k]: model.joints[k].idx_v for k in range(1, model.njoints)}
     for link, damping, drag in (("crank", 0.02, 0.3), ("plunger", 30.0, 12.0), ("rod", 0.01, 0.0)):
         assert (model.damping[joints[link]], model.friction[joints[link]]) == (damping, drag)
-    assert "friction in joints by what presses there: damping and drag alone are left" in told
+    assert "friction in joints by what presses there: damping and drag alone are left" in text
 
 
 def test_what_is_left_out(tmp_path: Path) -> None:
-    told = eq.export(eq.load("spring-balanced-crank"), tmp_path / "x.urdf")
-    assert "springs" in told
-    assert "the drive's speed" in told
+    exported = eq.export(eq.load("spring-balanced-crank"), tmp_path / "x.urdf")
+    assert "springs" in exported
+    assert "the drive's speed" in exported

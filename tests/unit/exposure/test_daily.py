@@ -25,7 +25,7 @@ def test_figures_of_a_day() -> None:
     assert day.verdict == "above the action value"
 
 
-def test_after_the_times_that_are_told_the_values_are_reached() -> None:
+def test_after_the_reported_times_the_values_are_reached() -> None:
     day = daily_exposure(DAY)
     for whole, times in ((day.a_hv, day.times), *((t.acceleration, t.times) for t in DAY)):
         assert Task("", whole, times.to_action).partial == pytest.approx(2.5)
@@ -37,22 +37,22 @@ def test_after_the_times_that_are_told_the_values_are_reached() -> None:
 
 
 def test_plain_data() -> None:
-    found = daily_exposure(DAY).to_dict()
-    assert json.loads(json.dumps(found, allow_nan=False)) == found
-    assert found["a8"] == daily_exposure(DAY).a8
-    assert sum(task["share"] for task in found["tasks"]) == pytest.approx(1)
-    assert sum(task["points"] for task in found["tasks"]) == pytest.approx(found["points"])
-    assert [task["name"] for task in found["tasks"]] == ["mowing", "trimming"]
-    assert set(WorkingTimes(3.0).to_dict()) < set(found)
+    content = daily_exposure(DAY).to_dict()
+    assert json.loads(json.dumps(content, allow_nan=False)) == content
+    assert content["a8"] == daily_exposure(DAY).a8
+    assert sum(task["share"] for task in content["tasks"]) == pytest.approx(1)
+    assert sum(task["points"] for task in content["tasks"]) == pytest.approx(content["points"])
+    assert [task["name"] for task in content["tasks"]] == ["mowing", "trimming"]
+    assert set(WorkingTimes(3.0).to_dict()) < set(content)
 
 
 def test_a_day_without_vibration() -> None:
     day = daily_exposure([Task("rest", 0.0, HOUR)])
-    found = day.to_dict()
+    content = day.to_dict()
     assert (day.a8, day.share(day.tasks[0]), day.years) == (0.0, 0.0, inf)
-    assert found["time_to_action"] is found["time_to_limit"] is None
-    assert found["years_to_white_finger"] is None
-    assert found["japanese_time"] == 2 * HOUR
+    assert content["time_to_action"] is content["time_to_limit"] is None
+    assert content["years_to_white_finger"] is None
+    assert content["japanese_time"] == 2 * HOUR
 
 
 def test_the_whole_day_may_be_worked() -> None:

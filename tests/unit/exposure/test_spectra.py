@@ -58,9 +58,9 @@ def test_the_mean_does_not_count() -> None:
 
 
 def test_one_period_of_a_steady_vibration_is_enough_where_it_is_said() -> None:
-    found = weigh_signal(TIME[:125], SINE[:125], periodic=True)  # two periods
-    assert found.a_h == pytest.approx([np.sqrt(0.5)], rel=1e-12)
-    assert not [note for note in found.notes if "close" in note or "above half" in note]
+    weighted = weigh_signal(TIME[:125], SINE[:125], periodic=True)  # two periods
+    assert weighted.a_h == pytest.approx([np.sqrt(0.5)], rel=1e-12)
+    assert not [note for note in weighted.notes if "close" in note or "above half" in note]
 
 
 def test_times_rounded_in_a_file_are_equal_steps() -> None:
@@ -86,8 +86,8 @@ def test_notes() -> None:
     short = TIME[TIME < 3]
     assert "takes 3 s; ISO 5349-2 calls less than 8 s hardly" in notes(short, SINE[: len(short)])
     slow = np.arange(30000) / 3000.0
-    told = notes(slow, np.sin(500 * slow))
-    assert "ends at 1500 Hz" in told and "takes 3991 Hz" in told
+    reported = notes(slow, np.sin(500 * slow))
+    assert "ends at 1500 Hz" in reported and "takes 3991 Hz" in reported
     drift = SINE + 200 * np.sin(2 * np.pi * 0.3 * TIME)
     assert "% of the weighted mean square lies below 5.6 Hz; look for drift" in notes(TIME, drift)
     assert notes(TIME, np.vstack([SINE] * 3)) == ""
@@ -96,8 +96,8 @@ def test_notes() -> None:
 def test_notes_on_periodic_records() -> None:
     coarse = np.arange(100) / 1000.0
     sine = np.sin(2 * np.pi * 50 * coarse)
-    told = notes(coarse, sine, periodic=True)
-    assert "nothing above half its sampling rate, 500 Hz" in told and "close" not in told
+    reported = notes(coarse, sine, periodic=True)
+    assert "nothing above half its sampling rate, 500 Hz" in reported and "close" not in reported
     saw = np.arange(100.0)
     assert "the record does not close" in notes(coarse, saw, periodic=True)
 
@@ -141,11 +141,11 @@ def test_records_that_are_refused(
 
 def test_lines_count_with_their_factors() -> None:
     lines, rms = np.array([0.0, 10.0, 80.0]), np.array([9.0, 3.0, 4.0])
-    found = weigh_spectrum(lines, rms)
-    assert found.a_hw == pytest.approx(np.hypot(3 * factor(10.0), 4 * factor(80.0)))
-    assert found.a_h == pytest.approx(5.0)  # without the mean
-    assert found.a_hv == found.a_hw[0]
-    assert (found.kind, found.axes, found.duration) == ("spectrum", ("x",), None)
+    weighted = weigh_spectrum(lines, rms)
+    assert weighted.a_hw == pytest.approx(np.hypot(3 * factor(10.0), 4 * factor(80.0)))
+    assert weighted.a_h == pytest.approx(5.0)  # without the mean
+    assert weighted.a_hv == weighted.a_hw[0]
+    assert (weighted.kind, weighted.axes, weighted.duration) == ("spectrum", ("x",), None)
 
 
 def test_bands_count_with_the_factors_of_exact_middles() -> None:
@@ -160,11 +160,11 @@ def test_bands_count_with_the_factors_of_exact_middles() -> None:
 def test_orders_are_lines_at_multiples_of_the_speed() -> None:
     speed, orders = 700.0, np.array([0.0, 0.5, 1.0, 3.0])
     peaks = np.array([[5.0, 1.0, 2.0, 4.0], [1.0, 1.0, 0.0, 2.0]])
-    found = weigh_orders(speed, orders, peaks)
+    result = weigh_orders(speed, orders, peaks)
     lines = weigh_spectrum(speed * orders / (2 * np.pi), peaks / np.sqrt(2))
-    np.testing.assert_allclose(found.a_hw, lines.a_hw)
+    np.testing.assert_allclose(result.a_hw, lines.a_hw)
     turned = weigh_orders(-speed, orders, peaks * np.exp(1j * orders))
-    np.testing.assert_allclose(turned.a_hw, found.a_hw)
+    np.testing.assert_allclose(turned.a_hw, result.a_hw)
 
 
 def test_the_total_value_of_three_axes_and_of_one() -> None:
@@ -181,20 +181,20 @@ def test_the_total_value_of_three_axes_and_of_one() -> None:
 
 
 def test_values_that_are_weighted_already() -> None:
-    found = weigh_spectrum([10.0, 100.0], [[3.0, 4.0]], weighted=True)
-    assert found.a_hw == pytest.approx(5.0)
-    assert found.a_h is None and found.band_a_h is None
-    assert found.to_dict()["bands"]["a_h"] is None
+    weighted = weigh_spectrum([10.0, 100.0], [[3.0, 4.0]], weighted=True)
+    assert weighted.a_hw == pytest.approx(5.0)
+    assert weighted.a_h is None and weighted.band_a_h is None
+    assert weighted.to_dict()["bands"]["a_h"] is None
     time = np.arange(30_000) / 5000.0
     signal = weigh_signal(time, 2 * np.sin(2 * np.pi * 100 * time), weighted=True)
     assert signal.a_hw == pytest.approx(np.sqrt(2), rel=1e-6)
 
 
 def test_the_dominant_band() -> None:
-    found = weigh_spectrum([12.5, 400.0], [[1.0, 10.0]])
-    assert found.dominant_band == 12.5
+    weighted = weigh_spectrum([12.5, 400.0], [[1.0, 10.0]])
+    assert weighted.dominant_band == 12.5
     share = factor(12.5) ** 2 / (factor(12.5) ** 2 + 100 * factor(400.0) ** 2)
-    assert found.dominant_share == pytest.approx(float(share))
+    assert weighted.dominant_share == pytest.approx(float(share))
     nothing = weigh_spectrum([12.5], [[0.0]])
     assert (nothing.dominant_band, nothing.dominant_share, nothing.a_hv) == (None, 0.0, 0.0)
 
@@ -205,17 +205,17 @@ def test_bands_of_a_signal_hold_all_of_it() -> None:
     time = np.arange(5000) / 5000.0
     waves = np.arange(20, 800)
     angles = 2 * np.pi * waves[:, None] * time + rng.uniform(0, 6, (len(waves), 1))
-    found = weigh_signal(time, np.sum(np.sin(angles), axis=0), periodic=True)
-    assert np.sum(found.band_a_hw**2) == pytest.approx(found.a_hw[0] ** 2, rel=1e-12)
-    assert found.band_a_h is not None and found.a_h is not None
-    assert np.sum(found.band_a_h**2) == pytest.approx(found.a_h[0] ** 2, rel=1e-12)
+    weighted = weigh_signal(time, np.sum(np.sin(angles), axis=0), periodic=True)
+    assert np.sum(weighted.band_a_hw**2) == pytest.approx(weighted.a_hw[0] ** 2, rel=1e-12)
+    assert weighted.band_a_h is not None and weighted.a_h is not None
+    assert np.sum(weighted.band_a_h**2) == pytest.approx(weighted.a_h[0] ** 2, rel=1e-12)
 
 
 def test_plain_data() -> None:
-    found = weigh_spectrum(NOMINAL, np.ones((3, 24)), bands=True).to_dict()
-    assert json.loads(json.dumps(found, allow_nan=False)) == found
-    assert found["bands"]["frequency"] == list(NOMINAL)
-    assert len(found["a_hw"]) == len(found["bands"]["a_hw"]) == 3
+    content = weigh_spectrum(NOMINAL, np.ones((3, 24)), bands=True).to_dict()
+    assert json.loads(json.dumps(content, allow_nan=False)) == content
+    assert content["bands"]["frequency"] == list(NOMINAL)
+    assert len(content["a_hw"]) == len(content["bands"]["a_hw"]) == 3
 
 
 def test_notes_on_bands() -> None:

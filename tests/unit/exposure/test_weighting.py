@@ -71,11 +71,11 @@ def test_plain_numbers() -> None:
 
 def test_numbers_that_carry_derivatives() -> None:
     for f2 in (40.0, 6400.0, 1e6):
-        found = squared_factor(Dual(f2, np.ones(1)))
-        assert found.value == pytest.approx(squared_factor(f2), rel=1e-15)
+        result = squared_factor(Dual(f2, np.ones(1)))
+        assert result.value == pytest.approx(squared_factor(f2), rel=1e-15)
         step = 1e-4 * f2
         slope = (squared_factor(f2 + step) - squared_factor(f2 - step)) / (2 * step)
-        assert found.slopes[0] == pytest.approx(slope, rel=1e-6)
+        assert result.slopes[0] == pytest.approx(slope, rel=1e-6)
 
 
 def test_no_frequency_breaks_it() -> None:
@@ -138,8 +138,8 @@ def test_sums_in_bands() -> None:
     """Lines between the same edges add up; those outside are left out; an edge begins a band."""
     lines = np.array([1.0, 7.5, 8.5, float(EDGES[2]), 100.0, 1400.0, 1500.0])
     squares = np.array([[1.0, 9.0, 16.0, 4.0, 25.0, 36.0, 1.0], np.zeros(7)])
-    found = rms_in_bands(lines, squares)
-    assert found.shape == (2, 24)
+    result = rms_in_bands(lines, squares)
+    assert result.shape == (2, 24)
     wanted = {8.0: 5.0, 10.0: 2.0, 100.0: 5.0, 1250.0: 6.0}
-    assert {NOMINAL[k]: found[0, k] for k in np.flatnonzero(found[0])} == pytest.approx(wanted)
-    assert not np.any(found[1])
+    assert {NOMINAL[k]: result[0, k] for k in np.flatnonzero(result[0])} == pytest.approx(wanted)
+    assert not np.any(result[1])

@@ -135,7 +135,7 @@ KINDS = tuple(cases())
 
 
 @cache
-def found(kind: str) -> Balanced:
+def balanced_case(kind: str) -> Balanced:
     return eq.balance(*cases()[kind])
 
 
@@ -179,7 +179,7 @@ def _result(kind: str) -> Balanced | Phasing | Front:
         return front()
     if kind.startswith("rows"):
         return in_rows(*{"rows": (4,), "rows, many": (14,), "rows, both": (3, True)}[kind])
-    return found(kind)
+    return balanced_case(kind)
 
 
 EVERY = (*KINDS, "rows", "rows, many", "rows, both", "phases", "front")

@@ -55,18 +55,18 @@ class Laid:
 
     @classmethod
     def by(cls, chart: Chart, lay: Callable[[], Canvas]) -> Laid:
-        found: list[tuple[View, tuple[SheetItem, ...]]] = []
+        actual: list[tuple[View, tuple[SheetItem, ...]]] = []
         draw = layout.draw
 
         def seen(view: View) -> None:
             before = {id(item) for item in view.sheet.items}
             draw(view)
-            found.append((view, tuple(i for i in view.sheet.items if id(i) not in before)))
+            actual.append((view, tuple(i for i in view.sheet.items if id(i) not in before)))
 
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(layout, "draw", seen)
             sheet = lay()
-        return cls(chart, sheet, tuple(found))
+        return cls(chart, sheet, tuple(actual))
 
     @classmethod
     def in_report(cls, chart: Chart) -> Laid:
@@ -130,8 +130,8 @@ def texts_covered(laid: Laid) -> Iterator[Fault]:
     boxes = np.array([box_of(words) for words in texts]).reshape(-1, 4)
     ends, begins = boxes[:, 2:], boxes[:, :2]
     shared = np.minimum(ends[:, None], ends) - np.maximum(begins[:, None], begins)
-    for one, other in np.argwhere(np.triu(np.all(shared > (1, 2), axis=2), 1)):
-        yield "text covered", f"{texts[one].text!r} and {texts[other].text!r}"
+    for first, other in np.argwhere(np.triu(np.all(shared > (1, 2), axis=2), 1)):
+        yield "text covered", f"{texts[first].text!r} and {texts[other].text!r}"
 
 
 # -- axes ------------------------------------------------------------------------------------------
@@ -189,40 +189,40 @@ def bars_afloat(laid: Laid) -> Iterator[Fault]:
         panel = view.panel
         ups = {"x": panel.y, "y": panel.x}
         if any(ups[bars.across].scale == "log" for bars in panel.bars):
-            filled = [one for one in items if isinstance(one, CanvasStroke) and one.fill]
+            filled = [item for item in items if isinstance(item, CanvasStroke) and item.fill]
             colors = {
                 look_of(role).inside for bars in panel.bars for role in (bars.role, *bars.roles)
             }
-            if any(one.fill in colors for one in filled):
-                yield "bars on a logarithmic axis", _told(view)
+            if any(item.fill in colors for item in filled):
+                yield "bars on a logarithmic axis", _heading(view)
         lowest = view.y.low / panel.y.unit.factor * (1 + 1e-9)
-        if panel.y.scale == "log" and any(np.any(one.low <= lowest) for one in panel.areas):
-            yield "area on a logarithmic axis", _told(view)
+        if panel.y.scale == "log" and any(np.any(area.low <= lowest) for area in panel.areas):
+            yield "area on a logarithmic axis", _heading(view)
 
 
 def numbers_on_bars(laid: Laid) -> Iterator[Fault]:
     """Sizes that stand at bars lie on no higher bar beside their own, nor on the axes."""
     for view, items in laid.panels:
-        numbers = [one for one in items if isinstance(one, Words) and _is_number(one.text)]
+        numbers = [item for item in items if isinstance(item, Words) and _is_number(item.text)]
         for bars in view.panel.bars:
             if bars.across != "x" or view.y.axis.scale == "log":
                 continue
-            for one in numbers if bars.labelled else ():
-                start, _, end, _ = box_of(one)
-                if view.box[1] < one.y and not view.box[0] <= start < end <= view.box[2]:
-                    yield "number on an axis", f"{one.text} in {_told(view)}"
+            for entry in numbers if bars.labelled else ():
+                start, _, end, _ = box_of(entry)
+                if view.box[1] < entry.y and not view.box[0] <= start < end <= view.box[2]:
+                    yield "number on an axis", f"{entry.text} in {_heading(view)}"
             foot = float(view.y.at(0.0))
             ends = (view.x.at(bars.at + side * np.asarray(bars.width) / 2) for side in (-1, 1))
             tops = np.where(
                 bars.size > 0, view.y.at(bars.size), np.inf
             )  # not of those that go down
             for left, right, top in zip(*ends, tops, strict=True):
-                for one in numbers:
-                    start, up, end, bottom = box_of(one)
+                for entry in numbers:
+                    start, up, end, bottom = box_of(entry)
                     beside = min(right, end) - max(left, start) > 1
                     reached = bottom - top > 2 * SLACK and foot > up
-                    if beside and view.box[1] < one.y and reached:
-                        yield "number on a bar", f"{one.text} in {_told(view)}"
+                    if beside and view.box[1] < entry.y and reached:
+                        yield "number on a bar", f"{entry.text} in {_heading(view)}"
 
 
 def extremes_without_room(laid: Laid) -> Iterator[Fault]:
@@ -236,7 +236,7 @@ def extremes_without_room(laid: Laid) -> Iterator[Fault]:
             beyond = y - top if up else bottom - y
             fixed = not up and panel.y.low is not None
             if mark.text and mark.wish in (90.0, -90.0) and beyond < LOW_TEXT and not fixed:
-                yield "no room at an extreme", f"{mark.text} in {_told(view)}"
+                yield "no room at an extreme", f"{mark.text} in {_heading(view)}"
 
 
 def signs_without_names(laid: Laid) -> Iterator[Fault]:
@@ -255,15 +255,15 @@ def dots_whole(laid: Laid) -> Iterator[Fault]:
     """Dots that stand for bars are cut by no axis and covered by no text."""
     for view, items in laid.panels if any(v.panel.bars for v, _ in laid.panels) else ():
         left, top, right, bottom = view.box
-        for dots in (one for one in items if isinstance(one, Markers) and one.size == DOT):
+        for dots in (item for item in items if isinstance(item, Markers) and item.size == DOT):
             half = DOT / 2 - SLACK / 2
             for x, y in dots.places.tolist():
                 if not (left + half < x < right - half and top + half < y < bottom - half):
-                    yield "dot cut", _told(view)
-                for words in (one for one in items if isinstance(one, Words)):
+                    yield "dot cut", _heading(view)
+                for words in (item for item in items if isinstance(item, Words)):
                     start, up, end, down = box_of(words)
                     if start < x + half and end > x - half and up < y + half and down > y - half:
-                        yield "text on a dot", f"{words.text} in {_told(view)}"
+                        yield "text on a dot", f"{words.text} in {_heading(view)}"
 
 
 def first_orders(laid: Laid) -> Iterator[Fault]:
@@ -297,13 +297,13 @@ def panels_left(laid: Laid) -> Iterator[Fault]:
         if not (panel.flags or panel.asides):
             for item in items:
                 if not isinstance(item, Words) and item.clip is None and _outside(view, item):
-                    yield "drawn outside of its axes", _told(view)
+                    yield "drawn outside of its axes", _heading(view)
         whole = [*_drawn_whole(view)] if panel.equal else []
         if panel.bare:  # whose edges nobody sees
-            strokes = (one for one in items if isinstance(one, CanvasStroke) and one.clip)
+            strokes = (entry for entry in items if isinstance(entry, CanvasStroke) and entry.clip)
             whole += [line for stroke in strokes for line in stroke.lines]
         if any(_beyond(view, places) > SLACK for places in whole):
-            yield "cut by its axes", _told(view)
+            yield "cut by its axes", _heading(view)
 
 
 SMALLEST = 0.33
@@ -316,7 +316,7 @@ def machines_small(laid: Laid) -> Iterator[Fault]:
         if view.panel.signs:
             x, y = (np.ptp(part) for part in _places(view, view.panel.signs).T)
             if max(x / view.x.length, y / view.y.length) < SMALLEST:
-                yield "machine too small", _told(view)
+                yield "machine too small", _heading(view)
 
 
 LOWEST_DRAWING = 72.0
@@ -329,17 +329,17 @@ def drawings_low(laid: Laid) -> Iterator[Fault]:
     for view, _ in laid.panels if alone else ():
         low = min(view.x.length, view.y.length) < LOWEST_DRAWING
         if view.panel.equal and not view.panel.bare and low:
-            yield "drawing too low", f"{_told(view)}: {view.y.length:.0f} points"
+            yield "drawing too low", f"{_heading(view)}: {view.y.length:.0f} points"
 
 
 def supports_cut(laid: Laid) -> Iterator[Fault]:
     """Where a support goes on beyond a drawing, words say what is there."""
     note = say("Beyond the drawing: {items}", items="").strip()
     for view, _ in laid.panels:
-        supports = [one for one in view.panel.ground if one.role.startswith("support")]
+        supports = [item for item in view.panel.ground if item.role.startswith("support")]
         noted = not supports or any(note in text for text in laid.chart.words)
         if not noted and _beyond(view, _places(view, supports)) > SLACK:
-            yield "support cut without a note", _told(view)
+            yield "support cut without a note", _heading(view)
 
 
 def _places(view: View, shapes: Iterable[Shape]) -> np.ndarray:
@@ -369,7 +369,7 @@ def _beyond(view: View, places: np.ndarray) -> float:
     return max(*ends, top - np.min(y, initial=top), np.max(y, initial=bottom) - bottom)
 
 
-def _told(view: View) -> str:
+def _heading(view: View) -> str:
     return view.panel.title or view.panel.y.text
 
 
@@ -383,8 +383,8 @@ def alike_in_grey(laid: Laid) -> Iterator[Fault]:
     for view, _ in laid.panels:
         lines = dict.fromkeys((curve.role, curve.dashed) for curve in view.panel.curves)
         dotted = {mark.role for mark in view.panel.marks if mark.sign}
-        for one, other in combinations(lines, 2):
-            a, b = look_of(*one), look_of(*other)
+        for first, other in combinations(lines, 2):
+            a, b = look_of(*first), look_of(*other)
             if (a.dashes, a.sign) != (b.dashes, b.sign):
                 continue
             thin, wide = sorted((a, b), key=lambda look: look.width)
@@ -392,12 +392,12 @@ def alike_in_grey(laid: Laid) -> Iterator[Fault]:
                 continue
             dots = [(dot.sign, lightness(dot.inside)) for dot in map(dot_of, (a, b))]
             alike = dots[0][0] == dots[1][0] and abs(dots[0][1] - dots[1][1]) < LIGHTER
-            alike = alike and {one[0], other[0]} <= dotted
+            alike = alike and {first[0], other[0]} <= dotted
             if alike or abs(lightness(a.color) - lightness(b.color)) < LIGHTER:
-                yield "alike in grey", f"{one[0]} and {other[0]}"
-        for one, other in combinations(dict.fromkeys(bars.role for bars in view.panel.bars), 2):
-            if abs(_shade(look_of(one)) - _shade(look_of(other))) < LIGHTER:
-                yield "alike in grey", f"{one} and {other}"
+                yield "alike in grey", f"{first[0]} and {other[0]}"
+        for first, other in combinations(dict.fromkeys(bars.role for bars in view.panel.bars), 2):
+            if abs(_shade(look_of(first)) - _shade(look_of(other))) < LIGHTER:
+                yield "alike in grey", f"{first} and {other}"
 
 
 def _shade(look: DrawingStyle) -> float:

@@ -68,9 +68,9 @@ def places(panel: Panel) -> list[np.ndarray]:
     return [(curve.x + 1j * curve.y)[:-1] for curve in panel.curves]
 
 
-def has(found: list[np.ndarray], wanted: np.ndarray) -> bool:
+def has(result: list[np.ndarray], wanted: np.ndarray) -> bool:
     size = np.max(np.abs(wanted))
-    return any(z.shape == wanted.shape and np.max(np.abs(z - wanted)) < 1e-9 * size for z in found)
+    return any(z.shape == wanted.shape and np.max(np.abs(z - wanted)) < 1e-9 * size for z in result)
 
 
 def test_names() -> None:
@@ -112,8 +112,8 @@ def test_a_cylinder_from_the_side() -> None:
     machine = eq.load("hydraulic-loader").with_link("boom", planes={"B": 0.3})
     analysis = eq.analyze(machine, [0.0])
     (panel,) = analysis_charts(analysis, at=[0.0])["side"].panels
-    found = {one.role: one.places for one in panel.signs if one.role in ("piston", "barrel")}
-    ends = [found["barrel"][0], found["piston"][0]]
+    actual = {sign.role: sign.places for sign in panel.signs if sign.role in ("piston", "barrel")}
+    ends = [actual["barrel"][0], actual["piston"][0]]
     heights = [machine.frame["A"][0], analysis.motion.points["B"].x[0]]
     assert np.allclose(ends, 0.3 + 1j * np.array(heights))
 
@@ -133,25 +133,25 @@ def test_what_links_beside_each_other_bear_is_drawn() -> None:
 
 
 def test_curves_are_the_forces() -> None:
-    found, charts = analysis_of("yamashita-1").forces, charts_of("yamashita-1")
-    force = found.shaking_force
+    actual, charts = analysis_of("yamashita-1").forces, charts_of("yamashita-1")
+    force = actual.shaking_force
     for panel, values in zip(charts["force"].panels, (force.x, force.y, force.size), strict=True):
         assert has(signals(panel), values)
     assert has(places(charts["polar"].panels[0]), force.value)
-    assert has(signals(charts["moment"].panels[0]), found.shaking_moment)
+    assert has(signals(charts["moment"].panels[0]), actual.shaking_moment)
     whole, causes = charts["torque"].panels
-    assert has(signals(whole), found.drive_torque)
-    np.testing.assert_allclose(sum(signals(causes)), found.drive_torque, atol=1e-12)
+    assert has(signals(whole), actual.drive_torque)
+    np.testing.assert_allclose(sum(signals(causes)), actual.drive_torque, atol=1e-12)
     pairs = zip(charts["joints"].panels, charts["joint-polars"].panels, strict=True)
-    for (over, polar), joint in zip(pairs, found.joints.values(), strict=True):
+    for (over, polar), joint in zip(pairs, actual.joints.values(), strict=True):
         assert has(signals(over), joint.size) and has(places(polar), joint.value)
 
 
 def test_peak_and_mean_size_are_the_summary() -> None:
-    told = words(charts_of("yamashita-1")["polar"])
+    reported = words(charts_of("yamashita-1")["polar"])
     size = analysis_of("yamashita-1").summary["shaking_force"]
-    assert f"peak {size.peak:.4g} N at {np.degrees(size.peak_at):.1f}°" in told
-    assert f"mean magnitude {size.mean:.4g} N" in told
+    assert f"peak {size.peak:.4g} N at {np.degrees(size.peak_at):.1f}°" in reported
+    assert f"mean magnitude {size.mean:.4g} N" in reported
 
 
 def test_bars_are_the_orders() -> None:
@@ -182,12 +182,12 @@ def test_rows_together() -> None:
         read = PhasedRows(machine).signals(Objective(output))
         expected = Periodic(read.total(phases)[0, 0], read.turns).samples(360)
         np.testing.assert_allclose(values, expected, atol=1e-9 * np.max(np.abs(expected)))
-    found = places(forces.polar(analysis).panels[0])
-    assert has(found, force) and has(found, view.each(analysis, "shaking_force")["one"])
+    result = places(forces.polar(analysis).panels[0])
+    assert has(result, force) and has(result, view.each(analysis, "shaking_force")["one"])
     assert "3 rows together" in words(forces.spectrum(analysis))
 
 
-def test_what_is_rounding_is_told_to_be_zero() -> None:
+def test_what_is_rounding_is_reported_to_be_zero() -> None:
     charts = charts_of("planetary-planting-arm")
     assert "zero at every crank angle" in words(charts["moment"])
     assert "zero at every order" in words(charts["spectrum"])
@@ -205,8 +205,10 @@ def test_what_is_rounding_is_told_to_be_zero() -> None:
     force = view.each(only_along, "shaking_force")["all"]
     assert np.any(force.real) and not np.any(force.imag)
     check(forces.force(only_along))
-    couples = [one for one in forces.joints_of(eq.analyze(rotor(), 360)).values() if one.couple]
-    assert all(not np.any(one.values) for one in couples)
+    couples = [
+        value for value in forces.joints_of(eq.analyze(rotor(), 360)).values() if value.couple
+    ]
+    assert all(not np.any(couple.values) for couple in couples)
 
 
 def test_centrodes_of_gears_are_their_pitch_circles() -> None:
@@ -296,7 +298,7 @@ def test_paths_and_hodographs_are_the_motion(name: str) -> None:
     motion = analysis_of(name).motion
     (point,) = of_motion.traced(motion)
     assert has(places(charts_of(name)["curves"].panels[0]), motion.points[point].place)
-    velocity, acceleration = (places(one)[0] for one in charts_of(name)["hodograph"].panels)
+    velocity, acceleration = (places(panel)[0] for panel in charts_of(name)["hodograph"].panels)
     np.testing.assert_allclose(velocity, motion.points[point].velocity, rtol=1e-12)
     np.testing.assert_allclose(acceleration, motion.points[point].acceleration_vector, rtol=1e-12)
 
@@ -361,12 +363,12 @@ def test_names_do_for_files() -> None:
     base = eq.load("kim-chung-a")
     names = {"crank": "crank", "coupler": 'a/b:"*', "rocker": "A_b_?" + "x" * 90}
     links = {names[name]: link for name, link in base.links.items()}
-    found = list(planting.planting_charts(plant(replace(base, links=links))))
-    assert found[1] == "ratio-a_b___" and len(found[2]) == 60
+    result = list(planting.planting_charts(plant(replace(base, links=links))))
+    assert result[1] == "ratio-a_b___" and len(result[2]) == 60
     twins = {"crank": "crank", "coupler": "a/b", "rocker": "A|b"}
     links = {twins[name]: link for name, link in base.links.items()}
-    found = list(planting.planting_charts(plant(replace(base, links=links))))
-    assert found[1:3] == ["ratio-a_b", "ratio-A_b-2"]
+    result = list(planting.planting_charts(plant(replace(base, links=links))))
+    assert result[1:3] == ["ratio-a_b", "ratio-A_b-2"]
 
 
 @pytest.mark.parametrize("name", BUNDLED)
@@ -391,13 +393,13 @@ def test_curves_are_the_motion(name: str) -> None:
 
 
 def test_torque_and_joints_are_the_forces() -> None:
-    found, planted = drawn("kim-chung-a"), read_off("kim-chung-a").forces
+    actual, planted = drawn("kim-chung-a"), read_off("kim-chung-a").forces
     assert planted is not None
-    air, soil = signals(found["torque"].panels[0])
+    air, soil = signals(actual["torque"].panels[0])
     shown = planted.motion.sampling.curve_places  # the force sets in at the surface
     np.testing.assert_array_equal(air, planted.in_air.drive_torque[shown])
     np.testing.assert_array_equal(soil, planted.in_soil.drive_torque[shown])
-    for panel, joint in zip(found["joints"].panels, planted.in_soil.joints.values(), strict=False):
+    for panel, joint in zip(actual["joints"].panels, planted.in_soil.joints.values(), strict=False):
         assert has(signals(panel), joint.size[shown])
 
 
@@ -416,22 +418,22 @@ def test_values_in_air_and_soil_stand_clear_of_the_other_curve() -> None:
 
 
 def test_extremes_are_the_figures() -> None:
-    figures, told = read_off("kim-chung-a"), words(drawn("kim-chung-a")["velocity"])
+    figures, text = read_off("kim-chung-a"), words(drawn("kim-chung-a")["velocity"])
     for which in ("max", "min"):
         value, angle = figures[f"{which}_speed.value"], figures[f"{which}_speed.crank_angle"]
-        assert f"{value:.4g} at {degrees(angle):.1f}°" in told
+        assert f"{value:.4g} at {degrees(angle):.1f}°" in text
 
 
 @pytest.mark.parametrize("name", BUNDLED)
-def test_the_stay_in_the_soil_is_shaded_and_its_events_told(name: str) -> None:
+def test_the_stay_in_the_soil_is_shaded_and_its_events_reported(name: str) -> None:
     figures, panel = read_off(name), drawn(name)["velocity"].panels[0]
     assert [(band.low, band.high) for band in panel.bands] == planting.soil_spans(figures)
     share = sum(band.high - band.low for band in panel.bands)
-    visits = sum((one.exit - one.entry) % figures.curve.period for one in figures.visits)
+    visits = sum((visit.exit - visit.entry) % figures.curve.period for visit in figures.visits)
     assert share == pytest.approx(visits) or share == pytest.approx(figures.curve.period - visits)
-    told = words(drawn(name)["velocity"])
+    reported = words(drawn(name)["velocity"])
     for event in ("entry", "lowest", "exit"):
-        assert event in told and f"{degrees(figures[f'{event}.crank_angle']):.1f}°" in told
+        assert event in reported and f"{degrees(figures[f'{event}.crank_angle']):.1f}°" in reported
 
 
 def test_ratios_and_strands_over_the_crank() -> None:
@@ -450,7 +452,7 @@ def test_ratios_and_strands_over_the_crank() -> None:
 def test_every_cause_looks_different_and_further_signals_like_the_first() -> None:
     """Such as the tips of more planting arms than there are looks."""
     looks = [look_of(f"several {number}") for number in range(1, len(CAUSES) + 1)]
-    assert all(one not in looks[:k] for k, one in enumerate(looks))
+    assert all(look not in looks[:k] for k, look in enumerate(looks))
     assert all(look_of(f"several {number}") in looks for number in range(1, 40))
 
 
@@ -478,9 +480,9 @@ def test_what_swings_by_rounding_alone_is_a_level_line() -> None:
     large.
     """
     (chart,) = (
-        one
-        for one in of_motion.main_kinematics(analysis_of("quick-return"))
-        if one.name == "kinematics-transmission"
+        kinematic
+        for kinematic in of_motion.main_kinematics(analysis_of("quick-return"))
+        if kinematic.name == "kinematics-transmission"
     )
     block, link = chart.panels
     assert np.ptp(block.curves[0].y) == 0
@@ -514,7 +516,9 @@ def test_an_angle_that_runs_on_has_no_extremes_and_rounding_reads_0() -> None:
     """The second crank of a straw walker turns with the first one, and both are parallel twice."""
     names = ("straw-walker", "yamashita-1")
     analyses = [eq.analyze(eq.load(name)) for name in names]
-    charts, others = ({c.name: c for c in of_motion.main_kinematics(one)} for one in analyses)
+    charts, others = (
+        {c.name: c for c in of_motion.main_kinematics(analysis)} for analysis in analyses
+    )
     turning, *_ = charts["kinematics-rear"].panels
     assert np.ptp(turning.curves[0].y) > 6 and turning.marks == ()
     (transmission,) = charts["kinematics-transmission"].panels

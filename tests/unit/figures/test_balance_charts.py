@@ -17,7 +17,7 @@ from equipoise.figures.layout import lay_out
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.results.charts import Chart
 from equipoise.vibration.forced import respond
-from unit.figures.balance_samples import found, front, in_rows, phasing, pictures
+from unit.figures.balance_samples import balanced_case, front, in_rows, phasing, pictures
 from unit.figures.samples import words
 
 
@@ -27,7 +27,7 @@ def curve(chart: Chart, role: str, panel: int = 0) -> np.ndarray:
 
 def test_names_in_order() -> None:
     every = ["aims", "force", "polar", "torque", "changes"]
-    assert list(view.balance_charts(found("sector"))) == every
+    assert list(view.balance_charts(balanced_case("sector"))) == every
     assert list(pictures("phases")) == ["phases", "rows"]
     assert {"phases", "rows", "changes"} <= pictures("rows, both").keys()
     assert list(pictures("front")) == ["front"]
@@ -35,7 +35,7 @@ def test_names_in_order() -> None:
 
 @pytest.mark.parametrize("kind", ["sector", "one of each", "moved"])
 def test_curves_are_the_signals(kind: str) -> None:
-    result, charts = found(kind), pictures(kind)
+    result, charts = balanced_case(kind), pictures(kind)
     for role, machine in (("before", result.original), ("after", result.machine)):
         forces = eq.analyze(machine, 360).forces
         for panel, values in enumerate((forces.shaking_force.x, forces.shaking_force.y)):
@@ -67,12 +67,12 @@ def test_a_small_polar_is_a_dot_with_its_magnitude() -> None:
         both = {"before": 100 * turn, "after": 100 * part * turn}
         parts = {"x": np.real, "y": np.imag}
         force = {axis: {k: of(v) for k, v in both.items()} for axis, of in parts.items()}
-        chart = view.polar(found("sector"), np.angle(turn) % (2 * np.pi), force)
+        chart = view.polar(balanced_case("sector"), np.angle(turn) % (2 * np.pi), force)
         (dot,) = (mark for mark in chart.panels[0].marks if mark.role == "after")
         assert dot.text == text and abs(dot.x + 1j * dot.y) < 1e-9
 
 
-def test_what_did_not_change_is_told_once() -> None:
+def test_what_did_not_change_is_reported_once() -> None:
     values = np.sin(np.linspace(0, 6, 90))
     assert list(view.roles_of({"before": values, "after": values * (1 + 1e-9)})) == ["unchanged"]
     assert list(view.roles_of({"before": values, "after": values / 2})) == ["before", "after"]
@@ -87,7 +87,7 @@ def test_rounding_is_nothing() -> None:
 
 
 def test_bars_are_the_orders() -> None:
-    result = found("sector")
+    result = balanced_case("sector")
     panel = pictures("sector")["aims"].panels[1]
     for bars, machine in zip(panel.bars, (result.original, result.machine), strict=True):
         force = eq.analyze(machine, 360).forces.shaking_force.y
@@ -115,7 +115,7 @@ def test_numbers_at_bars_keep_apart(factor: float) -> None:
         (100.0, "311 222 124 61", "311 222 124 61"),
     ],
 )
-def test_crowded_bars_have_fewer_decimals_that_still_tell_them_apart(
+def test_crowded_bars_have_fewer_decimals_that_still_report_them_apart(
     factor: float, free: str, crowded: str
 ) -> None:
     for times, expected in ((1, free), (3, crowded)):
@@ -129,7 +129,7 @@ def test_crowded_bars_have_fewer_decimals_that_still_tell_them_apart(
 
 def test_aims_are_drawn_as_they_are_asked() -> None:
     """A vector by its size, a joint, and two orders of a moment."""
-    result, chart = found("one of each"), pictures("one of each")["aims"]
+    result, chart = balanced_case("one of each"), pictures("one of each")["aims"]
     force, joint, moment = chart.panels[::2]
     for role, machine in (("before", result.original), ("after", result.machine)):
         forces = eq.analyze(machine, 720).forces
@@ -146,8 +146,8 @@ def test_aims_are_drawn_as_they_are_asked() -> None:
 def test_aims_of_rows_are_of_all_of_them() -> None:
     rows = in_rows()
     (aim,) = aims_of(rows)
-    one = eq.analyze(replace(rows.original, rows=()), 720).forces.shaking_force.size
-    np.testing.assert_allclose(aim.pair["before"], 4 * one, atol=1e-6)
+    first = eq.analyze(replace(rows.original, rows=()), 720).forces.shaking_force.size
+    np.testing.assert_allclose(aim.pair["before"], 4 * first, atol=1e-6)
 
 
 @cache
@@ -164,16 +164,16 @@ def test_a_gauge_is_drawn_at_each_speed_at_which_it_is_read() -> None:
     (aim,), (limit,) = result.plan.objectives, result.plan.limits
     for k, speed in enumerate(aim.speeds):
         panel, orders = chart.panels[2 * k : 2 * k + 2]
-        told = []
+        texts = []
         for role, machine in (("before", result.original), ("after", result.machine)):
             read = respond(machine, speed).gauges["gauge"].displacement
             values = next(curve for curve in panel.curves if curve.role == role).y
-            told.append(1000 * read.peak_to_peak)
-            assert 1000 * np.ptp(values) == pytest.approx(told[-1], rel=1e-4)
+            texts.append(1000 * read.peak_to_peak)
+            assert 1000 * np.ptp(values) == pytest.approx(texts[-1], rel=1e-4)
             (bars,) = (bars for bars in orders.bars if bars.role == f"bar {role}")
             np.testing.assert_allclose(bars.size[1:], read.sizes[1 : len(bars.size)], rtol=1e-6)
         whole = orders.title.replace("\N{NO-BREAK SPACE}", " ")
-        assert whole == f"peak to peak: {told[0]:.4g} → {told[1]:.4g} mm"
+        assert whole == f"peak to peak: {texts[0]:.4g} → {texts[1]:.4g} mm"
         assert panel.title == f"reading at gauge, at {speed * 30 / np.pi:.4g} rpm"
     joint = chart.panels[6]
     assert joint.title.startswith("force in joint A")
@@ -183,7 +183,7 @@ def test_a_gauge_is_drawn_at_each_speed_at_which_it_is_read() -> None:
 def test_what_did_not_change_is_left_out() -> None:
     """A weight about the crank's pivot leaves the moment about it; one that moves all, nothing."""
     assert list(view.balance_charts(rig())) == ["aims", "force", "polar", "torque", "changes"]
-    result = found("sector")
+    result = balanced_case("sector")
     same = replace(result, machine=result.original)
     assert list(view.balance_charts(same)) == ["changes"]
     assert "Shaking moment about A, before and after" in words(pictures("moved")["moment"])
@@ -208,19 +208,19 @@ def test_hands_are_the_cranks() -> None:
 def test_rows_together_are_the_sum() -> None:
     machine = phasing().machine
     angles, total = view.summed(machine, "x")
-    one = eq.analyze(replace(machine, rows=machine.rows[:1]), 720).forces.shaking_force.x
+    first = eq.analyze(replace(machine, rows=machine.rows[:1]), 720).forces.shaking_force.x
     shifted = [
-        np.interp((angles + row.phase) % (2 * np.pi), angles, one, period=2 * np.pi)
+        np.interp((angles + row.phase) % (2 * np.pi), angles, first, period=2 * np.pi)
         for row in machine.rows
     ]
-    np.testing.assert_allclose(total, sum(shifted), atol=1e-6 * np.max(np.abs(one)))
+    np.testing.assert_allclose(total, sum(shifted), atol=1e-6 * np.max(np.abs(first)))
 
 
 def test_the_front_goes_through_its_points() -> None:
     (panel,) = pictures("front")["front"].panels
     (curve,) = panel.curves
     np.testing.assert_array_equal(np.column_stack([curve.x, curve.y]), front().values)
-    told = words(pictures("front")["front"])
-    assert "as it is" in told
+    reported = words(pictures("front")["front"])
+    assert "as it is" in reported
     far = replace(front(), values=1e-6 * front().values)
     assert "as it is, far off" in words(view.front(far))

@@ -18,7 +18,7 @@ from equipoise.results.charts import Chart, Outline
 from unit.figures.balance_samples import (
     MM,
     STEEL,
-    found,
+    balanced_case,
 )
 from unit.figures.checks import Laid
 from unit.figures.samples import words
@@ -26,13 +26,13 @@ from unit.figures.samples import words
 
 @cache
 def changes_of(kind: str) -> Chart:
-    return changes(found(kind))
+    return changes(balanced_case(kind))
 
 
 def curves(chart: Chart, role: str) -> list[np.ndarray]:
     """Lines of a role as complex numbers, mm."""
     (panel,) = chart.panels
-    return [MM * (one.x + 1j * one.y) for one in panel.curves if one.role == role]
+    return [MM * (curve.x + 1j * curve.y) for curve in panel.curves if curve.role == role]
 
 
 def springs(chart: Chart) -> list[np.ndarray]:
@@ -42,14 +42,14 @@ def springs(chart: Chart) -> list[np.ndarray]:
 
 def crank_angle(kind: str) -> float:
     """At which the picture says that it shows the machine, rad."""
-    told = re.search(r"in the frame: ([0-9.]+)°", words(changes_of(kind)))
-    assert told is not None
-    return float(np.radians(float(told[1])))
+    match = re.search(r"in the frame: ([0-9.]+)°", words(changes_of(kind)))
+    assert match is not None
+    return float(np.radians(float(match[1])))
 
 
 def at_pose(kind: str, link: str, place: tuple[float, float]) -> complex:
     """Where a place of a link is in the frame at that angle, mm, by its point and angle."""
-    machine = found(kind).machine
+    machine = balanced_case(kind).machine
     motion = eq.move(machine, np.array([crank_angle(kind)]))
     name, own = next(iter(machine.links[link].points.items()))
     turned = np.exp(1j * motion.links[link].angle[0])
@@ -74,7 +74,7 @@ def moments(outline: Outline) -> tuple[float, complex]:
 @pytest.mark.parametrize("kind", ["sector", "one of each", "ring", "geared"])
 def test_plates_are_to_scale(kind: str) -> None:
     """What is filled has the area of the piece, and its centre is the centre of mass."""
-    result = found(kind)
+    result = balanced_case(kind)
     drawn = changes_of(kind).panels[0].outlines
     cut = [
         (change.link, piece)
@@ -91,14 +91,14 @@ def test_plates_are_to_scale(kind: str) -> None:
 
 
 def test_points_and_moved_centres() -> None:
-    result = found("one of each")
+    result = balanced_case("one of each")
     (panel,) = changes_of("one of each").panels
     by_kind = {change.kind + change.link: change for change in result.changes}
     move = by_kind["center of masscoupler"].values
     ends = [at_pose("one of each", "coupler", move[k]) for k in ("from", "to")]
     (drawn,) = panel.arrows
     assert [MM * drawn.tail, MM * drawn.head] == pytest.approx(ends)
-    dots = [MM * complex(one.x, one.y) for one in panel.marks if one.role == "point mass"]
+    dots = [MM * complex(mark.x, mark.y) for mark in panel.marks if mark.role == "point mass"]
     for piece in by_kind["added massrocker"].values["pieces"]:
         place = at_pose("one of each", "rocker", piece["place"])
         assert min(abs(place - dot) for dot in dots) < 1e-6
@@ -128,14 +128,14 @@ def test_the_pose_is_that_of_the_linkages_picture() -> None:
     )
     angle = re.search(r"in the frame: [0-9.]+°", words(chart))
     assert angle and angle[0] in words(linkage(eq.analyze(machine, 720)))
-    told = words(chart).split("\n")
+    parts = words(chart).split("\n")
     for name in ("added mass", "room allowed", "pitch circles of gears"):
-        assert told.count(name) == 1
-    assert "pitch circles of new gears" not in told
+        assert parts.count(name) == 1
+    assert "pitch circles of new gears" not in parts
 
 
 def test_gears_touch() -> None:
-    result = found("geared")
+    result = balanced_case("geared")
     driver, shaft = curves(changes_of("geared"), "gear")
     values = result.changes[0].values
     middles = [np.mean(circle[:-1]) for circle in (driver, shaft)]
@@ -152,13 +152,13 @@ def test_weights_on_shafts() -> None:
 
 
 def test_springs() -> None:
-    result = found("spring")
+    result = balanced_case("spring")
     (spring_drawn,) = springs(changes_of("spring"))
     spring = result.machine.springs[-1]
     ends = [at_pose("spring", "rocker", result.machine.links["rocker"].points["C"]), 50 + 120j]
     assert spring_drawn[[0, -1]] == pytest.approx(np.array(ends))
     panel = changes_of("spring").panels[0]
-    stands = [one.places[0] for one in (*panel.ground, *panel.signs) if one.role == "stand"]
+    stands = [item.places[0] for item in (*panel.ground, *panel.signs) if item.role == "stand"]
     assert any(abs(MM * place - ends[1]) < 1e-6 for place in stands)  # so it is held in the frame
     assert f"{spring.stiffness:.4g} N/m" in words(changes_of("spring"))
     values = {"point": "C", "to": "S", "stiffness": 21530.0, "free_length": 0.1}
@@ -170,7 +170,7 @@ def test_springs() -> None:
 
 
 def test_nothing_to_add() -> None:
-    result = found("sector")
+    result = balanced_case("sector")
     (change,) = result.changes
     none = replace(change, values={**change.values, "pieces": [], "mass": 0.0})
     chart = changes(replace(result, changes=(none,)))
@@ -179,7 +179,7 @@ def test_nothing_to_add() -> None:
 
 
 def test_a_room_far_larger_than_the_machine_leaves_it_its_scale() -> None:
-    result = found("sector")
+    result = balanced_case("sector")
     (mass,) = result.plan.masses
     wide = replace(mass, weight=replace(mass.weight, radius=30.0))
     (panel,) = changes(replace(result, plan=replace(result.plan, masses=(wide,)))).panels
@@ -188,7 +188,7 @@ def test_a_room_far_larger_than_the_machine_leaves_it_its_scale() -> None:
 
 
 def test_two_points_at_one_place_share_a_label() -> None:
-    result = found("one of each")
+    result = balanced_case("one of each")
     change = next(change for change in result.changes if change.link == "rocker")
     piece = {"shape": "point", "mass": 0.2, "place": (0.0, 0.0)}
     twins = replace(change, values={**change.values, "pieces": [piece, piece]})
@@ -209,7 +209,9 @@ def test_labels_of_weights_are_nearest_to_their_own() -> None:
     chart = changes(eq.balance(eq.load("balance-shafts")))
     laid = Laid.of(chart)
     ((view, _),) = laid.panels
-    edges = [view.places(one.places.real, one.places.imag) for one in view.panel.outlines]
+    edges = [
+        view.places(outline.places.real, outline.places.imag) for outline in view.panel.outlines
+    ]
     starts = [mark for mark in view.panel.marks if " g on " in mark.text]
     assert len(edges) == len(starts) == 3
     for number, mark in enumerate(starts):

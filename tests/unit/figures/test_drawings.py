@@ -72,7 +72,9 @@ def test_every_path_is_drawn_closed() -> None:
         ("walking-transplanter", ["planting_part", "float"], "handle_along (−700, 450) mm"),
     ],
 )
-def test_what_holds_a_linkage_is_named_or_told(name: str, named: list[str], beyond: str) -> None:
+def test_what_holds_a_linkage_is_named_or_reported(
+    name: str, named: list[str], beyond: str
+) -> None:
     chart = linkage(analysis_of(name))
     assert {*named} <= {mark.text for mark in chart.panels[0].marks}
     assert (beyond in chart.words[-1]) if beyond else not chart.words
@@ -94,10 +96,10 @@ def test_soil_and_tray_are_in_the_picture_and_its_legend() -> None:
 
 @pytest.mark.parametrize("of_one", [False, True])
 def test_a_moving_picture_says_whose_force_it_is(of_one: bool) -> None:
-    found = eq.analyze(eq.load("four-row-transplanter"), 60)
-    arrow = ForceArrow(found.forces.about, found.forces.shaking_force.value, of_one)
-    told = [label.text for label in laid_out(Scene.of(found.motion), arrow=arrow).labels]
-    (force,) = (text for text in told if text.startswith("shaking force"))
+    analysis = eq.analyze(eq.load("four-row-transplanter"), 60)
+    arrow = ForceArrow(analysis.forces.about, analysis.forces.shaking_force.value, of_one)
+    texts = [label.text for label in laid_out(Scene.of(analysis.motion), arrow=arrow).labels]
+    (force,) = (text for text in texts if text.startswith("shaking force"))
     assert ("of one row" in force) == of_one
     assert f"{np.max(np.abs(arrow.force)):.4g} N" in force
 
@@ -154,7 +156,7 @@ def test_without_travel_there_is_no_ground_panel() -> None:
 def test_the_machine_is_drawn_at_the_lowest_point() -> None:
     figures = read_off("kim-chung-a")
     motion = eq.move(figures.machine, [figures["lowest.crank_angle"]])
-    pins = [one.places[0] for one in path(figures).panels[0].signs if one.role in ("pin", "dot")]
+    pins = [sign.places[0] for sign in path(figures).panels[0].signs if sign.role in ("pin", "dot")]
     for point in motion.points.values():
         assert np.min(np.abs(np.array(pins) - point.place[0])) < 1e-12
 
@@ -184,7 +186,7 @@ def modes_of(kind: str) -> dict[str, Chart]:
     return pictures_of(eq.modes(MACHINES[kind]()))
 
 
-def test_modes_are_told() -> None:
+def test_modes_are_reported() -> None:
     mode = eq.modes(rig()).modes[0]
     shown = words(modes_of("rig")["mode-1"])
     assert f"{mode.cycles_per_second:.4g} Hz, {mode.natural_frequency:.4g} rad/s" in shown
@@ -272,9 +274,9 @@ def test_signs_that_some_font_has_are_written(monkeypatch: pytest.MonkeyPatch) -
 
     signs = frozenset("クランク")
     paint.fonts_for.cache_clear()
-    found, lost = paint.fonts_for(signs)
+    actual, lost = paint.fonts_for(signs)
     assert set(lost) <= set(signs)
-    assert not any("Last Resort" in name for name in found)
+    assert not any("Last Resort" in name for name in actual)
     own = [font for font in paint.font_manager.fontManager.ttflist if font.name == "DejaVu Sans"]
     monkeypatch.setattr(paint.font_manager.fontManager, "ttflist", own)
     monkeypatch.setattr(paint.font_manager, "findSystemFonts", list)

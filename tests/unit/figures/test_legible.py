@@ -46,23 +46,23 @@ def drawn(name: str) -> tuple[tuple[Chart, tuple[View, ...]], ...]:
     return tuple((chart, tuple(views(chart))) for chart in charts)
 
 
-def comparable(found: tuple[View, ...]) -> Iterator[tuple[View, View]]:
+def comparable(result: tuple[View, ...]) -> Iterator[tuple[View, View]]:
     """Panels of the same quantity; what is constant may be anywhere."""
     varying = [
         view
-        for view in found
+        for view in result
         if view.panel.bars
         or any(np.ptp(c.y) > 1e-9 * np.max(np.abs(c.y)) for c in view.panel.curves)
     ]
-    for one, other in combinations(varying, 2):
-        if one.panel.x.text == other.panel.x.text and one.y.axis.unit == other.y.axis.unit:
-            yield one, other
+    for first, other in combinations(varying, 2):
+        if first.panel.x.text == other.panel.x.text and first.y.axis.unit == other.y.axis.unit:
+            yield first, other
 
 
 def scale_of(view: View) -> float:
     """Points of a unit, where the panel were drawn no larger than others."""
-    told = LARGER.search(view.panel.remark)
-    larger = float(told[1]) if told else 1.0
+    match = LARGER.search(view.panel.remark)
+    larger = float(match[1]) if match else 1.0
     assert larger == 1 or larger >= 5
     return view.y.length / (view.y.high - view.y.low) / larger
 
@@ -70,26 +70,26 @@ def scale_of(view: View) -> float:
 @pytest.mark.exhaustive(but=["quick-return", "class-three"])
 @pytest.mark.parametrize("name", few(LINKAGES, DISTINCT))
 def test_one_scale_for_one_quantity(name: str) -> None:
-    for chart, found in drawn(name):
-        for one, other in comparable(found):
-            same = scale_of(one) == pytest.approx(scale_of(other), rel=1e-6)
-            assert same, (chart.name, one.panel.title, other.panel.title)
+    for chart, actual in drawn(name):
+        for first, other in comparable(actual):
+            same = scale_of(first) == pytest.approx(scale_of(other), rel=1e-6)
+            assert same, (chart.name, first.panel.title, other.panel.title)
 
 
 @pytest.mark.exhaustive(but=["slider-crank-engine", "quick-return", "hydraulic-loader"])
 @pytest.mark.parametrize("name", LINKAGES)
 def test_forces_have_one_unit(name: str) -> None:
-    for chart, found in drawn(name):
+    for chart, actual in drawn(name):
         if chart.name in {"force", "joints"}:
-            axes = {(view.y.axis.label, view.y.axis.unit) for view in found}
+            axes = {(view.y.axis.label, view.y.axis.unit) for view in actual}
             assert len(axes) == len({label for label, _ in axes})
 
 
 @pytest.mark.parametrize("name", LINKAGES)
-def test_peaks_tell_their_crank_angle(name: str) -> None:
-    for chart, found in drawn(name):
+def test_peaks_report_their_crank_angle(name: str) -> None:
+    for chart, actual in drawn(name):
         if chart.name in {"force", "joints", "torque"}:
-            texts = [mark.text for view in found for mark in view.panel.marks]
+            texts = [mark.text for view in actual for mark in view.panel.marks]
             ends = ("°", " at every crank angle")
             assert all(text.endswith(ends) for text in texts), (chart.name, texts)
 
@@ -99,20 +99,20 @@ def test_numbers_at_bars_stay_below_titles_where_pictures_are_narrow(name: str) 
     """And no word beside an axis is broken."""
     laid = Laid.of(spectrum(eq.analyze(eq.load(name))), HALF)
     for view, items in laid.panels:
-        numbers = [one for one in items if isinstance(one, Words) and not one.turned]
-        assert numbers and all(box_of(one)[1] >= view.box[1] for one in numbers)
+        numbers = [item for item in items if isinstance(item, Words) and not item.turned]
+        assert numbers and all(box_of(number)[1] >= view.box[1] for number in numbers)
     written = " ".join(words.text for words in laid.sheet.words if words.turned)
     assert {*written.replace(",", "").split()} <= {"amplitude", "N", "m"}
 
 
-def test_a_small_signal_is_drawn_larger_and_tells_it() -> None:
+def test_a_small_signal_is_drawn_larger_and_reports_it() -> None:
     x = np.linspace(0.0, 1.0, 50)
     y = Axis.of("force", "force", [30.0], low=0.0, room=0.0)
     panels = tuple(Panel(Axis("x"), y, (Curve(x, size * x),)) for size in (30.0, 10.0, 2.9, 0.05))
-    found = views(Chart("forces", "Machine", "Forces", panels, columns=2))
-    assert [view.y.high for view in found] == pytest.approx([30, 30, 3, 0.06])
-    told = ["", "", "drawn 10 times as large", "drawn 500 times as large"]
-    assert [view.panel.remark for view in found] == told
+    result = views(Chart("forces", "Machine", "Forces", panels, columns=2))
+    assert [view.y.high for view in result] == pytest.approx([30, 30, 3, 0.06])
+    texts = ["", "", "drawn 10 times as large", "drawn 500 times as large"]
+    assert [view.panel.remark for view in result] == texts
 
 
 def test_titles_and_names_of_axes_are_never_cut() -> None:
@@ -150,7 +150,7 @@ def test_sizes_on_a_logarithmic_axis_are_dots_and_no_bars() -> None:
     assert panel.y.scale == "log" and panel.bars
     laid = Laid.of(chart)
     assert not [*bars_afloat(laid)]
-    (dots,) = (one for _, items in laid.panels for one in items if isinstance(one, Markers))
+    (dots,) = (item for _, items in laid.panels for item in items if isinstance(item, Markers))
     assert len(dots.places) == len(panel.bars[0].at)
 
 
@@ -164,7 +164,7 @@ def test_the_mean_of_a_spectrum_has_its_sign() -> None:
     assert mean < -1 and bars.size[0] == pytest.approx(mean, rel=1e-9)
     assert np.all(bars.size[1:] >= 0)
     assert view.y.low < mean
-    (number,) = (one for one in laid.sheet.words if one.text == f"−{-mean:.2f}")
+    (number,) = (word for word in laid.sheet.words if word.text == f"−{-mean:.2f}")
     assert box_of(number)[1] >= float(view.y.at(mean)) and box_of(number)[3] <= view.box[3]
 
 
@@ -181,7 +181,7 @@ def test_numbers_of_crank_angles_at_one_place_stand_together() -> None:
     (chart,) = joint_polars(eq.analyze(eq.load("knife-drive")))
     shaft = next(panel for panel in chart.panels if panel.title == "S: frame on shaft")
     assert [mark.text for mark in shaft.marks] == ["0, 90, 180, 270"]
-    assert "0, 90, 180, 270" in [one.text for one in lay_out(chart).words]
+    assert "0, 90, 180, 270" in [word.text for word in lay_out(chart).words]
     (up, _) = hodograph(eq.analyze(eq.load("balance-shafts"))).panels
     assert [mark.text for mark in up.marks] == ["", "0", "90, 270", "180"]
 
@@ -218,13 +218,13 @@ def test_the_vibration_of_hands_is_named_on_its_axis(language: str) -> None:
 def test_no_label_of_a_mode_covers_another(language: str) -> None:
     """Of a support in space with nine mounts and gauges, and of a tool with numbered nodes."""
     with speaking(language):
-        found = modes(eq.load("riding-transplanter"))
-        charts = [mode_chart(found, number + 1) for number in range(len(found.modes))]
+        result = modes(eq.load("riding-transplanter"))
+        charts = [mode_chart(result, number + 1) for number in range(len(result.modes))]
         charts += mode_charts(vibrate_tool(load_tool("brush-cutter"), 6)).values()
         for chart in charts:
             laid = Laid.of(chart)
             assert not [*texts_covered(laid), *texts_cut(laid)], chart.name
-            names = [one.text for one in laid.sheet.words if one.text]
+            names = [word.text for word in laid.sheet.words if word.text]
             assert len(names) > 10
 
 

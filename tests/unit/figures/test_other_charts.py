@@ -50,22 +50,22 @@ def day(*tasks: tuple[str, float, float]) -> Exposure:
 WORK = day(("mowing", 4.6, 2.0), ("felling", 6.0, 1.0), ("stripping", 3.6, 2.0))
 
 
-def tools(one: Exposure) -> list[tuple[str, float]]:
-    return [(task.name, task.acceleration) for task in one.tasks]
+def tools(item: Exposure) -> list[tuple[str, float]]:
+    return [(task.name, task.acceleration) for task in item.tasks]
 
 
 def test_the_spectrum_before_and_after_weighting() -> None:
-    found = weighted()
-    chart = measured.spectrum(found, "mow.csv")
-    assert found.band_a_h is not None
+    result = weighted()
+    chart = measured.spectrum(result, "mow.csv")
+    assert result.band_a_h is not None
     curves, low = chart.panels[0].curves, chart.panels[0].y.low
-    for curve, wanted in zip(curves, (found.band_a_h, found.band_a_hw), strict=True):
+    for curve, wanted in zip(curves, (result.band_a_h, result.band_a_hw), strict=True):
         total = np.sqrt(np.sum(wanted**2, axis=0))
         np.testing.assert_allclose(curve.y[::2], np.maximum(total, low))
     assert not chart.panels[0].areas  # nothing stands on a 0 that its axis does not have
-    assert f"weighted, total value aₕᵥ = {found.a_hv:.4g} m/s²" in words(chart)
+    assert f"weighted, total value aₕᵥ = {result.a_hv:.4g} m/s²" in words(chart)
     assert len(measured.spectrum(weighted(weighted=True), "x").panels[0].curves) == 1
-    names = measured.exposure_charts([("a", found), ("b", found)], tools(WORK), WORK)
+    names = measured.exposure_charts([("a", result), ("b", result)], tools(WORK), WORK)
     assert list(names) == ["spectrum", "spectrum-2", "exposure"]
     check(measured.spectrum(weigh_spectrum(NOMINAL, np.zeros((3, 24)), bands=True), "nothing"))
 
@@ -83,9 +83,9 @@ def test_tasks_and_the_day_stand_at_their_hours() -> None:
         assert np.exp(reach) == pytest.approx(8 * (5.0 / task.acceleration) ** 2, rel=1e-6)
 
 
-def test_what_is_beyond_a_value_has_a_sign_that_the_legend_tells() -> None:
-    one = day(("calm", 1.0, 1.0), ("mowing", 6.0, 3.0), ("clearing", 13.0, 1.5))
-    chart = measured.exposure(tools(one), one)
+def test_what_is_beyond_a_value_has_a_sign_that_the_legend_reports() -> None:
+    first = day(("calm", 1.0, 1.0), ("mowing", 6.0, 3.0), ("clearing", 13.0, 1.5))
+    chart = measured.exposure(tools(first), first)
     roles = {mark.text: mark.role for mark in chart.panels[0].marks}
     assert [roles[name] for name in ("calm", "mowing", "clearing", "all of them")] == [
         "task",
@@ -125,19 +125,19 @@ def decayed(kind: str = "length", **more: float) -> Decay:
 
 
 def test_the_record_and_the_line_of_half_swings() -> None:
-    found = decayed(center=0.1)
-    charts = of_decay.decay_charts(found, "rig.csv")
+    result = decayed(center=0.1)
+    charts = of_decay.decay_charts(result, "rig.csv")
     (panel,) = charts["record"].panels
     samples, fit = panel.curves
-    assert [mark.y for mark in panel.marks] == pytest.approx(list(found.turns.displacement))
-    np.testing.assert_allclose(fit.y, found.fitted(fit.x))
+    assert [mark.y for mark in panel.marks] == pytest.approx(list(result.turns.displacement))
+    np.testing.assert_allclose(fit.y, result.fitted(fit.x))
     assert len(samples.x) <= of_decay.MOST_DRAWN
     assert panel.y.text == "displacement, mm"
-    found = decayed("angle")
-    charts = of_decay.decay_charts(found, r"$x$ 減衰 \alpha " + "long " * 30)
+    result = decayed("angle")
+    charts = of_decay.decay_charts(result, r"$x$ 減衰 \alpha " + "long " * 30)
     assert charts["record"].panels[0].y.text == "angle, deg"
     line = charts["swings"].panels[0].curves[1]
-    slope, cut = found.line["slope"].value, found.line["intercept"].value
+    slope, cut = result.line["slope"].value, result.line["intercept"].value
     np.testing.assert_allclose(line.y, slope * line.x + cut)
     for chart in charts.values():
         check(chart)
@@ -164,8 +164,8 @@ def test_numbers_on_axes(axis: Axis, values: list[float], wanted: tuple[str, str
     assert len(ticks) >= 3
     places = [float(scale.of(place)) for place, _ in ticks]
     assert places == sorted(places) and places[0] >= -0.1 and places[-1] <= 300.1
-    told = "".join(text for _, text in ticks)
-    assert all(text in told for text in wanted)
+    reported = "".join(text for _, text in ticks)
+    assert all(text in reported for text in wanted)
 
 
 def small() -> Chart:

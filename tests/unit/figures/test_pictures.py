@@ -47,14 +47,16 @@ ODD = {
 }
 
 
-def found_of(name: str) -> Findings | ToolFindings:
+def findings_with_ratios(name: str) -> Findings | ToolFindings:
     """What can be told of a bundled model; ratios of gears are set, and not looked for."""
-    told = findings_of(name)
-    plan = None if isinstance(told, ToolFindings) else told.machine.balance
+    findings = findings_of(name)
+    plan = None if isinstance(findings, ToolFindings) else findings.machine.balance
     if plan is None or not plan.geared:
-        return told
-    geared = tuple(replace(one, ratio=(one.ratio[0],) * 2) for one in plan.geared)
-    return replace(told, machine=replace(told.machine, balance=replace(plan, geared=geared)))
+        return findings
+    geared = tuple(replace(item, ratio=(item.ratio[0],) * 2) for item in plan.geared)
+    return replace(
+        findings, machine=replace(findings.machine, balance=replace(plan, geared=geared))
+    )
 
 
 def of_odd(name: str) -> dict[str, Chart]:
@@ -78,9 +80,9 @@ def of_odd(name: str) -> dict[str, Chart]:
 @pytest.mark.parametrize("name", few(EXAMPLES, {*DISTINCT, *TRANSLATED, *eq.examples("tool")}))
 def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
     """All pictures of a model are kept in the gallery, and in some languages drawn anew."""
-    told = found_of(name)
-    with in_own_words(told.owner):  # as commands and reports draw them
-        charts = [(picture, picture.chart) for picture in each(told)]
+    reported = findings_with_ratios(name)
+    with in_own_words(reported.owner):  # as commands and reports draw them
+        charts = [(picture, picture.chart) for picture in each(reported)]
         drawn = [(picture, Laid.of(chart)) for picture, chart in charts]
         small = [(picture, Laid.in_report(chart)) for picture, chart in charts]
         on_telephone = [
@@ -89,7 +91,7 @@ def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
         kept = [
             Kept(picture.name, picture.chart.caption, svg_of(laid.sheet)) for picture, laid in drawn
         ]
-    if isinstance(told, Findings):
+    if isinstance(reported, Findings):
         moving = tmp_path / "animation.svg"
         assert run(["animate", name, "--out", str(moving)]) == 0
         kept.append(Kept(moving.stem, "The linkage moves.", moving.read_text(encoding="utf-8")))
@@ -97,8 +99,8 @@ def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
     for pictures in (drawn, small, on_telephone):
         assert not [(picture.name, *fault) for picture, laid in pictures for fault in laid.faults]
     for language in ("ja", "ko") if name in TRANSLATED else ():
-        with speaking(language), in_own_words(told.owner):
-            for picture in each(told):
+        with speaking(language), in_own_words(reported.owner):
+            for picture in each(reported):
                 check(picture.chart)
 
 

@@ -61,25 +61,25 @@ def of_search() -> dict[str, Chart]:
 @cache
 def of_three() -> dict[str, Chart]:
     """Three aims, as `equipoise best` finds them in a store."""
-    found = searched()
-    count = len(found.values)
+    result = searched()
+    count = len(result.values)
     by = {"forward": "smallest", "upward": "smallest", "stroke": "largest"}
-    names = (found.study.paths, found.study.names)
+    names = (result.study.paths, result.study.names)
     numbers = np.arange(count) + 100
-    best = Best(by, *names, numbers, found.values, found.figures, *[count] * 4)  # type: ignore[arg-type]
+    best = Best(by, *names, numbers, result.values, result.figures, *[count] * 4)  # type: ignore[arg-type]
     store = SimpleNamespace(
-        wishes=found.study.outputs,
-        in_blocks=lambda: [(0, found.tried)],
-        size=len(found.tried.values),
+        wishes=result.study.outputs,
+        in_blocks=lambda: [(0, result.tried)],
+        size=len(result.tried.values),
     )
-    return studies.best_charts(best, "A store", units_of(found.study), store)  # type: ignore[arg-type]
+    return studies.best_charts(best, "A store", units_of(result.study), store)  # type: ignore[arg-type]
 
 
 def given(size: int) -> tuple[studies.CloudDesigns, DesignBlock]:
     """Designs of which some break a limit and some fail, the first three of them chosen."""
     random = np.random.default_rng(5)
     study = load_study("study-of-balance")
-    ranges = np.array([(one.spread.low, one.spread.high) for one in study.vary])  # type: ignore[union-attr]
+    ranges = np.array([(item.spread.low, item.spread.high) for item in study.vary])  # type: ignore[union-attr]
     values = random.uniform(*ranges.T, (size, 5))
     figures = random.uniform([1.0, -2.0, 0.18], [9.0, 1.5, 0.25], (size, 3))
     figures[:, 1] = 10 ** figures[:, 1]
@@ -89,9 +89,9 @@ def given(size: int) -> tuple[studies.CloudDesigns, DesignBlock]:
     there = np.flatnonzero(reason == 0)[:3]
     table = np.hstack([values, figures])[there]
     by = {"forward": "smallest", "upward": "smallest"}
-    told = (study.title, by, study.paths, study.outputs, units_of(study), table, ["7", "8", "9"])
+    texts = (study.title, by, study.paths, study.outputs, units_of(study), table, ["7", "8", "9"])
     front = table[:, [5, 6]]
-    return studies.CloudDesigns(*told, lambda: [(0, block)], size, OWN, front), block  # type: ignore[arg-type]
+    return studies.CloudDesigns(*texts, lambda: [(0, block)], size, OWN, front), block  # type: ignore[arg-type]
 
 
 @pytest.mark.exhaustive(but=["600"])
@@ -119,9 +119,9 @@ def test_all_designs_stand_behind_the_chosen_ones(size: int) -> None:
     assert list(line.x) == sorted(some.table[:, 5])
     assert [(m.x, m.y, m.text) for m in panel.marks if m.role == "own"] == [(8.7, 12.2, "model")]
     assert (panel.x.scale, panel.y.scale) == ("linear", "log")  # 1 to 9 N, 0.01 to 30 N
-    told = words(charts["front"])
-    assert f"{size} designs, {np.sum(good & ~failed)} keep every limit" in told
-    assert f"{np.sum(failed)} cannot be computed" in told
+    reported = words(charts["front"])
+    assert f"{size} designs, {np.sum(good & ~failed)} keep every limit" in reported
+    assert f"{np.sum(failed)} cannot be computed" in reported
     mass = charts["designs"].panels[0]
     (lost,) = (curve for curve in mass.curves if curve.role == "failed")
     assert np.all(lost.x > 0.79) and len(lost.x) > 3
@@ -134,11 +134,11 @@ def test_lines_run_from_axis_to_axis() -> None:
     some, _ = given(6000)
     chart = studies.charts_of(some)["parallel"]
     (panel,) = chart.panels
-    told = words(chart)
+    reported = words(chart)
     for name, unit in (("mass of the", "g"), ("stroke", "mm"), ("forward", "N")):
         (flag,) = (flag for flag in panel.flags if " ".join(flag.texts).startswith(name))
         assert flag.texts[-1] == unit
-    assert "lines of 2" in told and "all designs" not in told
+    assert "lines of 2" in reported and "all designs" not in reported
     by_role = {curve.role: curve for curve in panel.curves}
     assert set(by_role) == {"kept line", "beyond line", "design line", "own line"}
     assert len(panel.rules) == 8 == len(panel.flags)
@@ -148,64 +148,64 @@ def test_lines_run_from_axis_to_axis() -> None:
     for k, rule in enumerate(panel.rules):
         column = some.columns[names[k]]
         ends = np.array([rule.axis.low, rule.axis.high])
-        values = [np.log(one) if rule.axis.scale == "log" else one for one in (column, ends)]
+        values = [np.log(item) if rule.axis.scale == "log" else item for item in (column, ends)]
         np.testing.assert_allclose(lines[:, k], (values[0] - values[1][0]) / np.diff(values[1]))
     many = sum(np.sum(np.isnan(by_role[role].y)) for role in ("kept line", "beyond line"))
-    assert f"lines of {many} designs" in told and 150 < many <= SOME
+    assert f"lines of {many} designs" in reported and 150 < many <= SOME
 
 
 def test_histograms_are_the_scatter_and_pale_outside_of_the_limit() -> None:
-    chart, found = of_tolerances()["scatter"], tolerances()
-    for panel, one in zip(chart.panels, found.scatters.values(), strict=True):
+    chart, actual = of_tolerances()["scatter"], tolerances()
+    for panel, scatter in zip(chart.panels, actual.scatters.values(), strict=True):
         (bars,) = panel.bars
-        limits = [] if one.output.at_most is None else [one.output.at_most]
+        limits = [] if scatter.output.at_most is None else [scatter.output.at_most]
         first, last = (bars.at + sign * np.asarray(bars.width) / 2 for sign in (-1, 1))
-        for low, high, count in zip(one.edges, one.edges[1:], one.counts, strict=False):
+        for low, high, count in zip(scatter.edges, scatter.edges[1:], scatter.counts, strict=False):
             inside = (first >= low - 1e-9) & (last <= high + 1e-9)
-            np.testing.assert_allclose(bars.size[inside], count / found.designs)
+            np.testing.assert_allclose(bars.size[inside], count / actual.designs)
             assert np.sum(inside) == 1 + sum(low < limit < high for limit in limits)
-        assert {line.at for line in panel.lines} == {one.base, *limits}
+        assert {line.at for line in panel.lines} == {scatter.base, *limits}
         pale = np.array([role == "outside" for role in bars.roles])
         beyond = bars.at > min(limits, default=np.inf)
         np.testing.assert_array_equal(pale, beyond)
 
 
 def test_what_to_tighten_first_stands_at_the_top_and_shares_are_of_each() -> None:
-    found, chart = tolerances(), of_tolerances()["tighten"]
+    actual, chart = tolerances(), of_tolerances()["tighten"]
     (panel,) = chart.panels
-    gains = [max(cause.gain, 0.0) for cause in found.causes]
+    gains = [max(cause.gain, 0.0) for cause in actual.causes]
     np.testing.assert_allclose(panel.bars[0].size, gains)
     assert panel.y.low is not None and panel.y.high is not None and panel.y.low > panel.y.high
     assert panel.y.ticks is not None and panel.y.ticks[0][1] == "speed of the drive"
     assert "mass + inertia of the coupler" in words(chart)
-    for part, name in zip(of_tolerances()["shares"].panels, found.scatters, strict=True):
-        effects = [cause.effects[name] for cause in found.causes]
+    for part, name in zip(of_tolerances()["shares"].panels, actual.scatters, strict=True):
+        effects = [cause.effects[name] for cause in actual.causes]
         for bars, kind in zip(part.bars, ("first", "total"), strict=True):
             shares = [getattr(effect, kind) for effect in effects]
-            told = np.array([(one.value, one.low, one.high) for one in shares]).T
+            reported = np.array([(share.value, share.low, share.high) for share in shares]).T
             assert bars.interval is not None
-            np.testing.assert_allclose([bars.size, *bars.interval], np.maximum(told, 0.0))
+            np.testing.assert_allclose([bars.size, *bars.interval], np.maximum(reported, 0.0))
             low, high = bars.interval
             assert np.all(low <= bars.size) and np.all(bars.size <= high) and np.any(low < high)
         drawn = [line for line in _lines(of_tolerances()["shares"], 0.9) if len(line) == 2]
-        assert len(drawn) >= 3 * 2 * len(found.causes)  # of each bar, with a cap at both ends
+        assert len(drawn) >= 3 * 2 * len(actual.causes)  # of each bar, with a cap at both ends
 
 
 def _lines(chart: Chart, width: float) -> list[np.ndarray]:
     """Lines of ink of some width that a chart draws."""
     items = lay_out(chart).items
-    strokes = (one for one in items if isinstance(one, CanvasStroke))
+    strokes = (item for item in items if isinstance(item, CanvasStroke))
     return [line for s in strokes if (s.color, s.width) == (INK, width) for line in s.lines]
 
 
 def test_designs_are_drawn_with_the_model_beside_them() -> None:
-    chart, found = of_search()["front"], searched()
+    chart, actual = of_search()["front"], searched()
     (panel,) = chart.panels
     (chosen,) = (curve for curve in panel.curves if curve.role == "design")
-    np.testing.assert_allclose([chosen.x, chosen.y], found.figures[:, :2].T)
+    np.testing.assert_allclose([chosen.x, chosen.y], actual.figures[:, :2].T)
     assert [(m.x, m.y) for m in panel.marks if m.role == "own"] == [tuple(OWN[1][:2])]
-    told = words(chart)
-    assert "upward (small is good), N" in told and "the model itself" in told
+    reported = words(chart)
+    assert "upward (small is good), N" in reported and "the model itself" in reported
     for number, (panel, label) in enumerate(
         zip(
             of_search()["designs"].panels,
@@ -214,18 +214,18 @@ def test_designs_are_drawn_with_the_model_beside_them() -> None:
         )
     ):
         (chosen,) = (curve for curve in panel.curves if curve.role == "design")
-        np.testing.assert_allclose(chosen.x, found.values[:, number])
+        np.testing.assert_allclose(chosen.x, actual.values[:, number])
         assert panel.x.text == label
     (curve,) = of_search()["search"].panels[0].curves
-    np.testing.assert_allclose(curve.y, found.volumes)
+    np.testing.assert_allclose(curve.y, actual.volumes)
 
 
 def test_three_aims_are_drawn_in_pairs() -> None:
-    chart, found = of_three()["front"], searched()
+    chart, actual = of_three()["front"], searched()
     aims = [panel.x.label.split(" ")[0] for panel in chart.panels]
     assert aims == ["forward", "forward", "upward"]
     (chosen,) = (curve for curve in chart.panels[2].curves if curve.role == "design")
-    np.testing.assert_allclose(chosen.x, found.figures[:, 1])
+    np.testing.assert_allclose(chosen.x, actual.figures[:, 1])
     assert "stroke (large is good), mm" in words(chart)
 
 
@@ -260,17 +260,20 @@ def broken() -> Landscape:
 
 
 def test_the_least_and_the_model_are_marked_where_they_are() -> None:
-    found = smooth()
-    chart = studies.landscape(found)
+    result = smooth()
+    chart = studies.landscape(result)
     marks = {mark.role: (mark.x, mark.y) for mark in chart.panels[0].marks}
-    assert marks == {"least": found.best, "own": found.start}
-    assert f"{found.least:.4g} N" in words(chart) and f"{found.before:.4g} N" in words(chart)
-    assert f"least {objective_named(found.objective)}: {found.least:.4g} N" in studies.optimum_text(
-        found
+    assert marks == {"least": result.best, "own": result.start}
+    assert f"{result.least:.4g} N" in words(chart) and f"{result.before:.4g} N" in words(chart)
+    assert (
+        f"least {objective_named(result.objective)}: {result.least:.4g} N"
+        in studies.optimum_text(result)
     )
-    spline = RectBivariateSpline(found.y, found.x, found.values)
-    assert float(spline(found.best[1], found.best[0])[0, 0]) == pytest.approx(found.least, rel=0.05)
-    levels = levels_of(found.values)
+    spline = RectBivariateSpline(result.y, result.x, result.values)
+    assert float(spline(result.best[1], result.best[0])[0, 0]) == pytest.approx(
+        result.least, rel=0.05
+    )
+    levels = levels_of(result.values)
     assert 3 <= len(levels) <= 13 and np.allclose(np.diff(levels), levels[1] - levels[0])
 
 
@@ -295,9 +298,9 @@ def test_a_number_has_a_unit_that_suits_its_range(most: float, least: float, wor
 def test_lines_of_equal_value_have_no_kinks(places: int) -> None:
     x, y = np.linspace(-1.0, 1.0, places), np.linspace(0.0, 3.0, places)
     values = np.sqrt(0.3 + x**2 + (y[:, None] - 1.3) ** 2)
-    found = _lines(studies.landscape(replace(smooth(), x=x, y=y, values=values, start=None)), 0.8)
-    assert len(found) > 5
-    for line in found:
+    result = _lines(studies.landscape(replace(smooth(), x=x, y=y, values=values, start=None)), 0.8)
+    assert len(result) > 5
+    for line in result:
         along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
         at = np.arange(0.0, along[-1], 8.0)
         ways = np.diff(np.interp(at, along, line @ [1, 1j]))
@@ -309,24 +312,26 @@ def test_lines_go_through_what_was_computed_and_do_not_swing_at_creases() -> Non
     x, y = np.geomspace(1.0, 9.0, 9), np.linspace(0.0, 1.0, 7)
     values = np.maximum(x, 4.0) + y[:, None]
     values[2:4, 5] = values[6, :3] = values[0, 8] = np.nan
-    across, up, found = finer(x, y, values)
+    across, up, actual = finer(x, y, values)
     columns, rows = np.searchsorted(across, x - 1e-12), np.searchsorted(up, y - 1e-12)
     assert len(across) >= 240 and len(up) >= 240
-    np.testing.assert_allclose(found[np.ix_(rows, columns)], values)
+    np.testing.assert_allclose(actual[np.ix_(rows, columns)], values)
     true = np.maximum(across, 4.0) + up[:, None]
-    assert np.nanmax(np.abs(found - true)) < 0.4 * np.max(np.diff(x))
+    assert np.nanmax(np.abs(actual - true)) < 0.4 * np.max(np.diff(x))
     for j, k in np.ndindex(6, 8):
         cell = values[j : j + 2, k : k + 2]
-        own = found[rows[j] + 1 : rows[j + 1], columns[k] + 1 : columns[k + 1]]
+        own = actual[rows[j] + 1 : rows[j + 1], columns[k] + 1 : columns[k + 1]]
         assert np.all(np.isfinite(own)) if np.all(np.isfinite(cell)) else np.all(np.isnan(own))
 
 
-def test_what_cannot_turn_is_hatched_and_what_was_set_is_told() -> None:
+def test_what_cannot_turn_is_hatched_and_what_was_set_is_reported() -> None:
     chart = studies.landscape(broken())
-    told = words(chart)
-    assert "cannot turn" in told and "mass of the counterweight on the crank = 300 g" in told
+    reported = words(chart)
+    assert (
+        "cannot turn" in reported and "mass of the counterweight on the crank = 300 g" in reported
+    )
     assert "cannot turn" not in words(studies.landscape(smooth()))
     level = replace(smooth(), values=np.full_like(smooth().values, 3.0))
-    for one in (chart, studies.landscape(smooth()), studies.landscape(level)):
-        check(one)
-        assert render(one) == render(one)
+    for item in (chart, studies.landscape(smooth()), studies.landscape(level)):
+        check(item)
+        assert render(item) == render(item)

@@ -83,16 +83,18 @@ def test_shapes_with_stations_and_nodes() -> None:
             at = [tool.station(name).position for name in names]
             expected = [(x, np.interp(x, modes.places, shape)) for x in at]
             np.testing.assert_allclose(marks(panel, role), expected)
-        assert [line.at for line in panel.lines] == [one.position for one in tool.stations]
+        assert [line.at for line in panel.lines] == [station.position for station in tool.stations]
 
 
-def test_frequencies_of_the_paper_are_told() -> None:
-    told = words(pictures("paper")["modes"])
+def test_frequencies_of_the_paper_are_reported() -> None:
+    reported = words(pictures("paper")["modes"])
     for number, frequency in enumerate(("1.238", "2.413", "4.418", "6.290", "9.400"), 1):
-        assert f"λ = {frequency}" in told and f"mode {number}" in told
-    assert "54.47 Hz\n3268 1/min" in told
-    assert all(name in told for name in ("engine", "harness", "handle", "cutter", "both planes"))
-    assert "place on the shaft from its left end, mm" in told
+        assert f"λ = {frequency}" in reported and f"mode {number}" in reported
+    assert "54.47 Hz\n3268 1/min" in reported
+    assert all(
+        name in reported for name in ("engine", "harness", "handle", "cutter", "both planes")
+    )
+    assert "place on the shaft from its left end, mm" in reported
     free = words(pictures("loose")["modes"])
     assert "free:\nmoves to and fro" in free and "free:\nturns about its\nleft end" in free
     assert "lateral plane" in words(pictures("loose")["modes-lateral"])
@@ -113,17 +115,17 @@ def test_many_modes_and_many_names() -> None:
 def test_the_moment_along_the_shaft() -> None:
     tool = machine("cutter")
     assert tool.operation is not None
-    one = respond_tool(tool, tool.operation.speed)
+    first = respond_tool(tool, tool.operation.speed)
     moment, shape = pictures("cutter")["moment"].panels
     assert (moment.y.text, shape.y.text) == ("moment, N m", "displacement, mm")
     (total,) = curves(moment, "strong")
-    line = one.line(total.x)
+    line = first.line(total.x)
     squares = np.sum(np.abs(line.moment[..., 0]) ** 2, axis=1) / 2
     np.testing.assert_allclose(total.y, np.sqrt(np.sum(squares, axis=1)), rtol=1e-6)
-    told = words(pictures("cutter")["moment"])
-    assert f"{np.max(total.y):.4g} N m at " in told and "7500 rpm" in told
-    assert "order 1" in told and "lateral plane" in told
-    k = int(np.flatnonzero(one.orders == 1)[0])
+    reported = words(pictures("cutter")["moment"])
+    assert f"{np.max(total.y):.4g} N m at " in reported and "7500 rpm" in reported
+    assert "order 1" in reported and "lateral plane" in reported
+    k = int(np.flatnonzero(first.orders == 1)[0])
     for plane, curve in enumerate(curves(shape, "kind 0")):
         amplitude = np.abs(line.displacement[:, plane, k, 0])
         assert np.all(np.abs(curve.y) <= amplitude * (1 + 1e-6) + 1e-12)
@@ -160,11 +162,11 @@ def test_the_determinant_has_its_zeros_marked() -> None:
     drawn = tool_charts.determinant_charts(chart, modes)["determinant"]
     (panel,) = drawn.panels
     np.testing.assert_array_equal(panel.curves[0].y, chart.value[0])
-    found = [x for x, _ in marks(panel, "zeros")]
-    assert found[:3] == pytest.approx(modes.planes[0].parameter.tolist())
-    assert found[3:] == pytest.approx([6.290], abs=0.01)  # of the chart: no mode is known there
+    actual = [x for x, _ in marks(panel, "zeros")]
+    assert actual[:3] == pytest.approx(modes.planes[0].parameter.tolist())
+    assert actual[3:] == pytest.approx([6.290], abs=0.01)  # of the chart: no mode is known there
     assert "4.418" in words(drawn)
-    titles = [one.title for one in pictures("cutter")["determinant"].panels]
+    titles = [item.title for item in pictures("cutter")["determinant"].panels]
     assert titles == ["vertical plane", "lateral plane"]
     x, y = np.array([1.0, 2.0, 3.0, 4.0]), np.array([1.0, -1.0, -1.0, 3.0])
     assert tool_charts.zeros_of(x, y, np.array([0.0, 1.4, 9.0])) == [1.4]
@@ -198,16 +200,21 @@ def test_frequencies_against_a_number() -> None:
     level = next(line.at for line in panel.lines if line.axis == "y")
     assert scale_of(tool) * level**2 == pytest.approx(tool.operation.speed)
     ground = vary_tool(tool, "engine", "rotational_stiffness", np.array([1.0, 2.0]), 2)
-    told = words(tool_charts.variation_charts(ground)["variation"])
-    assert "rotational stiffness of engine to the ground, N m/rad" in told and "now" not in told
+    reported = words(tool_charts.variation_charts(ground)["variation"])
+    assert (
+        "rotational stiffness of engine to the ground, N m/rad" in reported
+        and "now" not in reported
+    )
 
 
 def test_planes_that_differ_in_a_variation() -> None:
     chart = pictures("cutter")["variation"]
     assert [len(curves(chart.panels[0], f"several {k}")) for k in (1, 2)] == [6, 6]
-    told = words(chart)
-    assert "stiffness of the absorber at front-handle, kN/m" in told
-    assert "lateral plane" in told and "now 61.7 kN/m" in told and "work, 7500 rpm" in told
+    reported = words(chart)
+    assert "stiffness of the absorber at front-handle, kN/m" in reported
+    assert (
+        "lateral plane" in reported and "now 61.7 kN/m" in reported and "work, 7500 rpm" in reported
+    )
     assert all(tool_charts.number_unit(dimension).name for dimension in KEYS.values())
 
 
@@ -215,30 +222,36 @@ def test_planes_that_differ_in_a_variation() -> None:
 
 
 def test_transmission_of_each_station() -> None:
-    found = transmit(machine("paper"), SPEEDS)
+    transmission = transmit(machine("paper"), SPEEDS)
     chart = pictures("paper")["transmission"]
     size, phase = chart.panels
     assert (size.y.scale, size.y.text, phase.y.text) == ("log", "force ratio", "phase, deg")
-    for number, one in enumerate(found.stations.values()):
+    for number, station in enumerate(transmission.stations.values()):
         (curve,) = curves(size, f"kind {number}")
-        np.testing.assert_allclose(curve.y, one.size[0])
+        np.testing.assert_allclose(curve.y, station.size[0])
         (curve,) = curves(phase, f"kind {number}")
         there = np.isfinite(curve.y)
-        np.testing.assert_allclose(curve.y[there], one.phase[0])
-        assert np.sum(~there) == np.sum(np.abs(np.diff(one.phase[0])) > np.pi)
+        np.testing.assert_allclose(curve.y[there], station.phase[0])
+        assert np.sum(~there) == np.sum(np.abs(np.diff(station.phase[0])) > np.pi)
         quiet = marks(size, f"quiet speed {number}")
-        assert [x for x, _ in quiet] == pytest.approx(one.quiet[0].tolist())
+        assert [x for x, _ in quiet] == pytest.approx(station.quiet[0].tolist())
         for x, y in quiet:  # on the curve
-            near = one.size[0][np.argsort(np.abs(SPEEDS - x))[:2]]
+            near = station.size[0][np.argsort(np.abs(SPEEDS - x))[:2]]
             assert min(near) <= y <= max(near)
-    told = words(chart)
-    assert "6134" in told and "quiet speed, rpm" in told and "speed of the engine, rpm" in told
-    assert "work, 7000 rpm" in told and "unit force at engine" in told
+    reported = words(chart)
+    assert (
+        "6134" in reported
+        and "quiet speed, rpm" in reported
+        and "speed of the engine, rpm" in reported
+    )
+    assert "work, 7000 rpm" in reported and "unit force at engine" in reported
     modes = vibrate_tool(machine("paper"), 5).planes[0].frequency
-    inside = [one for one in modes if SPEEDS[0] <= one <= SPEEDS[-1]]
+    inside = [mode for mode in modes if SPEEDS[0] <= mode <= SPEEDS[-1]]
     for panel in chart.panels:
         assert [line.at for line in panel.lines if line.role == "natural"] == pytest.approx(inside)
-    assert "natural frequency" not in words(tool_charts.transmission_charts(found)["transmission"])
+    assert "natural frequency" not in words(
+        tool_charts.transmission_charts(transmission)["transmission"]
+    )
 
 
 def test_acceleration_and_what_is_allowed() -> None:
@@ -272,15 +285,15 @@ def test_exposure_and_levels() -> None:
         curves(chart.panels[0], "broken stretch"), exposure.grips.values(), strict=False
     ):
         np.testing.assert_allclose(stretch.y, np.where(grip.a_hv > limit, grip.a_hv, np.nan))
-    told = words(chart)
-    assert "above the limit value of 5 m/s²" in told
-    assert f"A(8) = {exposure.a8:.4g} m/s² at {exposure.worst}" in told
-    assert "limit: A(8) of 5 m/s²" in told and "action: A(8) of 2.5 m/s²" in told
-    assert all(text in told for text in ("rear-grip", "front-handle", "work, 7500 rpm"))
+    reported = words(chart)
+    assert "above the limit value of 5 m/s²" in reported
+    assert f"A(8) = {exposure.a8:.4g} m/s² at {exposure.worst}" in reported
+    assert "limit: A(8) of 5 m/s²" in reported and "action: A(8) of 2.5 m/s²" in reported
+    assert all(text in reported for text in ("rear-grip", "front-handle", "work, 7500 rpm"))
     idle = expose_tool(replace(machine("paper"), work=(), operation=None), SPEEDS)
     assert tool_charts.levels(idle) == {"action": 2.5, "limit": 5.0}
-    told = words(tool_charts.exposure_charts(idle)["exposure"])
-    assert "8 h a day" in told and "A(8) =" not in told and "work," not in told
+    reported = words(tool_charts.exposure_charts(idle)["exposure"])
+    assert "8 h a day" in reported and "A(8) =" not in reported and "work," not in reported
     for name in ("exposure", "transmission"):
         assert "quieter ones" in words(pictures("crowded")[name])
 
@@ -295,16 +308,16 @@ def designed() -> ToolDesign:
     assert tool.design is not None
     better = changed(replace(tool, design=None), "belt", "position", 0.4)
     speed = np.linspace(*tool.design.speeds, 41)
-    felt = [grips(respond_tool(one, speed)) for one in (tool, better)]
-    a_hv = np.array([np.max([grip.a_hv for grip in one.values()], axis=0) for one in felt])
+    felt = [grips(respond_tool(item, speed)) for item in (tool, better)]
+    a_hv = np.array([np.max([grip.a_hv for grip in item.values()], axis=0) for item in felt])
     sizes = (np.sqrt(np.mean(a_hv**2, axis=1)), np.max(a_hv, axis=1))
-    told = [
+    texts = [
         Note(f"total value a_hv of the worst hand, {which}")
         for which in ("RMS over the band", "largest")
     ]
     figures = tuple(
         Before(str(note), "acceleration", *size.tolist(), note)
-        for note, size in zip(told, sizes, strict=True)
+        for note, size in zip(texts, sizes, strict=True)
     )
     variables = (
         Before("belt position", "length", 0.32, 0.4),
@@ -314,35 +327,35 @@ def designed() -> ToolDesign:
 
 
 def test_each_hand_before_and_after() -> None:
-    found = designed()
-    chart = tool_charts.design(found)
+    design = designed()
+    chart = tool_charts.design(design)
     check(chart)
     hands = [
         curves(chart.panels[0], f"kind {k}")
-        for k in range(len(grips(respond_tool(found.better, 700.0))))
+        for k in range(len(grips(respond_tool(design.better, 700.0))))
     ]
-    for number, tool in enumerate((found.tool, found.better)):
-        felt = grips(respond_tool(tool, found.speed))
+    for number, tool in enumerate((design.tool, design.better)):
+        felt = grips(respond_tool(tool, design.speed))
         for pair, grip in zip(hands, felt.values(), strict=True):
             np.testing.assert_allclose(pair[number].y, grip.a_hv)
             assert pair[number].dashed == (number == 0)
         worst = np.max([pair[number].y for pair in hands], axis=0)
-        np.testing.assert_allclose(worst, found.a_hv[number])
-    told, figure = words(chart), found.figures[0]
-    assert f"RMS over the band: {figure.before:.4g} → {figure.after:.4g} m/s²" in told
-    assert "before" in told and "after" in told and "aₕᵥ (ISO 5349-1), m/s²" in told
+        np.testing.assert_allclose(worst, design.a_hv[number])
+    text, figure = words(chart), design.figures[0]
+    assert f"RMS over the band: {figure.before:.4g} → {figure.after:.4g} m/s²" in text
+    assert "before" in text and "after" in text and "aₕᵥ (ISO 5349-1), m/s²" in text
 
 
 def test_measures_and_many_changes() -> None:
-    found = designed()
-    assert found.tool.design is not None
-    plan = replace(found.tool.design, measure="peak", hands=("rear-grip",))
-    told = words(tool_charts.design(replace(found, tool=replace(found.tool, design=plan))))
-    assert "aₕᵥ of the worst hand, largest: " in told
-    assert "rear-grip" in told and "front-handle:" not in told
+    design = designed()
+    assert design.tool.design is not None
+    plan = replace(design.tool.design, measure="peak", hands=("rear-grip",))
+    reported = words(tool_charts.design(replace(design, tool=replace(design.tool, design=plan))))
+    assert "aₕᵥ of the worst hand, largest: " in reported
+    assert "rear-grip" in reported and "front-handle:" not in reported
     count = 11
     edges = ("", "highest") * count
-    many = tool_side.side_design(replace(found, variables=found.variables * 11, edges=edges))
+    many = tool_side.side_design(replace(design, variables=design.variables * 11, edges=edges))
     check(many)
     assert f"and {count - 7} more" in words(many) and "(highest allowed)" in words(many)
 
@@ -350,7 +363,7 @@ def test_measures_and_many_changes() -> None:
 # -- from the side ---------------------------------------------------------------------------------
 
 
-def test_a_tool_from_the_side_has_what_the_file_tells() -> None:
+def test_a_tool_from_the_side_has_what_the_file_reports() -> None:
     """Tubes to scale, a body for each mass, four fingers for each hand, a belt, an absorber."""
     still, moving = pictures("cutter")["side"].panels
     tube = next(shape for shape in still.signs if shape.role == "rim")
@@ -366,7 +379,7 @@ def test_a_tool_from_the_side_has_what_the_file_tells() -> None:
     assert not moving.flags
 
 
-def test_the_shaft_is_deflected_as_much_as_is_told() -> None:
+def test_the_shaft_is_deflected_as_much_as_is_reported() -> None:
     """At work, of the loudest order, so many times; a mode to the size that is told."""
     tool, chart = machine("paper"), pictures("paper")["side"]
     panel = chart.panels[1]
@@ -393,8 +406,8 @@ def shape_middle(shape: Shape) -> np.ndarray[tuple[int, ...], np.dtype[np.float6
 
 
 def test_what_a_design_moves_is_an_arrow() -> None:
-    found = designed()
-    chart = tool_side.side_design(found)
+    design = designed()
+    chart = tool_side.side_design(design)
     check(chart)
     before, after = chart.panels
     assert [panel.title for panel in chart.panels] == ["before", "after"]

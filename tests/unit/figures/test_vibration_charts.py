@@ -60,7 +60,7 @@ def test_names() -> None:
 
 # What gauges read: `test_curves_are_what_gauges_read`.
 @pytest.mark.exhaustive
-def test_gauges_read_what_was_found() -> None:
+def test_gauges_read_what_balancing_reports() -> None:
     response = respond(plane())
     for name, gauge in response.gauges.items():
         panels = pictures("plane")[f"gauge-{name}"].panels
@@ -167,7 +167,7 @@ def test_curves_are_what_gauges_read(picture: str, key: str, label: str) -> None
     np.testing.assert_allclose(panel.curves[0].y, getattr(swept().gauges["tip"], key))
 
 
-def test_the_peak_is_at_the_resonance_and_told() -> None:
+def test_the_peak_is_at_the_resonance_and_reported() -> None:
     sweep = swept()
     curve = curve_of(pictures("rig")["sweep response"])
     loudest = max(sweep.resonances, key=lambda r: r.share)
@@ -185,8 +185,8 @@ def test_names_in_modes_stand_at_their_signs(name: str) -> None:
     for chart in pictures_of(eq.vibration.modes(machine)).values():
         texts = [mark.text for panel in chart.panels for mark in panel.marks]
         assert sorted(texts) == wanted
-        found = [text for text in lay_out(chart).words if text.text in wanted]
-        assert sorted(text.text for text in found) == wanted
+        actual = [text for text in lay_out(chart).words if text.text in wanted]
+        assert sorted(text.text for text in actual) == wanted
         ends = {(mark.x, mark.y, mark.off) for panel in chart.panels for mark in panel.marks}
         assert len({(x, y) for x, y, _ in ends}) < len(ends)
 
@@ -212,13 +212,13 @@ def test_resonances_are_marked_and_named() -> None:
 
 def test_speed_of_work_is_marked_with_what_is_read_there() -> None:
     machine = rig()
-    found = respond(machine).gauges["tip"].displacement.peak_to_peak
+    peak_to_peak = respond(machine).gauges["tip"].displacement.peak_to_peak
     chart = pictures("rig")["sweep response"]
     line = next(line for line in chart.panels[0].lines if line.role == "work")
     assert line.at == pytest.approx(machine.drive.speed)
     assert line.label == f"work, {machine.drive.speed * RPM:.4g} rpm"
     mark = next(mark for mark in chart.panels[0].marks if mark.x == line.at)
-    assert mark.y == pytest.approx(float(found))
+    assert mark.y == pytest.approx(float(peak_to_peak))
     assert f"{1e3 * mark.y:.4g}" in words(chart)
 
 
@@ -263,7 +263,7 @@ def test_quieter_curves_are_thin_and_share_a_name() -> None:
     assert sum(curve.role == "quieter" for curve in chart.panels[0].curves) == 5
     assert words(chart).count("5 quieter ones") == 1
     names = ordered({str(k): np.array([float(k)]) for k in range(8)})
-    assert [one.name for one in names] == ["2", "3", "4", "5", "6", "7", "0", "1"]
+    assert [name.name for name in names] == ["2", "3", "4", "5", "6", "7", "0", "1"]
 
 
 def test_a_resonance_without_damping_does_not_squeeze_the_rest() -> None:
@@ -310,4 +310,4 @@ def test_the_map_shows_where_orders_meet_modes() -> None:
 @pytest.mark.exhaustive
 def test_many_gauges_stand_in_their_order() -> None:
     labels = [c.label for c in pictures("space")["sweep response"].panels[0].curves]
-    assert [one for one in labels if one] == ["middle", "left", "right"]
+    assert [label for label in labels if label] == ["middle", "left", "right"]

@@ -73,8 +73,10 @@ def odd_names() -> Tool:
         "cutter": "a/b",
     }
     tool = paper()
-    stations = tuple(replace(one, name=names[one.name]) for one in tool.stations)
-    shakes = tuple(replace(one, station=names[one.station]) for one in tool.excitations)
+    stations = tuple(replace(station, name=names[station.name]) for station in tool.stations)
+    shakes = tuple(
+        replace(excitation, station=names[excitation.station]) for excitation in tool.excitations
+    )
     title = r"刈払機 예초기 costs $5 and \alpha_{1}^2 <b>'\"</b> " + "long " * 20
     return replace(tool, title=title, stations=stations, excitations=shakes)
 
@@ -83,10 +85,10 @@ def loose() -> Tool:
     """Nothing holds it, and only up and down is it shaken; with an absorber."""
     tool = paper()
     stations = [
-        replace(one, hand=None, harness=None, absorber=Absorber(0.1, (1e4, 2e4)))
-        if one.name == "handle"
-        else replace(one, harness=None)
-        for one in tool.stations
+        replace(station, hand=None, harness=None, absorber=Absorber(0.1, (1e4, 2e4)))
+        if station.name == "handle"
+        else replace(station, harness=None)
+        for station in tool.stations
     ]
     force = Excitation("force", "engine", force=10.0)
     return replace(tool, stations=tuple(stations), excitations=(force,), operation=None, work=())

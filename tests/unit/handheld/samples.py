@@ -66,8 +66,8 @@ def random_tool(seed: int, theory: Theory = "euler-bernoulli") -> Tool:
     rng = np.random.default_rng([seed, 22867])
 
     def pair(low: float, high: float) -> tuple[float, float]:
-        one, other = rng.uniform(low, high, 2)
-        return float(one), float(other)
+        first, other = rng.uniform(low, high, 2)
+        return float(first), float(other)
 
     def section() -> Section:
         stiffness, mass = rng.uniform(400, 2500), rng.uniform(0.4, 2.5)
@@ -133,14 +133,14 @@ def still(tool: Tool) -> Tool:
     none = (0.0, 0.0)
     stations = tuple(
         replace(
-            one,
+            station,
             damping=none,
             rotational_damping=none,
-            absorber=one.absorber and replace(one.absorber, damping=none),
-            hand=one.hand and replace(one.hand, damping=none),
-            harness=one.harness and replace(one.harness, damping=none),
+            absorber=station.absorber and replace(station.absorber, damping=none),
+            hand=station.hand and replace(station.hand, damping=none),
+            harness=station.harness and replace(station.harness, damping=none),
         )
-        for one in tool.stations
+        for station in tool.stations
     )
     return replace(tool, shaft=replace(tool.shaft, loss_factor=0.0), stations=stations)
 
@@ -186,35 +186,35 @@ def _of_tube(tube: Tube) -> tuple[float, float, float, float]:
 
 def attached_of(tool: Tool, plane: int) -> list[Attached]:
     """Of each station, in the order of the tool, what is on it in one plane."""
-    found = []
-    for one in tool.stations:
-        mass, stiffness, damping = one.mass, one.stiffness[plane], one.damping[plane]
-        if one.hand is not None:
-            count = one.hand.hands
-            mass += count * one.hand.mass
-            stiffness += count * one.hand.stiffness[plane]
-            damping += count * one.hand.damping[plane]
-        if one.harness is not None:
-            stiffness += one.harness.stiffness[plane]
-            damping += one.harness.damping[plane]
-        absorber = one.absorber and (
-            one.absorber.mass,
-            one.absorber.stiffness[plane],
-            one.absorber.damping[plane],
+    actual = []
+    for station in tool.stations:
+        mass, stiffness, damping = station.mass, station.stiffness[plane], station.damping[plane]
+        if station.hand is not None:
+            count = station.hand.hands
+            mass += count * station.hand.mass
+            stiffness += count * station.hand.stiffness[plane]
+            damping += count * station.hand.damping[plane]
+        if station.harness is not None:
+            stiffness += station.harness.stiffness[plane]
+            damping += station.harness.damping[plane]
+        absorber = station.absorber and (
+            station.absorber.mass,
+            station.absorber.stiffness[plane],
+            station.absorber.damping[plane],
         )
-        found.append(
+        actual.append(
             Attached(
-                one.position,
+                station.position,
                 mass,
-                one.inertia[plane],
+                station.inertia[plane],
                 stiffness,
                 damping,
-                one.rotational_stiffness[plane],
-                one.rotational_damping[plane],
+                station.rotational_stiffness[plane],
+                station.rotational_damping[plane],
                 absorber,
             )
         )
-    return found
+    return actual
 
 
 def reference(tool: Tool, plane: int, elements: int = 96) -> Reference:

@@ -129,7 +129,7 @@ def test_solution(subject: Subject, place: complex) -> None:
     loads = loads_of(1)
     loads[2] = 0
     pairs = [None if k == 2 else NodePair(*row) for k, row in enumerate(loads)]
-    found = solve(carry(subject.chain(np.array(s))), pairs)
+    solution = solve(carry(subject.chain(np.array(s))), pairs)
     with mpmath.workdps(40):
         q = mpmath.lu_solve(subject.dense(s), mpmath.matrix(loads.ravel().tolist()))
         forces = []
@@ -137,8 +137,8 @@ def test_solution(subject: Subject, place: complex) -> None:
             left, right = q[2 * k : 2 * k + 2, :], q[2 * k + 2 : 2 * k + 4, :]
             forces.append(complex_of(t[:2, 2:] ** -1 * (right - t[:2, :2] * left)).ravel())
         wanted = complex_of(q).reshape(NODES, 2)
-    motion = np.array([[complex(pair.across), complex(pair.turning)] for pair in found.motion])
-    force = np.array([[complex(pair.across), complex(pair.turning)] for pair in found.force])
+    motion = np.array([[complex(pair.across), complex(pair.turning)] for pair in solution.motion])
+    force = np.array([[complex(pair.across), complex(pair.turning)] for pair in solution.force])
     np.testing.assert_allclose(motion, wanted, rtol=0, atol=1e-12 * np.max(np.abs(wanted)))
     for column in range(2):
         exact = np.array(forces)[:, column]
@@ -149,11 +149,11 @@ def test_solution(subject: Subject, place: complex) -> None:
 @subjects
 def test_loads_balance_at_the_right_end(subject: Subject) -> None:
     """Nothing is right of it, so no force is there."""
-    found = solve(
+    solution = solve(
         carry(subject.chain(np.array(0.7j * subject.frequency))),
         [NodePair(*row) for row in loads_of(2)],
     )
-    assert found.force[-1] == NodePair(0, 0)
+    assert solution.force[-1] == NodePair(0, 0)
 
 
 @subjects
@@ -171,10 +171,10 @@ def test_stiffness_is_that_of_all_to_the_left(subject: Subject, place: complex) 
                 rest = rest - k[n:, :n] * k[:n, :n] ** -1 * k[:n, n:]
             wanted = complex_of(rest)
         z = carried.stiffness[last - 1]
-        found = np.array([[z.aa, z.at], [z.at, z.tt]])
+        values = np.array([[z.aa, z.at], [z.at, z.tt]])
         assert np.abs(wanted[0, 1] - wanted[1, 0]) <= 1e-20 * np.max(np.abs(wanted))
         units = np.sqrt(np.abs(np.diag(wanted)))  # N/m and N m/rad side by side
-        assert np.max(np.abs(found - wanted) / np.outer(units, units)) < 1e-11
+        assert np.max(np.abs(values - wanted) / np.outer(units, units)) < 1e-11
 
 
 @pytest.mark.exhaustive(but=["timoshenko-1"])
@@ -187,21 +187,23 @@ def test_count_is_that_of_negative_eigenvalues(subject: Subject) -> None:
     subject.polynomials[:, :, 1] = 0
     frequency = np.linspace(0.02, 1, 12) * subject.frequency
     carried = carry(_real(subject.chain(1j * frequency)))
-    found = count(carried)
+    result = count(carried)
     wanted = []
     for w in frequency:
         with mpmath.workdps(40):
             k = subject.dense(1j * w).apply(mpmath.re)
             wanted.append(sum(1 for value in mpmath.eigsy(k, eigvals_only=True) if value < 0))
-    assert found.tolist() == wanted
+    assert result.tolist() == wanted
     assert len(set(wanted)) > 2
-    assert np.all(np.diff(found) >= 0)
+    assert np.all(np.diff(result) >= 0)
 
 
 def _real(chain: Chain) -> Chain:
     """As `count` wants it."""
-    segments = [type(one)(*(np.real(part) for part in one)) for one in chain.segments]
-    return Chain(segments, [NodePair(*(np.real(part) for part in one)) for one in chain.stations])
+    segments = [type(segment)(*(np.real(part) for part in segment)) for segment in chain.segments]
+    return Chain(
+        segments, [NodePair(*(np.real(part) for part in station)) for station in chain.stations]
+    )
 
 
 @pytest.mark.exhaustive(
@@ -230,12 +232,12 @@ def test_characteristic_function(subject: Subject, place: complex) -> None:
         value = determinant(mpmath.mpmathify(s))
         slope = complex(mpmath.diff(determinant, s) / value)
         value = mpmath.log(value)
-    logarithm, found = log_determinant(
+    logarithm, actual = log_determinant(
         carry(subject.chain(Dual(np.array(s, complex), np.ones(1, complex))))
     )
     away = complex(logarithm) - complex(value)
     assert abs(np.exp(away) - 1) < 1e-11  # whole turns of its phase do not count
-    assert complex(found) == pytest.approx(slope, rel=1e-11)
+    assert complex(actual) == pytest.approx(slope, rel=1e-11)
 
 
 def test_a_segment_of_no_length_changes_nothing() -> None:
@@ -246,10 +248,10 @@ def test_a_segment_of_no_length_changes_nothing() -> None:
     free = NodePair(np.array(0.0), np.array(0.0))
     longer = Chain([chain.segments[0], nothing, *chain.segments[1:]], _with(chain.stations, free))
     loads: list[Any] = [NodePair(*row) for row in loads_of(4)]
-    wanted, found = solve(carry(chain), loads), solve(carry(longer), _with(loads, None))
+    wanted, actual = solve(carry(chain), loads), solve(carry(longer), _with(loads, None))
     for k in range(NODES):
-        one, other = found.motion[k + (k > 1)], wanted.motion[k]
-        np.testing.assert_allclose(one, other, rtol=1e-12)
+        first, other = actual.motion[k + (k > 1)], wanted.motion[k]
+        np.testing.assert_allclose(first, other, rtol=1e-12)
     assert _count(longer) == _count(chain)
 
 
@@ -268,6 +270,6 @@ def test_arrays_are_each_number_by_itself() -> None:
     loads = [NodePair(*row) for row in loads_of(5)]
     whole = solve(carry(subject.chain(s)), loads)
     for at in np.ndindex(2, 3):
-        one = solve(carry(subject.chain(s[at])), loads)
-        for pair, wanted in zip(whole.motion, one.motion, strict=True):
+        first = solve(carry(subject.chain(s[at])), loads)
+        for pair, wanted in zip(whole.motion, first.motion, strict=True):
             np.testing.assert_allclose([pair.across[at], pair.turning[at]], wanted, rtol=1e-12)

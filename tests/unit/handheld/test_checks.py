@@ -72,11 +72,11 @@ def test_a_tool_with_everything_is_accepted() -> None:
 
 
 def test_the_same_shaft_may_be_used_again() -> None:
-    one = tool(shaft={"profile": TUBE})
-    assert one.shaft.mass > 0  # the sections are known now
-    again = one.with_station("belt", position=0.4)
-    assert again.shaft is one.shaft
-    assert again == one.with_station("belt", position=0.4)
+    first = tool(shaft={"profile": TUBE})
+    assert first.shaft.mass > 0  # the sections are known now
+    again = first.with_station("belt", position=0.4)
+    assert again.shaft is first.shaft
+    assert again == first.with_station("belt", position=0.4)
 
 
 SHAFTS: dict[str, tuple[dict[str, Any], str]] = {
@@ -147,7 +147,7 @@ STATIONS: dict[str, tuple[Station, str]] = {
 
 @pytest.mark.parametrize(("station", "said"), STATIONS.values(), ids=STATIONS)
 def test_stations(station: Station, said: str) -> None:
-    changed = tuple(replace(one) for one in (BELT, HANDLE))
+    changed = tuple(replace(item) for item in (BELT, HANDLE))
     assert complaint(stations=(*changed, station)).startswith(f"shaft.stations[3].{said}")
 
 

@@ -49,9 +49,9 @@ def galerkin(tool: Tool, plane: int = 0) -> Array:
     inertia and loss.
     """
     attached = attached_of(tool, plane)
-    section, own = tool.shaft.profile, [one for one in attached if one.absorber is not None]
+    section, own = tool.shaft.profile, [item for item in attached if item.absorber is not None]
     assert isinstance(section, Section)
-    places = {0.0, tool.shaft.length, *(one.position for one in attached)}
+    places = {0.0, tool.shaft.length, *(item.position for item in attached)}
     stops = sorted(places | set(np.linspace(0, tool.shaft.length, PIECES + 1)))
     count, every = DEGREE + 1, np.eye(DEGREE + 1)
     inner = count * (len(stops) - 1)
@@ -71,24 +71,24 @@ def galerkin(tool: Tool, plane: int = 0) -> Array:
         z = 2 * (place - stops[k]) / length - 1
         rows = np.zeros((2, inner + len(own)))
         for row, order in zip(rows, range(2), strict=True):
-            values = [legendre.legval(z, legendre.legder(one, order)) for one in every]
+            values = [legendre.legval(z, legendre.legder(item, order)) for item in every]
             row[count * k : count * (k + 1)] = np.array(values) * (2 / length) ** order
         return rows[0], rows[1]
 
-    for one in attached:
-        w, slope = at(one.position, min(stops.index(one.position), len(stops) - 2))
+    for entry in attached:
+        w, slope = at(entry.position, min(stops.index(entry.position), len(stops) - 2))
         for matrix, across, turning in (
-            (mass, one.mass, one.inertia),
-            (damping, one.damping, one.rotational_damping),
-            (stiffness, one.stiffness, one.rotational_stiffness),
+            (mass, entry.mass, entry.inertia),
+            (damping, entry.damping, entry.rotational_damping),
+            (stiffness, entry.stiffness, entry.rotational_stiffness),
         ):
             matrix[:] += across * np.outer(w, w) + turning * np.outer(slope, slope)
-        if one.absorber is not None:
-            last = inner + own.index(one)
-            mass[last, last] += one.absorber[0]
+        if entry.absorber is not None:
+            last = inner + own.index(entry)
+            mass[last, last] += entry.absorber[0]
             w[last] = -1.0
-            stiffness += one.absorber[1] * np.outer(w, w)
-            damping += one.absorber[2] * np.outer(w, w)
+            stiffness += entry.absorber[1] * np.outer(w, w)
+            damping += entry.absorber[2] * np.outer(w, w)
     joints = [
         before - after
         for k in range(1, len(stops) - 1)
@@ -96,7 +96,7 @@ def galerkin(tool: Tool, plane: int = 0) -> Array:
     ]
     units = np.array([np.max(np.abs(row)) for row in joints])[:, None]
     basis = linalg.null_space(np.array(joints) / units) if joints else np.eye(inner + len(own))
-    return _eigenvalues(*(basis.T @ one @ basis for one in (mass, damping, stiffness)))
+    return _eigenvalues(*(basis.T @ item @ basis for item in (mass, damping, stiffness)))
 
 
 def _eigenvalues(mass: Array, damping: Array, stiffness: Array) -> Array:
@@ -113,20 +113,20 @@ def _eigenvalues(mass: Array, damping: Array, stiffness: Array) -> Array:
     return np.asarray(linalg.eigvals(companion))
 
 
-def found_by(tool: Tool, number: int = 8, plane: int = 0) -> Array:
+def eigenvalues_of(tool: Tool, number: int = 8, plane: int = 0) -> Array:
     """All eigenvalues that are told of a plane, by size."""
-    told = vibrate_tool(tool, number)
-    return np.array([mode.eigenvalue for mode in told.planes[plane].damped])
+    reported = vibrate_tool(tool, number)
+    return np.array([mode.eigenvalue for mode in reported.planes[plane].damped])
 
 
-def same(found: Array, wanted: Array, tolerance: float) -> None:
+def same(result: Array, wanted: Array, tolerance: float) -> None:
     """Each of a few eigenvalues is one of the wanted ones, and none of these is left out."""
-    radius = float(np.max(np.abs(found))) * (1 + tolerance)
+    radius = float(np.max(np.abs(result))) * (1 + tolerance)
     rest = list(wanted[(wanted.imag > -1e-9 * np.abs(wanted)) & (np.abs(wanted) <= radius)])
-    assert len(rest) == len(found)
-    for one in found:
-        at = int(np.argmin(np.abs(np.array(rest) - one)))
-        assert abs(rest.pop(at) - one) <= tolerance * abs(one)
+    assert len(rest) == len(result)
+    for item in result:
+        at = int(np.argmin(np.abs(np.array(rest) - item)))
+        assert abs(rest.pop(at) - item) <= tolerance * abs(item)
 
 
 # -- closed forms ----------------------------------------------------------------------------------
@@ -139,8 +139,8 @@ def test_hysteresis_alone(loss: float, theory: str) -> None:
     """With EI (1 + i eta), and kGA alike, and no springs: s = i omega sqrt(1 + i eta)."""
     tool = bare(Station("a", 0.3, mass=1.0), loss_factor=loss, theory=theory)
     omega = natural_frequencies(tool, 6)[0, 2:]
-    found = found_by(tool, 6)
-    np.testing.assert_allclose(found, 1j * omega * np.sqrt(1 + 1j * loss), rtol=5e-9)
+    result = eigenvalues_of(tool, 6)
+    np.testing.assert_allclose(result, 1j * omega * np.sqrt(1 + 1j * loss), rtol=5e-9)
 
 
 @pytest.mark.parametrize("ratio", [1e-3, 0.3, 0.99, 1.01, 3.0])
@@ -152,19 +152,19 @@ def test_rigid_shaft_on_a_spring_with_a_damper(ratio: float) -> None:
     mass, stiffness = 3.0, 1200.0
     damping = 2 * ratio * sqrt(mass * stiffness)
     tool = bare(Station("a", 0.75, stiffness=both(stiffness), damping=both(damping)), section=RIGID)
-    found = found_by(tool, 2)
+    result = eigenvalues_of(tool, 2)
     wanted = np.roots([mass, damping, stiffness])
     wanted = wanted[wanted.imag >= 0]
-    assert len(found) == len(wanted)
+    assert len(result) == len(wanted)
     # A hundredth from critical damping what the shaft gives way counts ten times.
-    np.testing.assert_allclose(found, sorted(wanted, key=abs), rtol=1e-5)
+    np.testing.assert_allclose(result, sorted(wanted, key=abs), rtol=1e-5)
 
 
 def test_a_damper_without_a_spring_slows_a_rigid_shaft() -> None:
     """m s + c = 0, and what stands still is no eigenvalue that is told."""
     tool = bare(Station("a", 0.75, damping=both(70.0)), section=RIGID)
-    found = found_by(tool, 2)
-    assert found == pytest.approx([-70.0 / 3.0], rel=1e-6)
+    result = eigenvalues_of(tool, 2)
+    assert result == pytest.approx([-70.0 / 3.0], rel=1e-6)
 
 
 # -- a Galerkin model ------------------------------------------------------------------------------
@@ -208,17 +208,17 @@ DAMPED = {
 
 
 @cache
-def told_of(name: str) -> ToolModes:
+def modes_of(name: str) -> ToolModes:
     return vibrate_tool(bare(*DAMPED[name], section=PLAIN), 8)
 
 
 @pytest.mark.exhaustive(but=["light", "equal absorbers", "clamped by dampers"])
 @pytest.mark.parametrize("name", DAMPED)
 def test_galerkin(name: str) -> None:
-    found = np.array([mode.eigenvalue for mode in told_of(name).planes[0].damped])
-    wanted = galerkin(told_of(name).tool)
-    least = 1e-3 * scale_of(told_of(name).tool)  # rigid motions that stand still
-    same(found, wanted[np.abs(wanted) > least], GALERKIN)
+    values = np.array([mode.eigenvalue for mode in modes_of(name).planes[0].damped])
+    wanted = galerkin(modes_of(name).tool)
+    least = 1e-3 * scale_of(modes_of(name).tool)  # rigid motions that stand still
+    same(values, wanted[np.abs(wanted) > least], GALERKIN)
 
 
 # Which says something of the tests above alone.
@@ -226,7 +226,7 @@ def test_galerkin(name: str) -> None:
 def test_some_of_these_do_not_swing() -> None:
     """Else the test above would not ask for what it is meant for."""
     real = {
-        name: sum(mode.eigenvalue.imag == 0 for mode in told_of(name).planes[0].damped)
+        name: sum(mode.eigenvalue.imag == 0 for mode in modes_of(name).planes[0].damped)
         for name in DAMPED
     }
     assert real["light"] == 0
@@ -244,7 +244,7 @@ def test_a_pair_that_becomes_real(damping: float) -> None:
         section=PLAIN,
     )
     wanted = galerkin(tool)
-    same(found_by(tool, 6), wanted, GALERKIN)
+    same(eigenvalues_of(tool, 6), wanted, GALERKIN)
 
 
 # -- from finite elements to zeros of the characteristic function ----------------------------------
@@ -282,7 +282,7 @@ def test_any_dampers(seed: int) -> None:
     stations = []
     for k, position in enumerate(np.sort(rng.choice(np.linspace(0.0, 1.5, 7), 3, replace=False))):
         sizes = 10 ** rng.uniform([1, 1, 0, 0], [4, 3.5, 2.5, 2.5])
-        stiffness, damping, turning, slowing = (both(float(one)) for one in sizes)
+        stiffness, damping, turning, slowing = (both(float(size)) for size in sizes)
         absorber = Absorber(0.3, both(float(10 ** rng.uniform(3, 4.5))), damping) if k else None
         stations.append(
             Station(
@@ -297,9 +297,9 @@ def test_any_dampers(seed: int) -> None:
             )
         )
     tool = bare(*stations, section=PLAIN)
-    found = found_by(tool, 7)
-    assert len(found)
-    same(found, galerkin(tool), 1e-4)
+    result = eigenvalues_of(tool, 7)
+    assert len(result)
+    same(result, galerkin(tool), 1e-4)
 
 
 def test_where_newton_does_not_arrive_elements_answer(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,14 +37,14 @@ PLACES = [(0.7, -1.3), (12.5, 0.04), (0.3 + 0.8j, -1.1 + 0.2j), (-2.0 + 1e-3j, 5
 def test_operation(operation: Callable[[Any, Any], Any], place: tuple[complex, complex]) -> None:
     """1e-14: a dozen roundings, none of which cancels more than a digit at these places."""
     x, y = (Dual(np.array(part), np.array(row)) for part, row in zip(place, np.eye(2), strict=True))
-    found = operation(x, y)
+    result = operation(x, y)
     with mpmath.workdps(40):
         exact = [mpmath.mpmathify(part) for part in place]
         wanted = [operation(*exact)]
         wanted += [mpmath.diff(operation, tuple(exact), order) for order in ((1, 0), (0, 1))]
         value, *slopes = [complex(number) for number in wanted]
-    assert complex(found.value) == pytest.approx(value, rel=1e-14)
-    np.testing.assert_allclose(np.broadcast_to(found.slopes, 2), slopes, rtol=1e-14, atol=1e-14)
+    assert complex(result.value) == pytest.approx(value, rel=1e-14)
+    np.testing.assert_allclose(np.broadcast_to(result.slopes, 2), slopes, rtol=1e-14, atol=1e-14)
 
 
 @pytest.mark.parametrize("operation", OPERATIONS.values(), ids=OPERATIONS)
@@ -53,12 +53,12 @@ def test_arrays_of_numbers(operation: Callable[[Any, Any], Any]) -> None:
     rng = np.random.default_rng(3)
     x, y = rng.uniform(0.5, 2, (2, 3, 4)) + 1j * rng.uniform(0.5, 2, (2, 3, 4))
     by_x, by_y = rng.normal(size=(2, 5, 3, 4))
-    found = operation(Dual(x, by_x), Dual(y, by_y))
+    result = operation(Dual(x, by_x), Dual(y, by_y))
     for at in np.ndindex(3, 4):
         here = (slice(None), *at)
-        one = operation(Dual(x[at], by_x[here]), Dual(y[at], by_y[here]))
-        assert found.value[at] == pytest.approx(one.value, rel=1e-15)
-        np.testing.assert_allclose(found.slopes[here], one.slopes, rtol=1e-14)
+        first = operation(Dual(x[at], by_x[here]), Dual(y[at], by_y[here]))
+        assert result.value[at] == pytest.approx(first.value, rel=1e-15)
+        np.testing.assert_allclose(result.slopes[here], first.slopes, rtol=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -70,11 +70,11 @@ def test_an_array_on_the_left(operation: Callable[[Any, Any], Any]) -> None:
     """NumPy must not take the number for an object of which it makes an array."""
     row = np.array([1.0, -2.0, 3.0 + 1j])
     number = Dual(np.array(0.7), np.array([1.0, -4.0])[:, None])
-    found = operation(row, number)
-    assert isinstance(found, Dual)
+    result = operation(row, number)
+    assert isinstance(result, Dual)
     whole = operation(Dual(row, np.zeros((2, 3))), number)
-    np.testing.assert_allclose(found.value, operation(row, 0.7))
-    np.testing.assert_allclose(np.broadcast_to(found.slopes, (2, 3)), whole.slopes, rtol=1e-15)
+    np.testing.assert_allclose(result.value, operation(row, 0.7))
+    np.testing.assert_allclose(np.broadcast_to(result.slopes, (2, 3)), whole.slopes, rtol=1e-15)
 
 
 def test_conjugate() -> None:

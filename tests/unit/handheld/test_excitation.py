@@ -31,10 +31,10 @@ def of(**values: Any) -> tuple[HarmonicForce, ...]:
     return shakes(tool(Excitation("e", "a", **values)))
 
 
-def in_time(found: tuple[HarmonicForce, ...], speed: float, time: Array) -> Array:
+def in_time(result: tuple[HarmonicForce, ...], speed: float, time: Array) -> Array:
     """The force (2, T), N, vertical and lateral."""
     total = np.zeros((2, time.size))
-    for shake in found:
+    for shake in result:
         amplitude = shake.at(np.array([speed]))
         total += np.real(amplitude * np.exp(1j * shake.order * speed * time))
     return total
@@ -51,10 +51,10 @@ def test_a_force_along_one_axis(ratio: float) -> None:
     for plane, direction in enumerate(("vertical", "lateral")):
         (shake,) = of(force=7.0, direction=direction, phase=0.4, ratio=ratio)
         for speed in (300.0, 700.0):
-            found = in_time((shake,), speed, TIME)
+            signal = in_time((shake,), speed, TIME)
             wanted = 7 * np.cos(ratio * speed * TIME + 0.4)
-            np.testing.assert_allclose(found[plane], wanted, atol=1e-12)
-            assert np.all(found[1 - plane] == 0)
+            np.testing.assert_allclose(signal[plane], wanted, atol=1e-12)
+            assert np.all(signal[1 - plane] == 0)
 
 
 @pytest.mark.parametrize("ratio", [1.0, -1.0, 0.3, -1.7])
@@ -76,8 +76,8 @@ def test_a_force_that_turns_has_one_size_and_one_rate(kind: str, ratio: float) -
 @pytest.mark.parametrize("kind", ["force", "unbalance"])
 def test_a_negative_ratio_turns_the_other_way(kind: str) -> None:
     values = {"direction": "rotating"} if kind == "force" else {}
-    (one,), (other,) = (of(**{kind: 0.003}, **values, ratio=ratio) for ratio in (0.8, -0.8))
-    forth, back = (in_time((shake,), 300.0, TIME) for shake in (one, other))
+    (first,), (other,) = (of(**{kind: 0.003}, **values, ratio=ratio) for ratio in (0.8, -0.8))
+    forth, back = (in_time((shake,), 300.0, TIME) for shake in (first, other))
     np.testing.assert_allclose(forth[0], -back[0], atol=1e-12 * np.max(forth))
     np.testing.assert_allclose(forth[1], back[1], atol=1e-12 * np.max(forth))
 
@@ -104,15 +104,15 @@ def test_series_of_a_slider_crank() -> None:
     ratio = r / 0.09
     a2 = ratio + ratio**3 / 4 + 15 * ratio**5 / 128
     a4 = ratio**3 / 4 + 3 * ratio**5 / 16
-    found = {shake.order: shake.force for shake in of(linkage=slider_crank())}
+    actual = {shake.order: shake.force for shake in of(linkage=slider_crank())}
     left = 0.18 * ratio**7 * moving
-    np.testing.assert_allclose(found[1.0][1], turning, rtol=1e-12)
-    np.testing.assert_allclose(found[1.0][0], -1j * (turning + moving), rtol=1e-12)
-    assert found[2.0][0] == pytest.approx(-moving * a2, abs=left)
-    assert found[4.0][0] == pytest.approx(-moving * a4, abs=left)
-    assert found[6.0][0] == pytest.approx(-moving * 9 * ratio**5 / 128, abs=left)
-    assert np.all(np.abs([found[order][1] for order in (2.0, 4.0, 6.0)]) < 1e-15)
-    assert not set(found) & {3.0, 5.0, 7.0}
+    np.testing.assert_allclose(actual[1.0][1], turning, rtol=1e-12)
+    np.testing.assert_allclose(actual[1.0][0], -1j * (turning + moving), rtol=1e-12)
+    assert actual[2.0][0] == pytest.approx(-moving * a2, abs=left)
+    assert actual[4.0][0] == pytest.approx(-moving * a4, abs=left)
+    assert actual[6.0][0] == pytest.approx(-moving * 9 * ratio**5 / 128, abs=left)
+    assert np.all(np.abs([actual[order][1] for order in (2.0, 4.0, 6.0)]) < 1e-15)
+    assert not set(actual) & {3.0, 5.0, 7.0}
     assert {shake.power for shake in of(linkage=slider_crank())} == {2}
 
 
@@ -132,14 +132,14 @@ def test_orders_are_the_shaking_force(machine: eq.Machine) -> None:
 
     Orders below 1e-6 of the largest are left out, some dozens of them.
     """
-    found = of(linkage=machine)
+    result = of(linkage=machine)
     for speed in (40.0, 628.0):
         forces = eq.analyze(machine, 97, speed=speed, acceleration=0.0).forces
         assert forces is not None
         angle = np.asarray(forces.motion.crank_angle)
         wanted = np.array([forces.shaking_force.y, forces.shaking_force.x])
         back = machine.drive.speed < 0
-        total = in_time(found, speed, (-angle if back else angle) / speed)
+        total = in_time(result, speed, (-angle if back else angle) / speed)
         size = np.max(np.abs(wanted))
         away = total - wanted
         np.testing.assert_allclose(away - np.mean(away, axis=1)[:, None], 0, atol=3e-5 * size)
@@ -152,12 +152,12 @@ def test_direction_of_turning(ratio: float, sense: int) -> None:
     """With a positive ratio it turns as its own drive does; the crank begins at its phase."""
     machine = slider_crank(speed=sense * 100.0)
     speed, phase = 300.0, 0.8
-    found = in_time(of(linkage=machine, ratio=ratio, phase=phase), speed, TIME)
+    signal = in_time(of(linkage=machine, ratio=ratio, phase=phase), speed, TIME)
     angles = phase + sense * ratio * speed * TIME
     forces = eq.analyze(machine, angles % (2 * pi), speed=abs(ratio) * speed, acceleration=0).forces
     assert forces is not None
     wanted = np.array([forces.shaking_force.y, forces.shaking_force.x])
-    np.testing.assert_allclose(found, wanted, atol=1e-5 * np.max(np.abs(wanted)))
+    np.testing.assert_allclose(signal, wanted, atol=1e-5 * np.max(np.abs(wanted)))
 
 
 def eccentric(sense: int = 1) -> eq.Machine:
@@ -185,8 +185,8 @@ def test_phase_is_the_angle_of_the_shaft_of_either(ratio: float) -> None:
     """A shaft that begins 0.6 rad further on does so whether it is drawn or only told of."""
     changes = []
     for cause in ({"unbalance": 0.0045}, {"linkage": eccentric()}):
-        (one,), (other,) = (of(**cause, ratio=ratio, phase=phase) for phase in (0.0, 0.6))
-        changes.append(other.force / one.force)
+        (first,), (other,) = (of(**cause, ratio=ratio, phase=phase) for phase in (0.0, 0.6))
+        changes.append(other.force / first.force)
     np.testing.assert_allclose(changes[0], changes[1], rtol=1e-9)
 
 
@@ -210,11 +210,11 @@ def test_several_excitations() -> None:
         Excitation("one", "a", force=1.0),
         Excitation("other", "b", linkage=slider_crank(), ratio=2.0),
     )
-    found = shakes(tool(*causes))
-    assert [shake.station for shake in found if shake.name == "one"] == ["a"]
-    assert {shake.station for shake in found if shake.name == "other"} == {"b"}
-    assert {shake.order for shake in found} >= {1.0, 2.0, 4.0, 8.0}
-    both_of = [shake for shake in found if shake.name == "other"]
+    result = shakes(tool(*causes))
+    assert [shake.station for shake in result if shake.name == "one"] == ["a"]
+    assert {shake.station for shake in result if shake.name == "other"} == {"b"}
+    assert {shake.order for shake in result} >= {1.0, 2.0, 4.0, 8.0}
+    both_of = [shake for shake in result if shake.name == "other"]
     single = {shake.order: shake.force for shake in of(linkage=slider_crank())}
     for shake in both_of:
         np.testing.assert_allclose(shake.force, 4 * single[shake.order / 2])
@@ -240,5 +240,5 @@ def test_loads_and_weight_do_not_count() -> None:
     assert machine.loads
     with_loads = of(linkage=machine)
     without = of(linkage=replace(machine, loads=(), gravity=(0.0, 0.0)))
-    for one, other in zip(with_loads, without, strict=True):
-        np.testing.assert_allclose(one.force, other.force, atol=1e-15)
+    for load, other in zip(with_loads, without, strict=True):
+        np.testing.assert_allclose(load.force, other.force, atol=1e-15)

@@ -118,9 +118,9 @@ def test_shear_and_rotary_inertia_of_a_pinned_beam() -> None:
     + (n pi / L)^4 = 0, the lower of its roots; all upper ones lie far above.
     """
     section = Section(1000.0, 2.0, 4e4, 3e-3)
-    found = natural_frequencies(bare(*ends(HARD), section=section, theory="timoshenko"), 6)[0]
+    frequencies = natural_frequencies(bare(*ends(HARD), section=section, theory="timoshenko"), 6)[0]
     ei, m, shear, rotary = 1000.0, 2.0, 4e4, 3e-3
-    for n, frequency in enumerate(found, 1):
+    for n, frequency in enumerate(frequencies, 1):
         x = (n * pi / LENGTH) ** 2
         square, linear = rotary * m / shear / ei, (m + (rotary + m * ei / shear) * x) / ei
         lower = 2 * x**2 / (linear + sqrt(linear**2 - 4 * square * x**2))
@@ -130,9 +130,9 @@ def test_shear_and_rotary_inertia_of_a_pinned_beam() -> None:
 def test_a_rod_of_steel() -> None:
     """A tube without bore: EI / rho A = E d^2 / (16 rho)."""
     rod = Tube(0.02, 0.0, 206e9, 7850.0)
-    found = natural_frequencies(Tool("rod", Shaft(0.8, rod)), 3)[0, 2]
+    frequencies = natural_frequencies(Tool("rod", Shaft(0.8, rod)), 3)[0, 2]
     wave = sqrt(206e9 / 7850)
-    assert found == pytest.approx(4.730040745**2 * wave * 0.02 / 4 / 0.8**2, rel=1e-9)
+    assert frequencies == pytest.approx(4.730040745**2 * wave * 0.02 / 4 / 0.8**2, rel=1e-9)
 
 
 # -- what lies together ----------------------------------------------------------------------------
@@ -140,17 +140,17 @@ def test_a_rod_of_steel() -> None:
 
 def test_clamped_almost_in_its_middle() -> None:
     """1e-9 of the length aside the pairs are 4e-9 apart, and both of each are found."""
-    found = lambdas(bare(clamp("vice", LENGTH / 2 * (1 + 1e-9)), section=PLAIN), 2)
-    assert found[0] < found[1]
-    assert found[1] / found[0] - 1 == pytest.approx(2e-9, rel=0.5)
+    result = lambdas(bare(clamp("vice", LENGTH / 2 * (1 + 1e-9)), section=PLAIN), 2)
+    assert result[0] < result[1]
+    assert result[1] / result[0] - 1 == pytest.approx(2e-9, rel=0.5)
 
 
 def test_two_equal_absorbers_at_one_place() -> None:
     """One of the motions leaves the shaft at rest: it is at their own frequency, exactly."""
     pair = [Station(name, 0.5, absorber=Absorber(0.3, both(2e4))) for name in "ab"]
-    one = Station("a", 0.5, absorber=Absorber(0.6, both(4e4)))
+    first = Station("a", 0.5, absorber=Absorber(0.6, both(4e4)))
     twice = natural_frequencies(bare(*pair), 8)[0]
-    once = natural_frequencies(bare(one), 7)[0]
+    once = natural_frequencies(bare(first), 7)[0]
     own = sqrt(2e4 / 0.3)
     at = int(np.argmin(np.abs(twice - own)))
     assert twice[at] == pytest.approx(own, rel=1e-13)
@@ -165,9 +165,9 @@ def test_two_absorbers_almost_equal(apart: float) -> None:
         Station(name, 0.5, absorber=Absorber(0.3, both(spring)))
         for name, spring in zip("ab", springs, strict=True)
     ]
-    found = natural_frequencies(bare(*pair), 8)[0]
+    frequencies = natural_frequencies(bare(*pair), 8)[0]
     low, high = (sqrt(spring / 0.3) for spring in springs)
-    between = found[(found >= low) & (found <= high)]
+    between = frequencies[(frequencies >= low) & (frequencies <= high)]
     assert between.size == 1
     assert between[0] / low - 1 == pytest.approx(apart / 4, rel=0.01, abs=1e-15)
 
@@ -181,10 +181,10 @@ def test_two_heavy_absorbers_on_a_shaft_that_hardly_moves() -> None:
             ("b", {}),
         )
     ]
-    found = natural_frequencies(bare(*stations, section=PLAIN), 4)[0]
+    frequencies = natural_frequencies(bare(*stations, section=PLAIN), 4)[0]
     shaft = natural_frequencies(bare(clamp("a", 0.0), section=PLAIN), 2)[0]
     wanted = sorted([*shaft, sqrt(2e4 / 0.3), sqrt(2e4 / 0.3)])
-    assert found == pytest.approx(wanted, rel=1e-8)
+    assert frequencies == pytest.approx(wanted, rel=1e-8)
 
 
 @pytest.mark.parametrize("theory", THEORIES)
@@ -197,16 +197,16 @@ def test_stations_a_nanometre_apart(theory: str) -> None:
     ]
     near = [Station(str(k), 0.4 + 1e-9 * k, **part) for k, part in enumerate(parts)]
     same = [Station(str(k), 0.4, **part) for k, part in enumerate(parts)]
-    found, wanted = (natural_frequencies(bare(*one, theory=theory), 10) for one in (near, same))
-    np.testing.assert_allclose(found, wanted, rtol=2e-8, atol=1e-5)
-    assert np.any(found != wanted)
+    actual, wanted = (natural_frequencies(bare(*item, theory=theory), 10) for item in (near, same))
+    np.testing.assert_allclose(actual, wanted, rtol=2e-8, atol=1e-5)
+    assert np.any(actual != wanted)
 
 
 def test_clamped_by_two_pins_a_nanometre_apart() -> None:
     """They hold the slope too, with k d^2 / 2 = 1e5 times the stiffness of the shaft."""
     pins = [Station(str(k), 2e-9 * k, stiffness=both(5e25)) for k in range(2)]
-    found = lambdas(bare(*pins, section=PLAIN), 3)
-    assert found == pytest.approx([1.875104069, 4.694091133, 7.854757438], rel=1e-4)
+    result = lambdas(bare(*pins, section=PLAIN), 3)
+    assert result == pytest.approx([1.875104069, 4.694091133, 7.854757438], rel=1e-4)
 
 
 # -- soft and stiff springs ------------------------------------------------------------------------
@@ -219,18 +219,18 @@ def test_springs_under_a_rigid_shaft(stiffness: float) -> None:
     The shaft bends by some 1e-2 k L^3 / EI.
     """
     section = Section(1e7 * stiffness, 2.0)
-    found = natural_frequencies(bare(*ends(stiffness), section=section), 2)[0]
+    frequencies = natural_frequencies(bare(*ends(stiffness), section=section), 2)[0]
     wanted = [sqrt(2 * stiffness / MASS), sqrt(6 * stiffness / MASS)]
-    assert found == pytest.approx(wanted, rel=1e-7)
+    assert frequencies == pytest.approx(wanted, rel=1e-7)
 
 
 @pytest.mark.parametrize("stiffness", [1e-8, 1e-6, 1e-3])
 def test_a_very_soft_spring_still_holds(stiffness: float) -> None:
     """sqrt(k / m) in the middle of the bare shaft, however low: it is no rigid motion."""
     tool = bare(Station("thread", LENGTH / 2, stiffness=both(stiffness)), section=PLAIN)
-    found = natural_frequencies(tool, 3)[0]
-    assert found[0] == 0
-    assert found[1] == pytest.approx(sqrt(stiffness / MASS), rel=1e-6)
+    frequencies = natural_frequencies(tool, 3)[0]
+    assert frequencies[0] == 0
+    assert frequencies[1] == pytest.approx(sqrt(stiffness / MASS), rel=1e-6)
     assert len(rigid_modes(tool)[0]) == 1
 
 
@@ -241,8 +241,8 @@ def test_soft_and_stiff_together() -> None:
         Station("soft", LENGTH, stiffness=both(0.01)),
         section=PLAIN,
     )
-    found = natural_frequencies(tool, 1)[0, 0]
-    assert found == pytest.approx(sqrt(3 * 0.01 / MASS), rel=1e-5)
+    frequencies = natural_frequencies(tool, 1)[0, 0]
+    assert frequencies == pytest.approx(sqrt(3 * 0.01 / MASS), rel=1e-5)
     assert [len(free) for free in rigid_modes(tool)] == [0, 0]
 
 
@@ -263,9 +263,9 @@ def test_an_absorber_on_a_rigid_free_shaft() -> None:
     """Two masses that a spring joins, the shaft one of them: sqrt(k (1 / m + 1 / M))."""
     section = Section(1e12, 2.0)
     tool = bare(Station("a", LENGTH / 2, absorber=Absorber(0.5, both(800.0))), section=section)
-    found = natural_frequencies(tool, 3)[0]
-    assert found[:2].tolist() == [0, 0]
-    assert found[2] == pytest.approx(sqrt(800 * (1 / 0.5 + 1 / MASS)), rel=1e-8)
+    frequencies = natural_frequencies(tool, 3)[0]
+    assert frequencies[:2].tolist() == [0, 0]
+    assert frequencies[2] == pytest.approx(sqrt(800 * (1 / 0.5 + 1 / MASS)), rel=1e-8)
 
 
 # -- rigid motions ---------------------------------------------------------------------------------
@@ -298,8 +298,8 @@ def test_rigid_motions(stations: list[Station], names: list[str]) -> None:
     """What no spring holds is told by name, and is 0 among the frequencies; nothing else is."""
     tool = bare(*stations)
     assert [list(rigid_names(free)) for free in rigid_modes(tool)] == [names, names]
-    found = natural_frequencies(tool, 4)[0]
-    assert np.count_nonzero(found == 0) == len(names)
+    frequencies = natural_frequencies(tool, 4)[0]
+    assert np.count_nonzero(frequencies == 0) == len(names)
 
 
 def test_rigid_motions_of_each_plane() -> None:
@@ -308,8 +308,8 @@ def test_rigid_motions_of_each_plane() -> None:
     assert [len(vertical), len(lateral)] == [1, 2]
     across, slope = vertical[0]
     assert across + slope * 0.4 == pytest.approx(0, abs=1e-15)
-    found = natural_frequencies(bare(station), 3)
-    assert np.count_nonzero(found == 0, axis=1).tolist() == [1, 2]
+    frequencies = natural_frequencies(bare(station), 3)
+    assert np.count_nonzero(frequencies == 0, axis=1).tolist() == [1, 2]
 
 
 def test_a_measured_hand_does_not_hold() -> None:
@@ -324,11 +324,11 @@ def test_a_measured_hand_does_not_hold() -> None:
 def test_an_absorber_without_a_spring_floats() -> None:
     """Its mass stays at rest: one frequency of 0 more, and the others as without it."""
     station = Station("a", 0.4, mass=0.5, absorber=Absorber(0.3, (0.0, 2e4)))
-    found = natural_frequencies(bare(station), 6)
+    frequencies = natural_frequencies(bare(station), 6)
     plain = natural_frequencies(bare(Station("a", 0.4, mass=0.5)), 5)[0]
-    assert found[0, 0] == 0
-    np.testing.assert_allclose(found[0, 1:], plain, rtol=CLOSE)
-    assert np.count_nonzero(found == 0, axis=1).tolist() == [3, 2]
+    assert frequencies[0, 0] == 0
+    np.testing.assert_allclose(frequencies[0, 1:], plain, rtol=CLOSE)
+    assert np.count_nonzero(frequencies == 0, axis=1).tolist() == [3, 2]
 
 
 # -- what is asked for -----------------------------------------------------------------------------
@@ -345,9 +345,9 @@ def test_more_or_fewer_of_the_same(theory: str) -> None:
     assert np.all(np.diff(many) >= 0)
     lowest = np.min(many[many > 0])
     for limit in ((many[0, 11] + many[0, 12]) / 2, 0.9 * lowest, 1.1 * lowest):
-        for plane, found in enumerate(frequencies_below(tool, float(limit))):
+        for plane, actual in enumerate(frequencies_below(tool, float(limit))):
             wanted = many[plane][(many[plane] > 0) & (many[plane] < limit)]
-            np.testing.assert_allclose(found, wanted, rtol=CLOSE)
+            np.testing.assert_allclose(actual, wanted, rtol=CLOSE)
 
 
 @pytest.mark.parametrize("number", [0, -1, 201])
@@ -358,8 +358,8 @@ def test_too_many(number: int) -> None:
 
 def test_damping_does_not_count() -> None:
     tool = random_tool(6)
-    found, wanted = natural_frequencies(tool, 6), natural_frequencies(still(tool), 6)
-    np.testing.assert_allclose(found, wanted, rtol=CLOSE)
+    actual, wanted = natural_frequencies(tool, 6), natural_frequencies(still(tool), 6)
+    np.testing.assert_allclose(actual, wanted, rtol=CLOSE)
 
 
 def test_scale() -> None:

@@ -70,11 +70,11 @@ def test_a_signal_of_whole_periods(hertz: float) -> None:
     time = np.arange(10000) / 10000
     response = respond_tool(engine_and_blade(), 2 * pi * hertz)
     for name, grip in grips(response).items():
-        found = weigh_signal(time, acceleration(response, name, time), periodic=True)
-        np.testing.assert_allclose(grip.a_hw[:, 0], found.a_hw, rtol=1e-9)
-        assert grip.a_hv[0] == pytest.approx(found.a_hv, rel=1e-9)
-        assert found.a_h is not None
-        np.testing.assert_allclose(grip.acceleration[:, 0], found.a_h, rtol=1e-9)
+        weighted = weigh_signal(time, acceleration(response, name, time), periodic=True)
+        np.testing.assert_allclose(grip.a_hw[:, 0], weighted.a_hw, rtol=1e-9)
+        assert grip.a_hv[0] == pytest.approx(weighted.a_hv, rel=1e-9)
+        assert weighted.a_h is not None
+        np.testing.assert_allclose(grip.acceleration[:, 0], weighted.a_h, rtol=1e-9)
 
 
 def test_a_signal_as_it_is_measured() -> None:
@@ -82,27 +82,27 @@ def test_a_signal_as_it_is_measured() -> None:
     time = np.arange(80000) / 10000
     response = respond_tool(engine_and_blade(), 2 * pi * 87.3)
     for name, grip in grips(response).items():
-        found = weigh_signal(time, acceleration(response, name, time))
-        assert grip.a_hv[0] == pytest.approx(found.a_hv, rel=1e-3)
+        weighted = weigh_signal(time, acceleration(response, name, time))
+        assert grip.a_hv[0] == pytest.approx(weighted.a_hv, rel=1e-3)
 
 
 @pytest.mark.parametrize("theory", THEORIES)
 def test_weighting_of_each_order(theory: str) -> None:
     """|Wh|^2 of the analog filters by s = i f, times half the square of the amplitude."""
     response = respond_tool(random_tool(2, theory), np.array([200.0, 700.0]))
-    found = grips(response)["rear"]
+    result = grips(response)["rear"]
     amplitude = response.acceleration("rear")
     passed = np.abs(weighting(response.frequency / (2 * pi)))
     wanted = np.sqrt(np.sum(np.abs(amplitude * passed) ** 2 / 2, axis=1))
-    np.testing.assert_allclose(found.a_hw, wanted, rtol=1e-12)
-    np.testing.assert_allclose(found.a_hv, np.hypot(*wanted), rtol=1e-12)
+    np.testing.assert_allclose(result.a_hw, wanted, rtol=1e-12)
+    np.testing.assert_allclose(result.a_hv, np.hypot(*wanted), rtol=1e-12)
 
 
 def test_squares_of_one_order() -> None:
     """At 16 Hz Wh is 0.896, as ISO 5349-1, Table A.2, has it; 1 mm is 10.1 m/s2 peak there."""
     w = 2 * pi * 10**1.2
-    found = weighted_squares(np.array(w), np.array(1e-3j))
-    assert np.real(found) == pytest.approx((0.896 * w**2 * 1e-3) ** 2 / 2, rel=1e-3)
+    result = weighted_squares(np.array(w), np.array(1e-3j))
+    assert np.real(result) == pytest.approx((0.896 * w**2 * 1e-3) ** 2 / 2, rel=1e-3)
 
 
 # -- days ------------------------------------------------------------------------------------------
@@ -126,66 +126,66 @@ def test_a_day_of_several_parts() -> None:
         Work("cut", 700.0, 900.0),
     )
     tool = worked(*work)
-    found = expose_tool(tool, np.array([400.0, 600.0]))
+    exposure = expose_tool(tool, np.array([400.0, 600.0]))
     a8 = {
         name: sqrt(sum(a_hv(tool, w.speed, name) ** 2 * w.duration for w in work) / (8 * HOUR))
         for name in ("front", "rear")
     }
     for name, wanted in a8.items():
-        assert found.days[name].a8 == pytest.approx(wanted, rel=1e-12)
+        assert exposure.days[name].a8 == pytest.approx(wanted, rel=1e-12)
     assert a8["front"] != pytest.approx(a8["rear"], rel=1e-3)
-    assert found.worst == max(a8, key=lambda name: a8[name])
-    assert found.a8 == pytest.approx(max(a8.values()))
+    assert exposure.worst == max(a8, key=lambda name: a8[name])
+    assert exposure.a8 == pytest.approx(max(a8.values()))
 
 
 def test_a_duration_in_the_place_of_the_day() -> None:
     """So long at the working speed, whatever the file tells of work."""
     tool = worked(Work("mow", 300.0, 2 * HOUR))
-    found = expose_tool(tool, np.array([400.0]), 4 * HOUR)
+    exposure = expose_tool(tool, np.array([400.0]), 4 * HOUR)
     for name in ("front", "rear"):
         wanted = a_hv(tool, 600.0, name) * sqrt(0.5)
-        assert found.days[name].a8 == pytest.approx(wanted, rel=1e-12)
+        assert exposure.days[name].a8 == pytest.approx(wanted, rel=1e-12)
 
 
 def test_idling_and_racing() -> None:
     """ISO 22867: the root of the mean of both squares, of each hand."""
     tool = worked(idling=290.0, racing=950.0)
-    found = expose_tool(tool, np.array([400.0]))
-    assert list(found.named) == ["working", "idling", "racing"]
+    exposure = expose_tool(tool, np.array([400.0]))
+    assert list(exposure.named) == ["working", "idling", "racing"]
     for name in ("front", "rear"):
         low, high = (a_hv(tool, speed, name) for speed in (290.0, 950.0))
-        assert found.equivalents[name] == pytest.approx(sqrt((low**2 + high**2) / 2), rel=1e-12)
-        assert found.named["idling"][name].a_hv[0] == pytest.approx(low, rel=1e-12)
+        assert exposure.equivalents[name] == pytest.approx(sqrt((low**2 + high**2) / 2), rel=1e-12)
+        assert exposure.named["idling"][name].a_hv[0] == pytest.approx(low, rel=1e-12)
     only = expose_tool(worked(idling=290.0), np.array([400.0]))
     assert only.equivalents == {}
     assert list(only.named) == ["working", "idling"]
 
 
 def test_nothing_of_a_day() -> None:
-    found = expose_tool(random_tool(3), np.array([400.0, 500.0]))
-    assert (found.days, found.named, found.equivalents) == ({}, {}, {})
-    assert found.worst is None and found.a8 is None
+    exposure = expose_tool(random_tool(3), np.array([400.0, 500.0]))
+    assert (exposure.days, exposure.named, exposure.equivalents) == ({}, {}, {})
+    assert exposure.worst is None and exposure.a8 is None
 
 
 def test_over_the_range() -> None:
     """The hand that gets most at each speed by itself."""
     tool = random_tool(3)
     speeds = np.linspace(150, 900, 40)
-    found = expose_tool(tool, speeds)
-    each = np.array([grip.a_hv for grip in found.grips.values()])
-    np.testing.assert_array_equal(found.a_hv, np.max(each, axis=0))
+    exposure = expose_tool(tool, speeds)
+    each = np.array([grip.a_hv for grip in exposure.grips.values()])
+    np.testing.assert_array_equal(exposure.a_hv, np.max(each, axis=0))
     assert len(set(np.argmax(each, axis=0))) == 2
-    np.testing.assert_array_equal(found.speed, speeds)
-    told = found.to_dict()
-    for name, grip in found.grips.items():
-        np.testing.assert_array_equal(told["hands"][name]["a_hw_lateral"], grip.a_hw[1])
+    np.testing.assert_array_equal(exposure.speed, speeds)
+    content = exposure.to_dict()
+    for name, grip in exposure.grips.items():
+        np.testing.assert_array_equal(content["hands"][name]["a_hw_lateral"], grip.a_hw[1])
         np.testing.assert_array_equal(
-            told["hands"][name]["acceleration_vertical"], grip.acceleration[0]
+            content["hands"][name]["acceleration_vertical"], grip.acceleration[0]
         )
-    assert told["a8"] is None
+    assert content["a8"] is None
 
 
-def test_two_hands_at_one_grip_are_told_once() -> None:
+def test_two_hands_at_one_grip_are_reported_once() -> None:
     station = Station("grip", 0.5, hand=Hand(0.1, both(5e3), both(50.0), hands=2))
     tool = shaken(bare(Station("a", 0.0), station), Excitation("e", "a", unbalance=1e-3))
     assert list(expose_tool(tool, np.array([300.0])).grips) == ["grip"]
@@ -219,7 +219,9 @@ STEP = {
 
 
 def numbers_of(tool: Tool) -> list[tuple[str, str]]:
-    return [(one.name, key) for one in tool.stations for key in KEYS if has_number(one, key)]
+    return [
+        (station.name, key) for station in tool.stations for key in KEYS if has_number(station, key)
+    ]
 
 
 def alike(tool: Tool) -> Tool:
@@ -269,10 +271,10 @@ def test_values(theory: str) -> None:
     """
     tool = random_tool(1, theory)
     numbers, same = numbers_of(tool), alike(tool)
-    for one, values in ((tool, None), (same, values_of(tool, numbers))):
-        felt = SpeedBand(one, SPEEDS).felt(numbers, values, HELD)
-        found = np.array([one.value for one in (*felt.hands.values(), *felt.forces.values())])
-        np.testing.assert_allclose(found, squares(one), rtol=1e-10)
+    for first, values in ((tool, None), (same, values_of(tool, numbers))):
+        felt = SpeedBand(first, SPEEDS).felt(numbers, values, HELD)
+        result = np.array([item.value for item in (*felt.hands.values(), *felt.forces.values())])
+        np.testing.assert_allclose(result, squares(first), rtol=1e-10)
         assert (list(felt.hands), list(felt.forces)) == (["front", "rear"], list(HELD))
     assert np.max(np.abs(squares(same) / squares(tool) - 1)) > 0.01
 
@@ -289,13 +291,13 @@ def test_slopes(theory: str, station: str) -> None:
     tool = alike(random_tool(1, theory))
     numbers = [number for number in numbers_of(tool) if number[0] == station]
     felt = SpeedBand(tool, SPEEDS).felt(numbers, values_of(tool, numbers), HELD)
-    found = np.array([one.slopes for one in (*felt.hands.values(), *felt.forces.values())])
-    assert found.shape == (5, len(numbers), 3)
+    values = np.array([item.slopes for item in (*felt.hands.values(), *felt.forces.values())])
+    assert values.shape == (5, len(numbers), 3)
     for k, (_, key) in enumerate(numbers):
         wanted = differences(tool, station, key)
         size = np.max(np.abs(wanted), axis=1)[:, None]
         assert np.min(size) > 0
-        assert np.max(np.abs(found[:, k] - wanted) / size) < 1e-6, key
+        assert np.max(np.abs(values[:, k] - wanted) / size) < 1e-6, key
 
 
 def test_slopes_of_many_numbers_are_those_of_each() -> None:
@@ -305,10 +307,10 @@ def test_slopes_of_many_numbers_are_those_of_each() -> None:
     band = SpeedBand(tool, SPEEDS)
     whole = band.felt(numbers, values_of(tool, numbers), HELD)
     for k in range(len(numbers)):
-        one = band.felt([numbers[k]], values_of(tool, [numbers[k]]), HELD)
-        for name, part in one.hands.items():
+        first = band.felt([numbers[k]], values_of(tool, [numbers[k]]), HELD)
+        for name, part in first.hands.items():
             np.testing.assert_allclose(whole.hands[name].slopes[k], part.slopes[0], rtol=1e-8)
-        for name, part in one.forces.items():
+        for name, part in first.forces.items():
             np.testing.assert_allclose(whole.forces[name].slopes[k], part.slopes[0], rtol=1e-8)
 
 
@@ -334,9 +336,9 @@ def test_without_slopes() -> None:
     values = values_of(tool, numbers)
     band = SpeedBand(tool, SPEEDS)
     plain, whole = (band.felt(numbers, values, HELD, slopes) for slopes in (False, True))
-    for name, one in plain.hands.items():
-        np.testing.assert_allclose(one.value, whole.hands[name].value, rtol=1e-13)
-        assert one.slopes.shape == (0, 3)
+    for name, value in plain.hands.items():
+        np.testing.assert_allclose(value.value, whole.hands[name].value, rtol=1e-13)
+        assert value.slopes.shape == (0, 3)
 
 
 def test_a_quiet_order_can_be_left_out() -> None:
@@ -353,8 +355,8 @@ def test_a_quiet_order_can_be_left_out() -> None:
     tool = shaken(tool, *causes)
     all_of, loud = (SpeedBand(tool, SPEEDS, least) for least in (0.0, 1e-3))
     assert all_of.orders.tolist() == [1, 2] and loud.orders.tolist() == [1]
-    one = shaken(tool, causes[0])
-    wanted = grips(respond_tool(one, SPEEDS))["grip"].a_hv ** 2
+    first = shaken(tool, causes[0])
+    wanted = grips(respond_tool(first, SPEEDS))["grip"].a_hv ** 2
     felt = loud.felt([("a", "mass")], np.array([0.0]))
     np.testing.assert_allclose(felt.hands["grip"].value, wanted, rtol=1e-11)
 
@@ -363,9 +365,9 @@ def test_mean_over_the_band() -> None:
     """Trapezia between equally spaced speeds."""
     value = np.array([1.0, 4.0, 2.0, 8.0])
     slopes = np.array([[0.0, 1.0, 0.0, 2.0], [1.0, 1.0, 1.0, 1.0]])
-    found = mean_over_band(Dual(value, slopes))
-    assert found.value == pytest.approx(np.trapezoid(value) / 3)
-    np.testing.assert_allclose(found.slopes[:, 0], [2 / 3, 1])
+    result = mean_over_band(Dual(value, slopes))
+    assert result.value == pytest.approx(np.trapezoid(value) / 3)
+    np.testing.assert_allclose(result.slopes[:, 0], [2 / 3, 1])
 
 
 # -- sensitivities ---------------------------------------------------------------------------------
@@ -373,16 +375,16 @@ def test_mean_over_the_band() -> None:
 
 def worst(tool: Tool, speed: Array) -> float:
     """The largest RMS of a_hv over the band, of the hands."""
-    found = grips(respond_tool(tool, speed))
+    result = grips(respond_tool(tool, speed))
     wide = speed[-1] - speed[0]
-    return max(float(np.sqrt(np.trapezoid(grip.a_hv**2, speed) / wide)) for grip in found.values())
+    return max(float(np.sqrt(np.trapezoid(grip.a_hv**2, speed) / wide)) for grip in result.values())
 
 
 def shifted(tool: Tool, station: str, key: str, by: float) -> Tool:
     """The tool with a number larger, of a pair both by as much."""
-    one = tool.station(station)
+    first = tool.station(station)
     *path, last = key.split(".")
-    owner: Any = getattr(one, path[0]) if path else one
+    owner: Any = getattr(first, path[0]) if path else first
     old = getattr(owner, last)
     new = tuple(part + by for part in old) if isinstance(old, tuple) else old + by
     owner = replace(owner, **{last: new})
@@ -397,8 +399,8 @@ def test_sensitivities(theory: str, same: bool) -> None:
     if same:
         tool = alike(tool)
     speed = np.linspace(300, 500, 5)
-    found = tool_sensitivities(tool, speed)
-    assert list(found) == numbers_of(tool)
+    sensitivities = tool_sensitivities(tool, speed)
+    assert list(sensitivities) == numbers_of(tool)
     for station, key in (
         ("rear", "position"),
         ("rear", "harness.stiffness"),
@@ -415,7 +417,7 @@ def test_sensitivities(theory: str, same: bool) -> None:
             return np.array(worst(shifted(tool, station, key, by), speed))
 
         wanted = float(slope(of, 0.0, step, range(-3, 4)))
-        assert found[station, key] == pytest.approx(wanted, rel=1e-6, abs=1e-9), key
+        assert sensitivities[station, key] == pytest.approx(wanted, rel=1e-6, abs=1e-9), key
 
 
 def test_a_measured_hand() -> None:
@@ -439,5 +441,5 @@ def test_a_measured_hand() -> None:
             )
 
         wanted = slope(of, number_of(tool, "grip", key), 1e-3, range(-3, 4))
-        for one, other in zip((felt.hands["grip"], felt.forces["grip"]), wanted, strict=True):
-            np.testing.assert_allclose(one.slopes[0], other, rtol=1e-6)
+        for item, other in zip((felt.hands["grip"], felt.forces["grip"]), wanted, strict=True):
+            np.testing.assert_allclose(item.slopes[0], other, rtol=1e-6)

@@ -87,7 +87,7 @@ def test_stations_sit_at_their_places(highest: float) -> None:
 def test_stations_at_one_place_share_a_node() -> None:
     tool = bare(Station("a", 0.6), Station("b", 0.2), Station("c", 0.6))
     layout = Layout(tool, 1.0)
-    assert [[one.name for one in node] for node in layout.nodes] == [[], ["b"], ["a", "c"], []]
+    assert [[item.name for item in node] for node in layout.nodes] == [[], ["b"], ["a", "c"], []]
 
 
 def test_a_border_on_which_nothing_sits_is_a_node() -> None:
@@ -104,7 +104,9 @@ def test_a_place_that_varies_at_an_end_or_border_can_go_inward() -> None:
         segments=(Segment(0.5, 1.0, SECTION),),
     )
     names = ("left", "border", "right")
-    layout = Layout(tool, 1.0, {(one.name, "position"): one.position for one in tool.stations})
+    layout = Layout(
+        tool, 1.0, {(station.name, "position"): station.position for station in tool.stations}
+    )
     assert lengths(layout) == pytest.approx([0, 0.5, 0, 0.5, 0.5, 0])
     assert [layout.node_of[name] for name in names] == [1, 2, 5]
 
@@ -116,11 +118,11 @@ def absorber(s: Array, plane: int) -> Array:
     """Force over displacement of the shaft, from both equations of a mass behind a spring."""
     mass, stiffness, damping = 0.2, (3e3, 4e3)[plane], (1.5, 2.5)[plane]
     link = stiffness + damping * s
-    found = []
-    for one, at in zip(link, s, strict=True):
-        matrix = np.array([[one, -one], [-one, one + mass * at**2]])
-        found.append(1 / np.linalg.inv(matrix)[0, 0])
-    return np.array(found)
+    actual = []
+    for item, at in zip(link, s, strict=True):
+        matrix = np.array([[item, -item], [-item, item + mass * at**2]])
+        actual.append(1 / np.linalg.inv(matrix)[0, 0])
+    return np.array(actual)
 
 
 def across(s: Array, plane: int) -> Array:
@@ -166,8 +168,8 @@ def test_without_damping_only_masses_and_springs_count() -> None:
     s = np.array([[30j, 400j]])
     chain = Layout(tool, 1e3).chain(s, "undamped")
     wanted = Layout(still(tool), 1e3).chain(s)
-    for one, other in zip(chain.stations, wanted.stations, strict=True):
-        for part, plain in zip(one, other, strict=True):
+    for station, other in zip(chain.stations, wanted.stations, strict=True):
+        for part, plain in zip(station, other, strict=True):
             assert not np.iscomplexobj(part)
             np.testing.assert_allclose(part, plain, rtol=1e-13)
     for segment, plain_segment in zip(chain.segments, wanted.segments, strict=True):
@@ -177,11 +179,11 @@ def test_without_damping_only_masses_and_springs_count() -> None:
 def test_loss_makes_the_stiffness_complex() -> None:
     """EI and kGA both times 1 + i eta: without a load there is no difference but theirs."""
     layout = Layout(bare(loss_factor=0.2, theory="timoshenko"), 1.0)
-    found = layout.chain(np.array([[1e-3j]])).segments[0]
+    segments = layout.chain(np.array([[1e-3j]])).segments[0]
     length = 1.5
-    assert found.wm.ravel()[0] == pytest.approx(length**2 / 2 / 1000 / (1 + 0.2j), rel=1e-6)
+    assert segments.wm.ravel()[0] == pytest.approx(length**2 / 2 / 1000 / (1 + 0.2j), rel=1e-6)
     static = length / 2e5 / (1 + 0.2j) - length**3 / 6 / 1000 / (1 + 0.2j)
-    assert found.wv.ravel()[0] == pytest.approx(static, rel=1e-6)
+    assert segments.wv.ravel()[0] == pytest.approx(static, rel=1e-6)
 
 
 def test_a_table_counts_at_real_frequencies_alone() -> None:
@@ -213,8 +215,8 @@ def test_an_absorber_of_no_mass_or_no_spring_does_nothing(
 ) -> None:
     station = Station("a", 0.4, mass=1.0, absorber=Absorber(mass, stiffness))
     for kind in ("undamped", "free", "forced"):
-        found = Layout(bare(station), 1e3).chain(S[:, :1], kind).stations[1].across
-        assert np.real(found[0]).ravel() == pytest.approx(np.real(S[0, 0] ** 2))
+        actual = Layout(bare(station), 1e3).chain(S[:, :1], kind).stations[1].across
+        assert np.real(actual[0]).ravel() == pytest.approx(np.real(S[0, 0] ** 2))
 
 
 @pytest.mark.parametrize("theory", THEORIES)
@@ -232,18 +234,18 @@ def test_numbers_that_stand_in_place_of_the_tool_s(theory: str) -> None:
     for (station, key), value in numbers.items():
         assert number_of(tool, station, key) != value
         other = changed(other, station, key, value)
-    found, wanted = (
+    actual, wanted = (
         log_determinant(carry(layout.chain(S)))[0]
         for layout in (Layout(tool, 1e3, numbers), Layout(other, 1e3))
     )
-    np.testing.assert_allclose(np.exp(found - wanted), 1, rtol=1e-12)
+    np.testing.assert_allclose(np.exp(actual - wanted), 1, rtol=1e-12)
 
 
 def test_what_absorbers_are_divided_by() -> None:
-    (found,) = Layout(bare(FULL), 1e3).absorbers(S, "free")
+    (actual,) = Layout(bare(FULL), 1e3).absorbers(S, "free")
     s = S[0]
     np.testing.assert_allclose(
-        found, [3e3 + 1.5 * s + 0.2 * s**2, 4e3 + 2.5 * s + 0.2 * s**2], rtol=1e-14
+        actual, [3e3 + 1.5 * s + 0.2 * s**2, 4e3 + 2.5 * s + 0.2 * s**2], rtol=1e-14
     )
 
 
@@ -263,15 +265,15 @@ def held(*tables: Impedance, name: str = "") -> Tool:
 
 def test_rows_and_between_them() -> None:
     """Real and imaginary part on straight lines."""
-    found = impedance((TABLE,), at(10.0, 12.5, 20.0, 35.0, 50.0))
+    result = impedance((TABLE,), at(10.0, 12.5, 20.0, 35.0, 50.0))
     wanted = [60 - 130j, 65 - 102.5j, 80 - 20j, 65 + 10j, 50 + 40j]
-    np.testing.assert_allclose(found, [wanted, wanted], rtol=1e-13)
+    np.testing.assert_allclose(result, [wanted, wanted], rtol=1e-13)
 
 
 def test_a_table_for_each_plane() -> None:
-    found = impedance((TABLE, OTHER), at(20.0, 24.0))
-    np.testing.assert_allclose(found[0], [80 - 20j, 76 - 12j], rtol=1e-13)
-    np.testing.assert_allclose(found[1], [40 + 15j, 48 + 19j], rtol=1e-13)
+    result = impedance((TABLE, OTHER), at(20.0, 24.0))
+    np.testing.assert_allclose(result[0], [80 - 20j, 76 - 12j], rtol=1e-13)
+    np.testing.assert_allclose(result[1], [40 + 15j, 48 + 19j], rtol=1e-13)
     planes = np.array([at(20.0)[0], at(24.0)[0]])
     np.testing.assert_allclose(impedance((TABLE, OTHER), planes)[:, 0], [80 - 20j, 48 + 19j])
 

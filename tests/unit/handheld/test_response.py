@@ -50,14 +50,14 @@ def rigid() -> tuple[Tool, float]:
 def test_one_mass_on_springs_and_dampers() -> None:
     """10 N over k + c s + m s^2, and the force on each spring with its damper by itself."""
     tool, mass = rigid()
-    found = respond_tool(tool, SPEEDS)
+    response = respond_tool(tool, SPEEDS)
     s = 1j * SPEEDS
     moved = 10 * np.exp(0.3j) / (2600 + 55 * s + mass * s**2)
-    np.testing.assert_allclose(found.displacement("middle")[0, 0], moved, rtol=1e-4)
-    np.testing.assert_allclose(found.velocity("middle")[0, 0], moved * s, rtol=1e-4)
-    np.testing.assert_allclose(found.acceleration("middle")[0, 0], moved * s**2, rtol=1e-4)
-    assert np.all(found.displacement("middle")[1] == 0)
-    forces = found.forces("middle")
+    np.testing.assert_allclose(response.displacement("middle")[0, 0], moved, rtol=1e-4)
+    np.testing.assert_allclose(response.velocity("middle")[0, 0], moved * s, rtol=1e-4)
+    np.testing.assert_allclose(response.acceleration("middle")[0, 0], moved * s**2, rtol=1e-4)
+    assert np.all(response.displacement("middle")[1] == 0)
+    forces = response.forces("middle")
     wanted = {
         "ground": 500 + 6 * s,
         "harness": 300 + 9 * s,
@@ -74,12 +74,12 @@ def test_one_mass_on_springs_and_dampers() -> None:
 def test_a_free_rigid_shaft_under_a_force_at_its_end() -> None:
     """It heaves by F / (m s^2) and turns by F L / 2 / (I s^2), I = m L^2 / 12."""
     tool = bare(Station("end", 0.0), section=RIGID)
-    found = respond_tool(shaken(tool, Excitation("e", "end", force=1.0)), 20.0)
+    response = respond_tool(shaken(tool, Excitation("e", "end", force=1.0)), 20.0)
     s2 = -400.0
     x = np.array([0.0, 0.4, 1.5])
     turning = -(LENGTH / 2) / (3.0 * LENGTH**2 / 12 * s2)
     wanted = 1 / (3.0 * s2) + turning * (x - LENGTH / 2)
-    line = found.line(x)
+    line = response.line(x)
     np.testing.assert_allclose(line.displacement[:, 0, 0, 0], wanted, rtol=1e-4)
     np.testing.assert_allclose(line.slope[:, 0, 0, 0], turning, rtol=1e-4)
     # The force drives what is right of x: V' = m s^2 w from -F at the left end.
@@ -100,15 +100,15 @@ def test_a_force_at_the_end_of_an_elastic_free_shaft() -> None:
     F3 = cos cosh - 1, F5 = cos sinh - sin cosh and F8 = sin - sinh of b L.
     """
     tool = bare(Station("a", 0.0), Station("b", LENGTH), section=PLAIN)
-    found = respond_tool(shaken(tool, Excitation("e", "a", force=1.0)), SPEEDS)
+    response = respond_tool(shaken(tool, Excitation("e", "a", force=1.0)), SPEEDS)
     for k, w in enumerate(SPEEDS):
         b = (2.0 * w**2 / 1000) ** 0.25
         x = b * LENGTH
         divisor = 1000 * b**3 * (cos(x) * cosh(x) - 1)
         here = -(cos(x) * sinh(x) - sin(x) * cosh(x)) / divisor
         there = (sin(x) - sinh(x)) / divisor
-        assert found.displacement("a")[0, 0, k] == pytest.approx(here, rel=1e-9)
-        assert found.displacement("b")[0, 0, k] == pytest.approx(there, rel=1e-9)
+        assert response.displacement("a")[0, 0, k] == pytest.approx(here, rel=1e-9)
+        assert response.displacement("b")[0, 0, k] == pytest.approx(there, rel=1e-9)
 
 
 def test_an_absorber_takes_the_motion_of_its_station_away() -> None:
@@ -116,8 +116,8 @@ def test_an_absorber_takes_the_motion_of_its_station_away() -> None:
     own = 200.0
     station = Station("a", 0.6, absorber=Absorber(0.2, both(0.2 * own**2), both(1e-6)))
     tool = shaken(bare(station), Excitation("e", "a", force=5.0))
-    found = respond_tool(tool, np.array([own, 0.9 * own]))
-    still, beside = np.abs(found.displacement("a")[0, 0])
+    result = respond_tool(tool, np.array([own, 0.9 * own]))
+    still, beside = np.abs(result.displacement("a")[0, 0])
     assert still < 1e-6 * beside
     # What is fed in all goes into its damper.
     response = respond_tool(tool, own)
@@ -133,10 +133,10 @@ def full_response(theory: str = "timoshenko") -> ToolResponse:
 
 @pytest.mark.parametrize("theory", THEORIES)
 def test_places_of_stations(theory: str) -> None:
-    found = full_response(theory)
-    for station in found.tool.stations:
-        line = found.line([station.position])
-        wanted = found.displacement(station.name)
+    response = full_response(theory)
+    for station in response.tool.stations:
+        line = response.line([station.position])
+        wanted = response.displacement(station.name)
         np.testing.assert_allclose(line.displacement[0], wanted, atol=1e-12 * np.max(abs(wanted)))
 
 
@@ -149,14 +149,14 @@ def test_free_ends_carry_nothing() -> None:
     assert np.max(np.abs(line.moment[:2])) < 1e-10 * np.max(np.abs(line.moment))
 
 
-def test_forces_that_are_not_there_are_not_told() -> None:
-    found = full_response()
-    assert set(found.forces("front")) == {"hand"}
-    assert set(found.forces("rear")) == {"hand", "harness"}
-    assert set(found.forces("middle")) == {"ground"}
-    assert found.forces("head") == {}
-    assert set(found.power("middle")) == {"ground", "absorber"}
-    assert set(found.power("engine")) == {"ground"}  # of its rotational damper
+def test_forces_that_are_not_there_are_not_reported() -> None:
+    response = full_response()
+    assert set(response.forces("front")) == {"hand"}
+    assert set(response.forces("rear")) == {"hand", "harness"}
+    assert set(response.forces("middle")) == {"ground"}
+    assert response.forces("head") == {}
+    assert set(response.power("middle")) == {"ground", "absorber"}
+    assert set(response.power("engine")) == {"ground"}  # of its rotational damper
 
 
 # -- what is asked for -----------------------------------------------------------------------------
@@ -167,11 +167,11 @@ def test_speeds_are_each_by_itself() -> None:
     whole = respond_tool(tool, SPEEDS)
     assert whole.frequency.shape == (len(whole.orders), 3)
     for k, speed in enumerate(SPEEDS):
-        one = respond_tool(tool, float(speed))
+        first = respond_tool(tool, float(speed))
         np.testing.assert_allclose(
-            whole.displacement("rear")[..., k], one.displacement("rear")[..., 0], rtol=1e-10
+            whole.displacement("rear")[..., k], first.displacement("rear")[..., 0], rtol=1e-10
         )
-        assert one.speed == [speed]
+        assert first.speed == [speed]
 
 
 @pytest.mark.parametrize("speed", [0.0, -3.0, np.nan, np.inf, [], [1.0, 0.0], [[1.0]]])
@@ -181,13 +181,13 @@ def test_speeds_that_cannot_be(speed: Any) -> None:
 
 
 def test_what_is_not_there() -> None:
-    found = full_response()
-    for call in (found.displacement, found.velocity, found.forces, found.power):
+    response = full_response()
+    for call in (response.displacement, response.velocity, response.forces, response.power):
         with refused(ModelError, "stations", given="nobody"):
             call("nobody")
     for place in (-0.01, 99.0):
         with refused(UsageError, length=1.68645):
-            found.line([0.1, place])
+            response.line([0.1, place])
     with refused(ModelError, "excitations"):
         respond_tool(bare(), 10.0)
 
@@ -204,7 +204,7 @@ def test_root_mean_squares() -> None:
     swept = sweep_tool(tool, np.array([400.0, 650.0]))
     response = swept.required_response
     places = [0.2, 0.9]
-    found, line = swept.places(places), response.line(places)
+    actual, line = swept.places(places), response.line(places)
     for k, speed in enumerate(swept.speed):
         angle = 2 * pi * 10 * np.arange(2000) / 2000
         turning = np.exp(1j * np.multiply.outer(response.orders, angle))  # (K, T)
@@ -217,7 +217,7 @@ def test_root_mean_squares() -> None:
         ):
             signal = np.real(np.sum(part[..., k, None] * factor * turning, axis=2))  # (X, 2, T)
             wanted = np.sqrt(np.mean(np.sum(signal**2, axis=1), axis=1))
-            np.testing.assert_allclose(getattr(found, name)[:, k], wanted, rtol=1e-9)
+            np.testing.assert_allclose(getattr(actual, name)[:, k], wanted, rtol=1e-9)
         force = np.real(np.sum(response.forces("rear")["hand"][..., k, None] * turning, axis=1))
         wanted = sqrt(np.mean(np.sum(force**2, axis=0)))
         assert swept.force("rear")["hand"][k] == pytest.approx(wanted, rel=1e-9)
@@ -233,7 +233,7 @@ def test_largest_moment() -> None:
     swept = sweep_tool(tool, np.array([200.0, 500.0, 800.0]))
     moment, place = swept.largest_moment
     length = tool.shaft.length
-    beside = [one.position + side for one in tool.stations for side in (-1e-9, 0.0, 1e-9)]
+    beside = [station.position + side for station in tool.stations for side in (-1e-9, 0.0, 1e-9)]
     places = np.clip([*np.linspace(0, length, 1501), *beside], 0, length)
     assert np.all(swept.places(places).moment <= moment * (1 + 3e-4))
     for k in range(3):
@@ -252,9 +252,9 @@ def test_columns_are_the_values() -> None:
     swept = sweep_tool(tool, np.array([200.0, 500.0, 510.0]))
     columns = {name: (unit, values) for name, unit, values in swept.columns()}
     assert all(np.shape(values) == (3,) for _, values in columns.values())
-    told = swept.to_dict()
+    content = swept.to_dict()
     for name in ("engine", "front", "rear", "middle", "head"):
-        station = told["stations"][name]
+        station = content["stations"][name]
         for key, unit in (
             ("displacement", "m"),
             ("velocity", "m/s"),
@@ -290,15 +290,15 @@ def test_speeds_between() -> None:
         (Excitation("e", "a", force=1.0), Excitation("second", "b", force=0.5, ratio=2.0)),
     )
     low, high = 50.0, 400.0
-    found = speeds_between(tool, low, high, 30)
-    assert np.all((found >= low) & (found <= high)) and np.all(np.diff(found) > 0)
-    assert set(np.linspace(low, high, 30)) <= set(found)
+    result = speeds_between(tool, low, high, 30)
+    assert np.all((result >= low) & (result <= high)) and np.all(np.diff(result) > 0)
+    assert set(np.linspace(low, high, 30)) <= set(result)
     natural = natural_frequencies(tool, 5)[0]
     resonances = [*natural, *(natural / 2)]
-    inside = [one for one in resonances if low < one < high]
+    inside = [item for item in resonances if low < item < high]
     assert len(inside) >= 3
     for resonance in inside:
-        near = np.abs(found / resonance - 1)
+        near = np.abs(result / resonance - 1)
         assert np.sum(near < 0.011) >= 4
 
 
@@ -322,9 +322,9 @@ def test_on_a_resonance_without_damping() -> None:
     """What is not finite is no answer; told with speed and order."""
     tool = bare(Station("a", 0.0, stiffness=both(400.0)))
     tool = shaken(tool, Excitation("push", "a", force=1.0, ratio=2.0))
-    found = respond_tool(tool, np.array([100.0, 150.0]))
-    motion = [NodePair(pair.across.copy(), pair.turning) for pair in found.field.states.motion]
+    response = respond_tool(tool, np.array([100.0, 150.0]))
+    motion = [NodePair(pair.across.copy(), pair.turning) for pair in response.field.states.motion]
     motion[0].across[0, 1] = np.inf
-    field = replace(found.field, states=States(motion, found.field.states.force))
+    field = replace(response.field, states=States(motion, response.field.states.force))
     with refused(ResponseError, orders=2.0, speeds=1432.39):
-        _check_finite(field, found.orders, found.speed)
+        _check_finite(field, response.orders, response.speed)

@@ -16,11 +16,11 @@ Array = np.ndarray[Any, Any]
 EPS = np.finfo(float).eps
 
 
-def square(found: Transfer) -> Array:
+def square(result: Transfer) -> Array:
     """The matrix (..., 4, 4) from w, theta, V, M to the same."""
     rows = ("ww wt wv wm", "tw tt tv tm", "vw vt vv vm", "mw mt mv mm")
-    shape = np.broadcast_shapes(*(np.shape(entry) for entry in found))
-    parts = [[np.broadcast_to(getattr(found, key), shape) for key in row.split()] for row in rows]
+    shape = np.broadcast_shapes(*(np.shape(entry) for entry in result))
+    parts = [[np.broadcast_to(getattr(result, key), shape) for key in row.split()] for row in rows]
     return np.moveaxis(np.array(parts), (0, 1), (-2, -1))
 
 
@@ -76,10 +76,10 @@ def test_exponential(kind: str, seed: int, share: float) -> None:
         length = share * longest(frequency, e, s * thick, m, r * thick)
         numbers = (e / loss, s * thick / loss, m * at, r * at * thick)
         wanted, sizes = exponential(length, numbers)
-        found = (
+        actual = (
             shear_transfer(length, *numbers) if thick else transfer(length, numbers[0], numbers[2])
         )
-        assert np.all(np.abs(square(found) - wanted) <= 8 * EPS * sizes)
+        assert np.all(np.abs(square(actual) - wanted) <= 8 * EPS * sizes)
 
 
 def samples(count: int = 40) -> tuple[Array, Array, Array, Array, Array]:
@@ -101,11 +101,11 @@ def test_derivative_by_length_meets_the_equations(theory: str) -> None:
     if theory == "euler-bernoulli":
         s, r = 0 * s, 0 * r
     variable = Dual(length, np.ones((1, 6)))
-    found = (
+    actual = (
         shear_transfer(variable, e, s, m, r) if theory == "timoshenko" else transfer(variable, e, m)
     )
-    value = square(Transfer(*(part.value for part in found)))
-    slope = square(Transfer(*(np.broadcast_to(part.slopes, (1, 6))[0] for part in found)))
+    value = square(Transfer(*(part.value for part in actual)))
+    slope = square(Transfer(*(np.broadcast_to(part.slopes, (1, 6))[0] for part in actual)))
     for k in range(6):
         a = np.array(system(e[k], s[k], m[k], r[k]))
         away = np.abs(slope[k] - a @ value[k])

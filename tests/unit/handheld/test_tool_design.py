@@ -97,8 +97,8 @@ def curves(tool: Tool, speed: Array) -> dict[str, Array]:
 
 def measure(tool: Tool, plan: DesignPlan, speed: Array) -> float:
     """What is to become small, m/s2, of the tool itself."""
-    found = curves(tool, speed)
-    rows = [found[name] for name in plan.hands or found]
+    result = curves(tool, speed)
+    rows = [result[name] for name in plan.hands or result]
     if plan.measure == "peak":
         return max(float(np.max(row)) for row in rows)
     wide = speed[-1] - speed[0]
@@ -107,7 +107,7 @@ def measure(tool: Tool, plan: DesignPlan, speed: Array) -> float:
 
 def beyond(tool: Tool, plan: DesignPlan, speed: Array) -> float:
     """By which share the worst limit is passed."""
-    found = [0.0]
+    actual = [0.0]
     for limit in plan.limits:
         if limit.output == "added_mass":
             value = tool.mass - brush_cutter(None).mass
@@ -116,14 +116,14 @@ def beyond(tool: Tool, plan: DesignPlan, speed: Array) -> float:
         else:
             force: Any = sum(respond_tool(tool, speed).forces(str(limit.station)).values())
             value = float(np.max(np.sqrt(np.sum(np.abs(force) ** 2, axis=(0, 1)) / 2)))
-        found.append(value / limit.at_most - 1)
-    return max(found)
+        actual.append(value / limit.at_most - 1)
+    return max(actual)
 
 
 def built(plan: DesignPlan, values: Array) -> Tool:
     tool = brush_cutter(None)
-    for one, value in zip(plan.variables, values, strict=True):
-        tool = changed(tool, one.station, one.key, float(value))
+    for variable, value in zip(plan.variables, values, strict=True):
+        tool = changed(tool, variable.station, variable.key, float(value))
     return tool
 
 
@@ -132,7 +132,7 @@ def built(plan: DesignPlan, values: Array) -> Tool:
 @pytest.mark.parametrize("name", few(PLANS, {*PLANS} - {"masses"}))
 def test_nothing_better_by_chance(name: str) -> None:
     """Differential evolution, which knows nothing of slopes, comes to nothing lower by 1e-3."""
-    plan, found = PLANS[name], designed(name)
+    plan, actual = PLANS[name], designed(name)
     speed = np.linspace(*plan.speeds, 21)
 
     def cost(values: Array) -> float:
@@ -141,7 +141,7 @@ def test_nothing_better_by_chance(name: str) -> None:
 
     chance = differential_evolution(
         cost,
-        [(one.low, one.high) for one in plan.variables],
+        [(variable.low, variable.high) for variable in plan.variables],
         seed=3,
         popsize=6,
         maxiter=12,
@@ -149,9 +149,9 @@ def test_nothing_better_by_chance(name: str) -> None:
         polish=False,
         init="sobol",
     )
-    best = measure(found.better, plan, speed)
+    best = measure(actual.better, plan, speed)
     assert best <= chance.fun * (1 + 1e-3)
-    assert chance.fun < measure(found.tool, plan, speed)  # it did come near
+    assert chance.fun < measure(actual.tool, plan, speed)  # it did come near
 
 
 @problems
@@ -161,25 +161,25 @@ def test_it_is_better_and_within_its_limits(name: str) -> None:
     1e-3: between two speeds of the search a limit may be passed by that.  Where a variable ends at
     an end of its range it is told, and nowhere else.
     """
-    plan, found = PLANS[name], designed(name)
+    plan, actual = PLANS[name], designed(name)
     speed = np.linspace(*plan.speeds, 1001)
-    assert measure(found.better, plan, speed) < 0.9 * measure(found.tool, plan, speed)
-    assert beyond(found.better, plan, speed) < 1e-3
-    for one, row, edge in zip(plan.variables, found.variables, found.edges, strict=True):
-        assert one.low <= row.after <= one.high
-        assert row.after == number_of(found.better, one.station, one.key)
-        assert row.before == number_of(found.tool, one.station, one.key)
-        share = (row.after - one.low) / (one.high - one.low)
+    assert measure(actual.better, plan, speed) < 0.9 * measure(actual.tool, plan, speed)
+    assert beyond(actual.better, plan, speed) < 1e-3
+    for variable, row, edge in zip(plan.variables, actual.variables, actual.edges, strict=True):
+        assert variable.low <= row.after <= variable.high
+        assert row.after == number_of(actual.better, variable.station, variable.key)
+        assert row.before == number_of(actual.tool, variable.station, variable.key)
+        share = (row.after - variable.low) / (variable.high - variable.low)
         assert edge == ("lowest" if share < 1e-6 else "highest" if share > 1 - 1e-6 else "")
-    assert (found.speed[0], found.speed[-1]) == plan.speeds
-    assert 1 <= found.arrived <= found.searches
-    told = found.to_dict()
-    assert (told["solver"], told["proved"]) == ("sequential quadratic programs", False)
+    assert (actual.speed[0], actual.speed[-1]) == plan.speeds
+    assert 1 <= actual.arrived <= actual.searches
+    content = actual.to_dict()
+    assert (content["solver"], content["proved"]) == ("sequential quadratic programs", False)
     for part in ("variables", "figures"):
-        for row in getattr(found, part):
-            assert told[part][row.name] == {"before": row.before, "after": row.after}
-    np.testing.assert_array_equal([told["a_hv_before"], told["a_hv_after"]], found.a_hv)
-    assert list(told["edges"].values()) == list(found.edges)
+        for row in getattr(actual, part):
+            assert content[part][row.name] == {"before": row.before, "after": row.after}
+    np.testing.assert_array_equal([content["a_hv_before"], content["a_hv_after"]], actual.a_hv)
+    assert list(content["edges"].values()) == list(actual.edges)
 
 
 @pytest.mark.parametrize(
@@ -194,16 +194,16 @@ def test_a_design_is_judged_by_a_day_of_work(hours: float, verdict: str) -> None
     """By the equation of ISO 5349-1 of the hand that gets most at the speed of the work."""
     plain = designed("absorber")
     work = (Work("mowing", 760.0, 3600 * hours),)
-    found = replace(plain, tool=replace(plain.tool, work=work))
-    assert found.days is not None
-    told, speed = found.to_dict(), np.array([760.0])
-    for key, tool in (("a8_before", found.tool), ("a8_after", found.better)):
-        most = max(float(one[0]) for one in curves(tool, speed).values())
-        assert told[key] == pytest.approx(most * np.sqrt(hours / 8))
-    first = next(iter(design_blocks(found)))
+    result = replace(plain, tool=replace(plain.tool, work=work))
+    assert result.days is not None
+    text, speed = result.to_dict(), np.array([760.0])
+    for key, tool in (("a8_before", result.tool), ("a8_after", result.better)):
+        most = max(float(curve[0]) for curve in curves(tool, speed).values())
+        assert text[key] == pytest.approx(most * np.sqrt(hours / 8))
+    first = next(iter(design_blocks(result)))
     assert isinstance(first, Text)
     assert (
-        f"A(8) = {brief(told['a8_after'])} m/s² instead of {brief(told['a8_before'])}" in first.text
+        f"A(8) = {brief(text['a8_after'])} m/s² instead of {brief(text['a8_before'])}" in first.text
     )
     assert verdict in first.text
     assert (first.emphasis == "broken") == (verdict == "above the limit value")
@@ -216,67 +216,71 @@ def test_a_design_is_judged_by_a_day_of_work(hours: float, verdict: str) -> None
 @problems
 def test_limits_matter(name: str) -> None:
     """Both problems end at a limit, and without limits end lower, beyond them."""
-    plan, found = PLANS[name], designed(name)
+    plan, actual = PLANS[name], designed(name)
     speed = np.linspace(*plan.speeds, 101)
-    assert beyond(found.better, plan, speed) > -1e-3
+    assert beyond(actual.better, plan, speed) > -1e-3
     free = design_tool(brush_cutter(replace(plan, limits=()))).better
-    assert measure(free, plan, speed) < measure(found.better, plan, speed) * (1 - 1e-3)
+    assert measure(free, plan, speed) < measure(actual.better, plan, speed) * (1 - 1e-3)
     assert beyond(free, plan, speed) > 1e-3
 
 
 def test_added_mass_is_limited() -> None:
     """Of all masses together, those that are taken away included; it ends at the limit."""
     plan = replace(PLANS["masses"], limits=(DesignLimit("added_mass", 0.01),))
-    found = design_tool(brush_cutter(plan))
-    assert found.better.mass - found.tool.mass == pytest.approx(0.01, abs=1e-7)
-    assert any(row.after < row.before - 0.01 for row in found.variables if "mass" in row.name)
+    result = design_tool(brush_cutter(plan))
+    assert result.better.mass - result.tool.mass == pytest.approx(0.01, abs=1e-7)
+    assert any(row.after < row.before - 0.01 for row in result.variables if "mass" in row.name)
 
 
 @problems
 def test_figures_are_those_of_the_tools(name: str) -> None:
     """Before and after, computed again from both tools; theirs are at speeds of their own."""
-    plan, found = PLANS[name], designed(name)
-    assert found.better.design == plan
-    figures = {row.name: row for row in found.figures}
-    wide = found.speed[-1] - found.speed[0]
+    plan, actual = PLANS[name], designed(name)
+    assert actual.better.design == plan
+    figures = {row.name: row for row in actual.figures}
+    wide = actual.speed[-1] - actual.speed[0]
     hands = plan.hands or ("rear", "front")
-    both_curves = [curves(tool, found.speed) for tool in (found.tool, found.better)]
+    both_curves = [curves(tool, actual.speed) for tool in (actual.tool, actual.better)]
     rms = [
-        {n: float(np.sqrt(np.trapezoid(c[n] ** 2, found.speed) / wide)) for n in hands}
+        {n: float(np.sqrt(np.trapezoid(c[n] ** 2, actual.speed) / wide)) for n in hands}
         for c in both_curves
     ]
     tops = [{n: float(np.max(c[n])) for n in hands} for c in both_curves]
     for word, values in (("RMS over the band", rms), ("largest", tops)):
         row = figures[f"a_hv of the worst hand, {word}"]
-        wanted = [max(one.values()) for one in values]
+        wanted = [max(value.values()) for value in values]
         assert [row.before, row.after] == pytest.approx(wanted, rel=1e-3)
         for hand in hands if len(hands) > 1 else ():
             row = figures[f"a_hv at {hand}, {word}"]
-            assert [row.before, row.after] == pytest.approx([one[hand] for one in values], rel=1e-3)
+            assert [row.before, row.after] == pytest.approx(
+                [value[hand] for value in values], rel=1e-3
+            )
     mass = figures["mass"]
-    assert [mass.before, mass.after] == pytest.approx([found.tool.mass, found.better.mass])
+    assert [mass.before, mass.after] == pytest.approx([actual.tool.mass, actual.better.mass])
     for k, each in enumerate(both_curves):
         wanted_curve = np.max([each[hand] for hand in hands], axis=0)
-        np.testing.assert_allclose(found.a_hv[k], wanted_curve, rtol=1e-12)
+        np.testing.assert_allclose(actual.a_hv[k], wanted_curve, rtol=1e-12)
     if name == "masses":
         row = figures["force at belt, largest"]
-        for tool, told in ((found.tool, row.before), (found.better, row.after)):
-            force: Any = sum(respond_tool(tool, found.speed).forces("belt").values())
+        for tool, text in ((actual.tool, row.before), (actual.better, row.after)):
+            force: Any = sum(respond_tool(tool, actual.speed).forces("belt").values())
             top = np.max(np.sqrt(np.sum(np.abs(force) ** 2, axis=(0, 1)) / 2))
-            assert told == pytest.approx(float(top), rel=1e-10)
+            assert text == pytest.approx(float(top), rel=1e-10)
 
 
 @problems
 def test_a_minimum(name: str) -> None:
     """No step of 1e-3 of a range along any variable, within the limits, is better."""
-    plan, found = PLANS[name], designed(name)
+    plan, actual = PLANS[name], designed(name)
     speed = np.linspace(*plan.speeds, 81)
-    values = np.array([row.after for row in found.variables])
-    best = measure(found.better, plan, speed)
-    for k, one in enumerate(plan.variables):
+    values = np.array([row.after for row in actual.variables])
+    best = measure(actual.better, plan, speed)
+    for k, variable in enumerate(plan.variables):
         for step in (-1e-3, 1e-3):
             beside = values.copy()
-            beside[k] = np.clip(values[k] + step * (one.high - one.low), one.low, one.high)
+            beside[k] = np.clip(
+                values[k] + step * (variable.high - variable.low), variable.low, variable.high
+            )
             tool = built(plan, beside)
             if beyond(tool, plan, speed) <= 1e-5:
                 assert measure(tool, plan, speed) >= best * (1 - 1e-4)
@@ -290,22 +294,22 @@ def test_a_narrow_resonance_in_the_band_is_resolved() -> None:
     tool = brush_cutter(plan)
     stations = tuple(
         replace(
-            one,
+            station,
             absorber=None,
-            hand=one.hand and replace(one.hand, damping=both(0.5)),
-            harness=one.harness and replace(one.harness, damping=both(0.5)),
+            hand=station.hand and replace(station.hand, damping=both(0.5)),
+            harness=station.harness and replace(station.harness, damping=both(0.5)),
         )
-        for one in tool.stations
+        for station in tool.stations
     )
     tool = replace(tool, stations=stations, shaft=replace(tool.shaft, loss_factor=2e-4))
-    found = design_tool(tool)
-    assert len(found.speed) > 4 * 80 + 1
-    fine = np.linspace(*plan.speeds, 4 * (len(found.speed) - 1) + 1)
-    told = {row.name: row.after for row in found.figures}[
+    result = design_tool(tool)
+    assert len(result.speed) > 4 * 80 + 1
+    fine = np.linspace(*plan.speeds, 4 * (len(result.speed) - 1) + 1)
+    content = {row.name: row.after for row in result.figures}[
         "a_hv of the worst hand, RMS over the band"
     ]
-    assert told == pytest.approx(measure(found.better, plan, fine), rel=0.01)
-    assert found.searches > 1
+    assert content == pytest.approx(measure(result.better, plan, fine), rel=0.01)
+    assert result.searches > 1
 
 
 # No design: the test below.
@@ -326,10 +330,10 @@ def test_no_design() -> None:
 
 # Progress of searches: tests/unit/design.
 @pytest.mark.exhaustive
-def test_progress_is_told() -> None:
+def test_progress_is_reported() -> None:
     """How many searches are done, of how many, in order."""
     calls: list[tuple[int, int]] = []
     plan = replace(PLANS["absorber"], variables=PLANS["absorber"].variables[1:], limits=())
-    found = design_tool(brush_cutter(plan), lambda done, total: calls.append((done, total)))
-    assert [done for done, _ in calls[: found.searches]] == list(range(found.searches))
-    assert {total for _, total in calls} >= {found.searches}
+    result = design_tool(brush_cutter(plan), lambda done, total: calls.append((done, total)))
+    assert [done for done, _ in calls[: result.searches]] == list(range(result.searches))
+    assert {total for _, total in calls} >= {result.searches}

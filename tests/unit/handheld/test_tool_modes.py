@@ -36,25 +36,25 @@ def test_shape_and_nodes_of_a_free_beam(mode: int) -> None:
 
     Nodes are zeros of the closed form; a cubic through places L / 400 apart is good to 1e-8 of L.
     """
-    found = vibrate_tool(bare(section=PLAIN), 5)
-    shape, root = found.planes[0].shapes[mode], ROOTS[mode]
-    wanted = free_shape(root, found.places / LENGTH)
+    vibration = vibrate_tool(bare(section=PLAIN), 5)
+    shape, root = vibration.planes[0].shapes[mode], ROOTS[mode]
+    wanted = free_shape(root, vibration.places / LENGTH)
     np.testing.assert_allclose(np.sign(shape[0]) * shape, wanted, atol=1e-6)
     assert np.max(np.abs(shape)) == 1
     x = np.linspace(0, 1, 200)
     rising = np.flatnonzero(np.diff(np.sign(free_shape(root, x))))
     zeros = [brentq(lambda at: float(free_shape(root, at)), x[k], x[k + 1]) for k in rising]
     assert len(zeros) == mode
-    assert found.planes[0].nodes[mode] / LENGTH == pytest.approx(zeros, abs=5e-8)
+    assert vibration.planes[0].nodes[mode] / LENGTH == pytest.approx(zeros, abs=5e-8)
 
 
 def test_nodes_are_where_the_shape_is_nothing() -> None:
     """Between any two neighbours it has one sign, and the line through them is at 0 there."""
-    found = vibrate_tool(still(random_tool(2, "timoshenko")), 7)
-    for plane in found.planes:
+    vibration = vibrate_tool(still(random_tool(2, "timoshenko")), 7)
+    for plane in vibration.planes:
         for shape, nodes in zip(plane.shapes, plane.nodes, strict=True):
-            assert np.interp(nodes, found.places, shape) == pytest.approx(0, abs=1e-3)
-            signs = np.signbit(shape[np.searchsorted(nodes, found.places) % 2 == 0])
+            assert np.interp(nodes, vibration.places, shape) == pytest.approx(0, abs=1e-3)
+            signs = np.signbit(shape[np.searchsorted(nodes, vibration.places) % 2 == 0])
             assert np.all(signs == signs[0])
 
 
@@ -89,11 +89,11 @@ def _scaled(shape: Array) -> Array:
 def test_shapes_of_finite_elements(theory: str) -> None:
     """2e-5: other modes by 3e-5 squared, some thousand times as loud, and the elements' error."""
     tool = still(random_tool(3, theory))
-    found = vibrate_tool(tool, 6)
-    few = np.arange(0, len(found.places), 20)
-    for number, plane in enumerate(found.planes):
+    vibration = vibrate_tool(tool, 6)
+    few = np.arange(0, len(vibration.places), 20)
+    for number, plane in enumerate(vibration.planes):
         for mode in (1, 3, 5):
-            wanted = elements_shape(tool, number, mode, found.places[few])
+            wanted = elements_shape(tool, number, mode, vibration.places[few])
             np.testing.assert_allclose(_scaled(plane.shapes[mode][few]), wanted, atol=2e-5)
 
 
@@ -108,10 +108,10 @@ def test_damped_shapes_are_shapes_of_free_motion() -> None:
         section=PLAIN,
         loss_factor=0.05,
     )
-    found = vibrate_tool(tool, 5)
+    vibration = vibrate_tool(tool, 5)
     apart = 7
-    step = found.places[apart]
-    for mode in found.planes[0].damped:
+    step = vibration.places[apart]
+    for mode in vibration.planes[0].damped:
         w = mode.shape[20 : 20 + 4 * apart + 1 : apart]
         fourth = np.array([1, -4, 6, -4, 1]) @ w / step**4
         wanted = -2.0 * mode.eigenvalue**2 / (1000 * (1 + 0.05j)) * w[2]
@@ -122,16 +122,16 @@ def test_damped_shapes_are_shapes_of_free_motion() -> None:
 
 def test_damped_shape_of_hysteresis_alone_is_that_without() -> None:
     """EI (1 + i eta) everywhere leaves the shapes as they are, and real."""
-    still_found, found = (vibrate_tool(bare(section=PLAIN, loss_factor=e), 4) for e in (0.0, 0.1))
-    for k, mode in enumerate(found.planes[0].damped):
+    still_found, actual = (vibrate_tool(bare(section=PLAIN, loss_factor=e), 4) for e in (0.0, 0.1))
+    for k, mode in enumerate(actual.planes[0].damped):
         wanted = still_found.planes[0].shapes[2 + k]
         np.testing.assert_allclose(np.abs(mode.shape), np.abs(wanted), atol=1e-6)
         assert np.max(np.abs(mode.shape.imag)) < 1e-6
 
 
-def test_without_damping_both_tell_the_same() -> None:
-    found = vibrate_tool(still(random_tool(1)), 6).planes[1]
-    for frequency, shape, mode in zip(found.frequency, found.shapes, found.damped, strict=True):
+def test_without_damping_both_report_the_same() -> None:
+    planes = vibrate_tool(still(random_tool(1)), 6).planes[1]
+    for frequency, shape, mode in zip(planes.frequency, planes.shapes, planes.damped, strict=True):
         assert mode.eigenvalue == pytest.approx(1j * frequency)
         assert mode.damping_ratio == pytest.approx(0, abs=1e-12)
         np.testing.assert_allclose(np.abs(mode.shape), np.abs(shape), atol=1e-6)
@@ -158,37 +158,37 @@ def test_rigid_shapes() -> None:
 def test_an_absorber_that_floats() -> None:
     """Nothing holds its mass, and the shaft is at rest; it is told by its station."""
     station = Station("a", 0.5, absorber=Absorber(0.3, (0.0, 2e4)))
-    found = vibrate_tool(bare(station, section=PLAIN), 4).planes
-    assert found[0].rigid == (
+    planes = vibrate_tool(bare(station, section=PLAIN), 4).planes
+    assert planes[0].rigid == (
         "moves to and fro",
         "turns about its left end",
         "absorber at a floats",
     )
-    assert np.count_nonzero(found[0].frequency == 0) == 3
-    assert np.all(found[0].shapes[2] == 0)
-    assert found[0].parameter[3] == pytest.approx(4.730040745, rel=1e-8)
-    assert len(found[1].rigid) == np.count_nonzero(found[1].frequency == 0) == 2
+    assert np.count_nonzero(planes[0].frequency == 0) == 3
+    assert np.all(planes[0].shapes[2] == 0)
+    assert planes[0].parameter[3] == pytest.approx(4.730040745, rel=1e-8)
+    assert len(planes[1].rigid) == np.count_nonzero(planes[1].frequency == 0) == 2
 
 
 def test_parameter() -> None:
     """lambda = (m omega^2 L^3 / EI)^(1/4) with the mass of the shaft."""
-    found = vibrate_tool(bare(section=PLAIN), 3).planes[0]
-    assert found.parameter == pytest.approx([0, 0, 4.730040745], rel=1e-8)
-    omega = found.frequency[2]
-    assert found.parameter[2] ** 4 == pytest.approx(3.0 * omega**2 * 1.5**3 / 1000)
-    assert found.cycles_per_second[2] == pytest.approx(omega / (2 * pi))
+    planes = vibrate_tool(bare(section=PLAIN), 3).planes[0]
+    assert planes.parameter == pytest.approx([0, 0, 4.730040745], rel=1e-8)
+    omega = planes.frequency[2]
+    assert planes.parameter[2] ** 4 == pytest.approx(3.0 * omega**2 * 1.5**3 / 1000)
+    assert planes.cycles_per_second[2] == pytest.approx(omega / (2 * pi))
 
 
 # -- what lies together ----------------------------------------------------------------------------
 
 
-def momentum(tool: Tool, places: Array, one: Array, other: Array) -> float:
+def momentum(tool: Tool, places: Array, item: Array, other: Array) -> float:
     """Of one shape in another: all masses that move with the shaft, no inertia."""
-    total = 2.0 * float(np.trapezoid(one * other, places))
+    total = 2.0 * float(np.trapezoid(item * other, places))
     for station in tool.stations:
         mass = station.mass + (station.hand.hands * station.hand.mass if station.hand else 0.0)
         at = int(np.argmin(np.abs(places - station.position)))
-        total += mass * float(one[at] * other[at])
+        total += mass * float(item[at] * other[at])
     return total
 
 
@@ -201,23 +201,25 @@ def test_two_modes_at_one_frequency_share_no_momentum(hand: Hand | None) -> None
     left = Station("left", 0.0, mass=4.0) if hand is None else Station("left", 0.0, hand=hand)
     right = Station("right", LENGTH, mass=4.0)
     tool = bare(left, right, clamp("vice", LENGTH / 2), section=PLAIN)
-    found = vibrate_tool(tool, 4)
-    plane = found.planes[0]
+    vibration = vibrate_tool(tool, 4)
+    plane = vibration.planes[0]
     for k in (0, 2):
         assert plane.frequency[k + 1] / plane.frequency[k] - 1 < 1e-8
-        one, other = plane.shapes[k : k + 2]
-        shared = momentum(tool, found.places, one, other)
-        own = momentum(tool, found.places, one, one) * momentum(tool, found.places, other, other)
+        first, other = plane.shapes[k : k + 2]
+        shared = momentum(tool, vibration.places, first, other)
+        own = momentum(tool, vibration.places, first, first) * momentum(
+            tool, vibration.places, other, other
+        )
         assert abs(shared) < 1e-3 * sqrt(own)
 
 
 def test_absorbers_that_swing_against_each_other_leave_the_shaft_at_rest() -> None:
     """Two equal ones at one place: nothing moves the shaft at their own frequency."""
     pair = [Station(name, 0.5, absorber=Absorber(0.3, both(2e4))) for name in "ab"]
-    found = vibrate_tool(bare(*pair), 6).planes[0]
-    own = int(np.argmin(np.abs(found.frequency - sqrt(2e4 / 0.3))))
-    assert found.frequency[own] == pytest.approx(sqrt(2e4 / 0.3), rel=1e-9)
-    assert np.max(np.abs(found.shapes[own])) < 1e-6
+    planes = vibrate_tool(bare(*pair), 6).planes[0]
+    own = int(np.argmin(np.abs(planes.frequency - sqrt(2e4 / 0.3))))
+    assert planes.frequency[own] == pytest.approx(sqrt(2e4 / 0.3), rel=1e-9)
+    assert np.max(np.abs(planes.shapes[own])) < 1e-6
 
 
 # -- the whole -------------------------------------------------------------------------------------
@@ -232,10 +234,10 @@ def test_notes() -> None:
 
 
 def test_as_plain_values() -> None:
-    found = vibrate_tool(random_tool(4), 4)
-    told = found.to_dict()
-    for name, plane in zip(("vertical", "lateral"), found.planes, strict=True):
-        part = told["planes"][name]
+    vibration = vibrate_tool(random_tool(4), 4)
+    content = vibration.to_dict()
+    for name, plane in zip(("vertical", "lateral"), vibration.planes, strict=True):
+        part = content["planes"][name]
         np.testing.assert_array_equal(part["natural_frequencies"], plane.frequency / (2 * pi))
         np.testing.assert_array_equal(part["shapes"], plane.shapes)
         assert part["rigid"] == list(plane.rigid)
@@ -243,7 +245,7 @@ def test_as_plain_values() -> None:
             [mode.eigenvalue.real, mode.eigenvalue.imag] for mode in plane.damped
         ]
     np.testing.assert_array_equal(
-        told["natural_frequencies"], told["planes"]["vertical"]["natural_frequencies"]
+        content["natural_frequencies"], content["planes"]["vertical"]["natural_frequencies"]
     )
 
 
@@ -258,11 +260,11 @@ def test_few_modes(number: int) -> None:
 def test_held_ends_stand_still() -> None:
     """Pins of 1e15 N/m: a sine, with no false nodes at its ends but for what rounding makes."""
     ends = [Station(n, x, stiffness=both(HARD)) for n, x in (("a", 0.0), ("b", LENGTH))]
-    found = vibrate_tool(bare(*ends, section=PLAIN), 3)
-    for k, shape in enumerate(found.planes[0].shapes, 1):
-        wanted = np.sin(k * pi * found.places / LENGTH)
+    vibration = vibrate_tool(bare(*ends, section=PLAIN), 3)
+    for k, shape in enumerate(vibration.planes[0].shapes, 1):
+        wanted = np.sin(k * pi * vibration.places / LENGTH)
         np.testing.assert_allclose(np.abs(shape), np.abs(wanted), atol=1e-4)  # of the 401 places
-        nodes = found.planes[0].nodes[k - 1]
+        nodes = vibration.planes[0].nodes[k - 1]
         inner = nodes[(nodes > 1e-6) & (nodes < LENGTH - 1e-6)]
         assert inner == pytest.approx(LENGTH * np.arange(1, k) / k, abs=1e-7)
-    assert scale_of(found.tool) > 0
+    assert scale_of(vibration.tool) > 0

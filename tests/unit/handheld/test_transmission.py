@@ -48,29 +48,29 @@ def test_all_that_holds_a_station_counts(theory: str) -> None:
     """Hand with its mass, harness and ground, in each plane under a force in that plane."""
     tool = random_tool(4, theory)
     speeds = np.array([150.0, 420.0, 900.0])
-    found = transmit(tool, speeds, "head")
+    transmission = transmit(tool, speeds, "head")
     for plane in range(2):
         elements = reference(tool, plane, 192).response(speeds, [(tool.shaft.length, 1.0, 0.0)])
         for station, attached in zip(tool.stations, attached_of(tool, plane), strict=True):
-            if station.name not in found.stations:
+            if station.name not in transmission.stations:
                 continue
             moved = elements.displacement([station.position])[:, 0]
             mass = station.hand.hands * station.hand.mass if station.hand else 0.0
             force = attached.stiffness + 1j * speeds * attached.damping - speeds**2 * mass
-            ratio = found.stations[station.name].ratio[plane]
+            ratio = transmission.stations[station.name].ratio[plane]
             np.testing.assert_allclose(ratio, force * moved, rtol=1e-6)
-    assert set(found.stations) == {"front", "rear", "middle"}
+    assert set(transmission.stations) == {"front", "rear", "middle"}
 
 
 def test_zeros_of_the_undamped_tool() -> None:
     """The ratio is real and changes its sign at resonances and at quiet speeds alone."""
     tool = brush_cutter()
-    found = transmit(tool, SPEEDS)
+    transmission = transmit(tool, SPEEDS)
     natural = natural_frequencies(tool, 12)[0]
-    for one in found.stations.values():
-        assert np.max(np.abs(one.ratio.imag)) == 0
-        quiet = one.quiet[0][one.lowest[0] < 1e-5]
-        sign = np.sign(one.ratio[0].real)
+    for station in transmission.stations.values():
+        assert np.max(np.abs(station.ratio.imag)) == 0
+        quiet = station.quiet[0][station.lowest[0] < 1e-5]
+        sign = np.sign(station.ratio[0].real)
         turning = np.flatnonzero(sign[1:] != sign[:-1])
         expected = sorted(
             [w for w in natural if SPEEDS[0] < w < SPEEDS[-1]] + [float(w) for w in quiet]
@@ -93,8 +93,8 @@ def test_where_the_force_acts_there_is_one_zero_between_two_resonances() -> None
 
 
 def _between(tool: Tool, speeds: Array) -> tuple[Array, Array]:
-    one = transmit(tool, speeds, "handle").stations["handle"]
-    return one.size, one.quiet[0][one.lowest[0] < 1e-3]
+    first = transmit(tool, speeds, "handle").stations["handle"]
+    return first.size, first.quiet[0][first.lowest[0] < 1e-3]
 
 
 @pytest.mark.parametrize("theory", THEORIES)
@@ -103,12 +103,12 @@ def test_quiet_speeds_are_minima(theory: str, seed: int) -> None:
     """Closer sampling finds nothing lower around them, and the curve rises to both sides."""
     tool = random_tool(seed, theory)
     speeds = np.linspace(100, 1500, 300)
-    found = transmit(tool, speeds)
+    transmission = transmit(tool, speeds)
     step = speeds[1] - speeds[0]
     count = 0
-    for name, one in found.stations.items():
+    for name, value in transmission.stations.items():
         for plane in range(2):
-            for quiet, lowest in zip(one.quiet[plane], one.lowest[plane], strict=True):
+            for quiet, lowest in zip(value.quiet[plane], value.lowest[plane], strict=True):
                 near = quiet + step * np.linspace(-0.9, 0.9, 181)
                 size = transmit(tool, near).stations[name].size[plane]
                 assert np.min(size) >= lowest * (1 - 1e-9)
@@ -133,8 +133,8 @@ def test_what_shakes_does_not_matter() -> None:
     """It is under a unit force; the tool's own excitations only name the place."""
     tool = brush_cutter()
     other = replace(tool, excitations=(Excitation("e", "engine", unbalance=0.1, ratio=-3.0),))
-    one, two = (transmit(each, SPEEDS[:5]).stations["handle"].ratio for each in (tool, other))
-    np.testing.assert_array_equal(one, two)
+    first, two = (transmit(each, SPEEDS[:5]).stations["handle"].ratio for each in (tool, other))
+    np.testing.assert_array_equal(first, two)
 
 
 def test_refusals() -> None:
@@ -147,12 +147,12 @@ def test_refusals() -> None:
 
 
 def test_as_plain_values() -> None:
-    found = transmit(random_tool(2), SPEEDS[:50])
-    told = found.to_dict()
-    assert told["source"] == "engine"
-    for name, one in found.stations.items():
-        part = told["transmission"][name]
-        np.testing.assert_array_equal(part["ratio"], np.abs(one.ratio[0]))
-        np.testing.assert_array_equal(part["ratio_lateral"], np.abs(one.ratio[1]))
-        np.testing.assert_array_equal(part["phase_lateral"], np.angle(one.ratio[1]))
-        np.testing.assert_array_equal(part["quiet_speeds_lateral"], one.quiet[1])
+    transmission = transmit(random_tool(2), SPEEDS[:50])
+    content = transmission.to_dict()
+    assert content["source"] == "engine"
+    for name, value in transmission.stations.items():
+        part = content["transmission"][name]
+        np.testing.assert_array_equal(part["ratio"], np.abs(value.ratio[0]))
+        np.testing.assert_array_equal(part["ratio_lateral"], np.abs(value.ratio[1]))
+        np.testing.assert_array_equal(part["phase_lateral"], np.angle(value.ratio[1]))
+        np.testing.assert_array_equal(part["quiet_speeds_lateral"], value.quiet[1])

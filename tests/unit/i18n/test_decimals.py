@@ -48,8 +48,10 @@ def test_names_and_what_is_to_be_typed_keep_their_point() -> None:
     with speaking("de"):
         assert say('give "{a}", not {b}', a="1.5 mm", b="2.5 mm") == 'give "1.5 mm", not 2,5 mm'
         assert say("„{name}“ and {name!r}", name="rod 1.5") == "„rod 1.5“ and 'rod 1.5'"
-        told = say("{file}, {version}, {joint}", file="a.1.5.toml", version="1.2.3", joint="P1.5")
-        assert told == "a.1.5.toml, 1.2.3, P1.5"
+        reported = say(
+            "{file}, {version}, {joint}", file="a.1.5.toml", version="1.2.3", joint="P1.5"
+        )
+        assert reported == "a.1.5.toml, 1.2.3, P1.5"
         assert say("{what}", what=say('in "{a}"', a="0.5 mm")) == 'in "0.5 mm"'
 
 
@@ -106,7 +108,7 @@ def test_a_workshop_drawing_has_it(language: str, tmp_path: Path) -> None:
     texts = [text.dxf.text for text in drawing.modelspace().query("TEXT")]
     assert any(re.search(r"\d,\d", text) for text in texts)
     assert [text for text in texts if re.search(POINTED, text)] == []
-    signs = {one.override().get("dimdsep") for one in drawing.modelspace().query("DIMENSION")}
+    signs = {item.override().get("dimdsep") for item in drawing.modelspace().query("DIMENSION")}
     assert signs == {ord(",")}
 
 

@@ -43,7 +43,7 @@ def error_of(text: str) -> EquipoiseError:
 
 
 @pytest.mark.parametrize("case", FAILS)
-def test_a_refusal_is_told_in_each_language(case):
+def test_a_refusal_is_reported_in_each_language(case):
     old, new, *parts = FAILS[case]
     assert old in FOUR_BAR
     error = error_of(FOUR_BAR.replace(old, new, 1))
@@ -66,7 +66,7 @@ def test_the_place_of_an_error_stands_before_its_sentence():
     assert outer.message("ja") == "--set：a.toml: links.crank.mass：質量は負にできません"
 
 
-def test_what_no_catalogue_has_is_told_in_english_and_says_so():
+def test_what_no_catalogue_has_is_reported_in_english_and_says_so():
     error = MotionError("it does not turn")
     assert error.message("en") == "it does not turn"
     assert error.message("ja") == "英語のまま：it does not turn"
@@ -83,9 +83,9 @@ def test_a_typed_number_stands_in_every_language():
     machine = loads(FOUR_BAR)
     with pytest.raises(ModelError) as caught:
         machine.with_link("crank", mass=-0.001)
-    told = ModelError("mass", as_written(caught.value.what, ["-1 g"]))
-    assert str(told) == "mass: got -1 g; a mass cannot be negative"
-    assert told.message("ja") == "mass：-1 g が与えられました。質量は負にできません"
+    reported = ModelError("mass", as_written(caught.value.what, ["-1 g"]))
+    assert str(reported) == "mass: got -1 g; a mass cannot be negative"
+    assert reported.message("ja") == "mass：-1 g が与えられました。質量は負にできません"
 
 
 def test_lines_for_the_file_stand_below_the_sentence_and_not_in_it():
@@ -136,12 +136,12 @@ def test_names_are_joined_as_each_language_does():
     many = [Note("{name}", name=str(k)) for k in range(3000)]
     assert all_of(many, commas=True) == ", ".join(many[:-1]) + " and 2999"
     assert all_of(many).localized() == " and ".join(many)
-    found = unknown("crnk", ["crank", "rod"], "link")
-    assert found == "no link is called 'crnk'; did you mean 'crank'?"
+    result = unknown("crnk", ["crank", "rod"], "link")
+    assert result == "no link is called 'crnk'; did you mean 'crank'?"
     assert unknown("x", ["crank", "rod"], "link").endswith("there are 'crank', 'rod'")
 
 
-def test_a_page_and_a_report_are_told_in_their_language():
+def test_a_page_and_a_report_are_reported_in_their_language():
     error = ModelError("links.crank.mass", Note("a mass cannot be negative"))
     content = refused(3, error, "ko").content
     assert content["message"] == "links.crank.mass: 질량은 음수일 수 없습니다"

@@ -10,7 +10,7 @@ from equipoise.mechanism.outputs.declared import DECLARED
 def test_every_output_has_a_meaning() -> None:
     """By its label; parts of machines declare outputs, and their meanings, when they are loaded."""
     eq.analyze(eq.load("yamashita-1"))
-    labels = {one.label for one in DECLARED.values()}
+    labels = {value.label for value in DECLARED.values()}
     assert labels - MEANINGS.keys() == set()
     assert MEANINGS.keys() - labels == set()
 

@@ -33,8 +33,8 @@ SPOKEN = {
 
 @pytest.mark.parametrize("word", SPOKEN)
 def test_the_form_goes_by_the_sound_before_it(word: str) -> None:
-    told = with_particles(f"{word}을(를) {word}(으)로 {word}와(과)", "ko")
-    assert told == SPOKEN[word]
+    reported = with_particles(f"{word}을(를) {word}(으)로 {word}와(과)", "ko")
+    assert reported == SPOKEN[word]
 
 
 def test_both_forms_stay_where_nobody_knows_the_sound() -> None:

@@ -102,31 +102,33 @@ def calls(module: ast.Module) -> Iterator[tuple[ast.AST, ast.Call]]:
 def sentences(call: ast.Call, refusing: frozenset[str]) -> list[ast.expr]:
     """What a call says to a reader; the place of an error in a file is none of it."""
     name = name_of(call.func)
-    given = [*call.args, *(one.value for one in call.keywords)]
+    given = [*call.args, *(keyword.value for keyword in call.keywords)]
     if name in ("ModelError", "at_place"):
         return given[1:2]
     return given if name in refusing else []
 
 
-def found_in(module: ast.Module) -> list[int]:
+def untranslated_lines(module: ast.Module) -> list[int]:
     """Lines on which a refusal or a note is made of plain English."""
     refusing = (error_classes() | SAID_BY) - FOR_PROGRAMMERS
     lines = []
     for scope, call in calls(module):
-        if any(plain(one, scope, TWO_WORDS) for one in sentences(call, refusing)):
+        if any(plain(sentence, scope, TWO_WORDS) for sentence in sentences(call, refusing)):
             lines.append(call.lineno)
         if name_of(call.func) == "Note" and any(
-            plain(one.value, scope, THREE_WORDS) for one in call.keywords
+            plain(keyword.value, scope, THREE_WORDS) for keyword in call.keywords
         ):
             lines.append(call.lineno)
     return lines
 
 
 def test_no_refusal_and_no_note_is_plain_english() -> None:
-    found = {
-        f"{file.relative_to(SOURCES)}:{line}" for file in FILES for line in found_in(tree_of(file))
+    actual = {
+        f"{file.relative_to(SOURCES)}:{line}"
+        for file in FILES
+        for line in untranslated_lines(tree_of(file))
     }
-    assert found == set()
+    assert actual == set()
 
 
 @pytest.mark.parametrize(
@@ -145,7 +147,7 @@ def test_no_refusal_and_no_note_is_plain_english() -> None:
     ],
 )
 def test_plain_english_is_found(made: str) -> None:
-    assert found_in(ast.parse(made)) != []
+    assert untranslated_lines(ast.parse(made)) != []
 
 
 @pytest.mark.parametrize(
@@ -159,7 +161,7 @@ def test_plain_english_is_found(made: str) -> None:
     ],
 )
 def test_templates_are_let_be(made: str) -> None:
-    assert found_in(ast.parse(made)) == []
+    assert untranslated_lines(ast.parse(made)) == []
 
 
 LITERAL_WORDS = re.compile(r"(?<![\w.\-/\[{])[A-Za-z]{2,}(?![\w.\-/=(\[{])")
@@ -276,7 +278,7 @@ def test_errors_take_no_plain_text() -> None:
     assert {*said} == {"Note", "Note | None"}
 
 
-def test_what_is_wrong_with_a_call_is_told_as_other_refusals_are() -> None:
+def test_what_is_wrong_with_a_call_is_reported_as_other_refusals_are() -> None:
     error = CallError("balance: got 3 for machine")
     assert isinstance(error, UsageError)
     assert error.message("ja") == "英語のまま：balance: got 3 for machine"

@@ -25,21 +25,21 @@ another thing than what drives in a pair of gears."""
 
 def texts(language: str) -> list[str]:
     """Everything that is said in a language: catalogue, examples, documentation."""
-    found = [*catalogue(language).values()]
+    actual = [*catalogue(language).values()]
     for path in sorted((ROOT / "src/equipoise/examples").glob("*.toml")):
         model = tomllib.loads(path.read_text(encoding="utf-8"))
         words = (model.get(key) for key in ("title", "description"))
-        found += [one[language] for one in words if isinstance(one, dict) and language in one]
-    return found + [
+        actual += [word[language] for word in words if isinstance(word, dict) and language in word]
+    return actual + [
         path.read_text("utf-8") for path in sorted((ROOT / "docs" / language).iterdir())
     ]
 
 
 @pytest.mark.parametrize("language", OTHERWISE)
 def test_every_thing_has_one_name(language: str) -> None:
-    found = texts(language)
-    assert len(found) > 1000
-    wrong = {term: text for text in found for term in OTHERWISE[language] if term in text}
+    result = texts(language)
+    assert len(result) > 1000
+    wrong = {term: text for text in result for term in OTHERWISE[language] if term in text}
     assert wrong == {}
 
 
@@ -53,6 +53,6 @@ def test_labels_have_the_commas_of_their_language() -> None:
     ask(session, "speak", languages=["ja"])
     session.view_state.variants = session.view_state.variants.pinned(session.current())
     (state, *_) = ask(session, "compare", on=False)
-    labels = [one["label"] for one in state.content["fields"]]
+    labels = [entry["label"] for entry in state.content["fields"]]
     assert any("、" in label for label in labels)
     assert [label for label in labels if re.search(r"[ぁ-んァ-ヶ一-龠], ", label)] == []

@@ -43,12 +43,15 @@ def test_a_text_is_said_in_the_language_that_is_spoken_or_in_the_first_there_is(
 
 
 def test_a_text_by_language_equals_what_has_the_same_in_all():
-    one = Worded({"ja": "あ", "en": "a"})
+    first = Worded({"ja": "あ", "en": "a"})
     assert (
-        one == Worded({"en": "a", "ja": "あ"}) == deepcopy(one) == pickle.loads(pickle.dumps(one))
+        first
+        == Worded({"en": "a", "ja": "あ"})
+        == deepcopy(first)
+        == pickle.loads(pickle.dumps(first))
     )
-    assert one != Worded({"en": "a", "ja": "い"})
-    assert one == "a" and one != "あ" and hash(one) == hash("a")
+    assert first != Worded({"en": "a", "ja": "い"})
+    assert first == "a" and first != "あ" and hash(first) == hash("a")
     assert loads(BY_LANGUAGE) == loads(dumps(loads(BY_LANGUAGE)))
     assert loads(BY_LANGUAGE) != loads(BY_LANGUAGE.replace("四節", "4節"))
 
@@ -61,7 +64,7 @@ def test_what_is_no_text_by_language_is_refused_in_python(given):
         replace(machine, title=given)
 
 
-def test_a_model_that_is_written_tells_what_was_done_in_each_language(tmp_path):
+def test_a_model_that_is_written_reports_what_was_done_in_each_language(tmp_path):
     machine = loads(BY_LANGUAGE)
     origin = Note("Design {number} of {of}.", number=3, of="A").localized
     for _ in range(2):
@@ -95,23 +98,23 @@ def test_bundled_files_have_each_text_in_each_language(name):
 @pytest.mark.exhaustive(but=["nagamine-irie-ko"])
 @pytest.mark.parametrize(("name", "language"), [("drag-link", "ja"), ("nagamine-irie", "ko")])
 def test_a_report_begins_with_the_title_in_its_language(name, language):
-    found = find(name)
-    texts = found.owner.title.texts
-    told = page(build(found, language))
-    assert f"<title>{texts[language]}" in told
-    assert texts["en"] not in told.partition("</header>")[0]
-    assert found.owner.description.texts[language].split("\n")[0] in told
+    place = find(name)
+    texts = place.owner.title.texts
+    reported = page(build(place, language))
+    assert f"<title>{texts[language]}" in reported
+    assert texts["en"] not in reported.partition("</header>")[0]
+    assert place.owner.description.texts[language].split("\n")[0] in reported
 
 
-def test_a_page_is_told_titles_and_descriptions_in_its_language():
+def test_a_page_gets_titles_and_descriptions_in_its_language():
     session = Session()
     (spoken,) = session.receive(message_of({"type": "speak", "seq": 1, "languages": ["ko-KR"]}))
     assert spoken.content["language"] == "ko"
     hello = next(session.receive(message_of({"type": "ready", "seq": 2})))
     drag = eq.load("drag-link")
-    told = {one["name"]: one["title"] for one in hello.content["examples"]}
-    assert told["drag-link"] == drag.title.texts["ko"]
+    content = {entry["name"]: entry["title"] for entry in hello.content["examples"]}
+    assert content["drag-link"] == drag.title.texts["ko"]
     opened = [*session.receive(message_of({"type": "open", "seq": 3, "example": "drag-link"}))]
-    state = next(one.content for one in opened if one.content["type"] == "state")
+    state = next(item.content for item in opened if item.content["type"] == "state")
     assert state["title"] == drag.title.texts["ko"]
     assert state["description"] == drag.description.texts["ko"]

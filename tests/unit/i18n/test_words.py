@@ -47,7 +47,7 @@ DEMANDED = sorted(set(COMPLETE) - {"en"})
 @cache
 def said() -> set[str]:
     """Texts of `say`, `to_say`, `Note` and `unknown` in the package; `to_say` has a plain text."""
-    found = set()
+    result = set()
     for path in SOURCES.rglob("*.py"):
         for node in nodes(path):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
@@ -55,52 +55,52 @@ def said() -> set[str]:
                 if node.func.id in ("to_say", "with_meaning"):
                     assert isinstance(first, ast.Constant), f"{path}:{node.lineno}"
                 if node.func.id == "with_meaning":  # a label and its meaning
-                    found.update(one.value for one in node.args if isinstance(one, ast.Constant))
+                    result.update(arg.value for arg in node.args if isinstance(arg, ast.Constant))
                 if node.func.id == "unknown" and len(node.args) > 2:  # what kind of name it is
                     first = node.args[2]
                 if node.func.id == "needed" and len(node.args) > 1:  # what it is needed for
                     first = node.args[1]
                 either = [first.body, first.orelse] if isinstance(first, ast.IfExp) else [first]
                 if node.func.id in ("say", "to_say", "Note", "unknown", "needed", "lacking"):
-                    found.update(one.value for one in either if isinstance(one, ast.Constant))
-    return found
+                    result.update(item.value for item in either if isinstance(item, ast.Constant))
+    return result
 
 
 @cache
 def words_of_keys() -> set[str]:
     """What numbers of files are called whose keys say nothing else."""
-    found: set[str] = set()
+    result: set[str] = set()
 
     def look(kind: Kind, key: Key | None) -> None:
         if isinstance(kind, KeyTable):
-            for one in all_keys(kind.type).values():
-                look(one.kind, one)
+            for value in all_keys(kind.type).values():
+                look(value.kind, value)
         elif isinstance(kind, Tables | Named | Listing | OneOr | Planes):
             look(kind.item, key)
         elif (
             isinstance(kind, Quantity | Number | Whole | Point | DirectionKind) and key is not None
         ):
-            found.update([] if key.word else [plain_word(key)])
+            result.update([] if key.word else [plain_word(key)])
 
     for document in ("linkage", "tool"):
         look(KeyTable(document_of(document)), None)
-    return (found | words_of_forms()) - {"schema"}
+    return (result | words_of_forms()) - {"schema"}
 
 
 def words_of_forms() -> set[str]:
     """What keys are called in the forms of the page and mean, and the tables that these are of."""
-    found: set[str] = set()
+    result: set[str] = set()
     waiting: list[type[Frozen]] = [document_of("linkage")]
     seen = set(waiting)
     while waiting:
         of = waiting.pop()
         known = [*own_keys(of).values(), *tables_below(of).values()]
-        found.update(plain_word(one) for one in known if not one.word or "{" in one.word)
-        found.update(one.text for one in known)
-        inner = {table.type for one in known if (table := entry_of(one.kind)) is not None}
+        result.update(plain_word(item) for item in known if not item.word or "{" in item.word)
+        result.update(item.text for item in known)
+        inner = {table.type for item in known if (table := entry_of(item.kind)) is not None}
         waiting += inner - seen
         seen |= inner
-    return found
+    return result
 
 
 @cache

@@ -32,8 +32,8 @@ NAMES = [
 def test_quantities_follow_60_to_62() -> None:
     """From slope n, intercept m and beta alone, by both methods."""
     stiffness = 1000.0
-    found = eq.measured.identify_decay(simulated(noise=0.005), stiffness)
-    for method in (found.by_line, found.by_record):
+    decay = eq.measured.identify_decay(simulated(noise=0.005), stiffness)
+    for method in (decay.by_line, decay.by_record):
         beta = method["damped_angular_frequency"].value
         n = np.exp(-method["logarithmic_decrement"].value / 2)
         mass = stiffness / (beta**2 * ((log(n) / pi) ** 2 + 1))
@@ -44,9 +44,9 @@ def test_quantities_follow_60_to_62() -> None:
         assert method["damping_ratio"].value == pytest.approx(ratio, rel=1e-12)
         assert method["natural_frequency"].value == pytest.approx(sqrt(stiffness / mass) / 2 / pi)
         assert method["decay_rate"].value == pytest.approx(damping / 2 / mass, rel=1e-12)
-    n, m = found.line["slope"].value, found.line["intercept"].value
+    n, m = decay.line["slope"].value, decay.line["intercept"].value
     force = -m * stiffness / (2 * (1 + n))
-    assert found.by_line["coulomb_force"].value == pytest.approx(force, rel=1e-12)
+    assert decay.by_line["coulomb_force"].value == pytest.approx(force, rel=1e-12)
 
 
 def test_names_by_kind() -> None:
@@ -72,8 +72,8 @@ def test_an_arm_makes_angles_of_lengths() -> None:
 
 def test_intervals_of_what_follows_from_others() -> None:
     """Twice the decrement has twice the interval; inertia is as uncertain as frequency squared."""
-    found = eq.measured.identify_decay(simulated(noise=0.005), 1000.0)
-    for method in (found.by_line, found.by_record):
+    decay = eq.measured.identify_decay(simulated(noise=0.005), 1000.0)
+    for method in (decay.by_line, decay.by_record):
         relative = {name: (q.high - q.low) / q.value for name, q in method.items() if q.low}
         assert relative["mass"] == pytest.approx(2 * relative["natural_frequency"], rel=1e-6)
         assert relative["coulomb_force"] == pytest.approx(relative["coulomb_displacement"])
@@ -82,8 +82,8 @@ def test_intervals_of_what_follows_from_others() -> None:
 
 
 def test_to_dict() -> None:
-    found = eq.measured.identify_decay(simulated(noise=0.005), 1000.0)
-    plain = found.to_dict()
+    decay = eq.measured.identify_decay(simulated(noise=0.005), 1000.0)
+    plain = decay.to_dict()
     assert plain["kind"] == "length"
     assert plain["samples"] == 1000
     assert plain["duration"] == pytest.approx(5.0)
@@ -91,19 +91,19 @@ def test_to_dict() -> None:
     heights = plain["half_swings"]["heights"]
     assert len(heights) == len(plain["half_swings"]["turning_points"]["time"]) - 1
     assert all(after < before for before, after in pairwise(heights))
-    assert plain["by_record"]["mass"] == found.by_record["mass"].to_dict()
-    assert plain["notes"] == list(found.notes)
+    assert plain["by_record"]["mass"] == decay.by_record["mass"].to_dict()
+    assert plain["notes"] == list(decay.notes)
 
 
 def test_the_fitted_motion() -> None:
     record = simulated(noise=0.01, center=2.0)
-    found = eq.measured.identify_decay(record)
+    decay = eq.measured.identify_decay(record)
     exact = simulated(center=2.0).displacement
-    part = record.time < found.turns.time[-1]
-    assert np.max(np.abs(found.fitted(record.time) - exact)[part]) < 0.003
-    assert found.whole.motion.center == pytest.approx(2.0, abs=0.002)
-    assert found.whole.rms == pytest.approx(0.01, rel=0.1)
-    assert found.turns.noise == pytest.approx(0.01, rel=0.1)
+    part = record.time < decay.turns.time[-1]
+    assert np.max(np.abs(decay.fitted(record.time) - exact)[part]) < 0.003
+    assert decay.whole.motion.center == pytest.approx(2.0, abs=0.002)
+    assert decay.whole.rms == pytest.approx(0.01, rel=0.1)
+    assert decay.turns.noise == pytest.approx(0.01, rel=0.1)
 
 
 # -- notes -----------------------------------------------------------------------------------------
@@ -139,37 +139,37 @@ NOTED: dict[str, tuple[dict[str, float], str, str]] = {
 
 
 @pytest.mark.parametrize(("values", "said", "unsaid"), NOTED.values(), ids=NOTED)
-def test_terms_that_cannot_be_told(values: dict[str, float], said: str, unsaid: str) -> None:
+def test_terms_that_cannot_be_reported(values: dict[str, float], said: str, unsaid: str) -> None:
     """Where a term is lost in the noise it is told, and a good record has no note at all."""
-    told = notes(simulated(**{"noise": 0.005, **values}))
-    assert said in told
-    assert unsaid not in told
+    reported = notes(simulated(**{"noise": 0.005, **values}))
+    assert said in reported
+    assert unsaid not in reported
 
 
 def test_parts_that_are_left_out() -> None:
     time = np.linspace(0.0, 8.0, 4000)
-    told = notes(noisy(time, held(time, 1.25)))
-    assert "the first 1.25 s, before the largest half-swing, are left out" in told
-    assert "s are left out: the motion has stopped, or swings no more than the noise" in told
+    reported = notes(noisy(time, held(time, 1.25)))
+    assert "the first 1.25 s, before the largest half-swing, are left out" in reported
+    assert "s are left out: the motion has stopped, or swings no more than the noise" in reported
 
 
 def test_three_half_swings() -> None:
     """One line, no interval; the whole record has them all the same."""
-    found = eq.measured.identify_decay(simulated(duration=0.8, count=100, noise=0.002))
-    assert len(found.turns.heights) == 3
-    assert found.by_line["damping_ratio"].low is None
-    assert not found.by_line["decay_rate"].includes_zero
-    assert found.by_record["damping_ratio"].low is not None
-    assert "three half-swings have exactly one line" in "\n".join(found.notes)
+    decay = eq.measured.identify_decay(simulated(duration=0.8, count=100, noise=0.002))
+    assert len(decay.turns.heights) == 3
+    assert decay.by_line["damping_ratio"].low is None
+    assert not decay.by_line["decay_rate"].includes_zero
+    assert decay.by_record["damping_ratio"].low is not None
+    assert "three half-swings have exactly one line" in "\n".join(decay.notes)
 
 
 def test_a_vibration_that_is_fed() -> None:
     """Growing by 1 % in all, which hardly shows."""
     time = np.linspace(0.0, 6.0, 3000)
     record = eq.measured.Record(time, np.exp(0.002 * time) * np.sin(OMEGA * time))
-    told = notes(record)
-    assert "viscous damping comes out negative: something feeds the vibration" in told
-    assert "slope of 1 or more" in told
+    reported = notes(record)
+    assert "viscous damping comes out negative: something feeds the vibration" in reported
+    assert "slope of 1 or more" in reported
 
 
 def test_a_damping_that_is_neither() -> None:
@@ -180,18 +180,20 @@ def test_a_damping_that_is_neither() -> None:
         return [y[1], -(OMEGA**2) * y[0] - 0.12 * y[1] * abs(y[1])]
 
     moved = solve_ivp(pull, (0.0, 6.0), [1.0, 0.0], t_eval=time, rtol=1e-9, atol=1e-11).y[0]
-    told = notes(noisy(time, moved, 0.003))
-    assert "times their noise: viscous damping and Coulomb friction alone do not describe" in told
-    assert "its intervals are widened for that" in told
+    reported = notes(noisy(time, moved, 0.003))
+    assert (
+        "times their noise: viscous damping and Coulomb friction alone do not describe" in reported
+    )
+    assert "its intervals are widened for that" in reported
 
 
 def test_methods_that_contradict_each_other() -> None:
-    found = eq.measured.identify_decay(simulated(noise=0.005))
-    frequency = found.by_record["natural_frequency"]
-    assert not list(_on_methods(found.by_line, found.by_record))
+    decay = eq.measured.identify_decay(simulated(noise=0.005))
+    frequency = decay.by_record["natural_frequency"]
+    assert not list(_on_methods(decay.by_line, decay.by_record))
     moved = FittedValue(*(1.1 * value for value in astuple(frequency)))
-    told = list(_on_methods(found.by_line, {**found.by_record, "natural_frequency": moved}))
-    assert told == [
+    texts = list(_on_methods(decay.by_line, {**decay.by_record, "natural_frequency": moved}))
+    assert texts == [
         "line and whole record contradict each other on natural frequency: their intervals have "
         "nothing in common"
     ]

@@ -24,29 +24,29 @@ LEAST, MOST = 0.89, 0.995
 def test_without_noise_the_whole_record_gives_the_truth() -> None:
     """To rounding; the line to 1e-3, since its polynomials are no cosines."""
     for ratio, coulomb in ((0.02, 0.03), (0.1, 0.0), (0.0, 0.05), (0.25, 0.01)):
-        found = identify_decay(simulated(ratio=ratio, coulomb=coulomb, center=3.0))
+        decay = identify_decay(simulated(ratio=ratio, coulomb=coulomb, center=3.0))
         truth = {
             "natural_angular_frequency": OMEGA,
             "damping_ratio": ratio,
             "coulomb_displacement": coulomb,
         }
         for name, value in truth.items():
-            assert found.by_record[name].value == pytest.approx(value, rel=1e-9, abs=1e-12)
-            assert found.by_line[name].value == pytest.approx(value, rel=1e-3, abs=1e-3)
+            assert decay.by_record[name].value == pytest.approx(value, rel=1e-9, abs=1e-12)
+            assert decay.by_line[name].value == pytest.approx(value, rel=1e-3, abs=1e-3)
 
 
 @cache
 def identified(
     ratio: float, coulomb: float, noise: float, colour: float = 0.0, runs: int = RUNS
 ) -> list[Decay]:
-    found = []
+    actual = []
     for seed in range(runs):
         rng = np.random.default_rng(seed)
         white = rng.normal(0.0, noise * (1 - colour**2) ** 0.5, 900)
         added = lfilter([1.0], [1.0, -colour], white)[-600:]
         record = simulated(4.0, 600, ratio, coulomb, center=0.2, start=1.2)
-        found.append(identify_decay(eq.measured.Record(record.time, record.displacement + added)))
-    return found
+        actual.append(identify_decay(eq.measured.Record(record.time, record.displacement + added)))
+    return actual
 
 
 CASES = {
@@ -94,7 +94,7 @@ def test_correlated_noise_widens_the_intervals() -> None:
         quantities = [d.by_record[name] for d in identified(*case, 0.9, FEW)]
         assert np.mean([q.low <= value <= q.high for q in quantities]) > 0.85, name
     decays = identified(*case, 0.0, FEW), identified(*case, 0.9, FEW)
-    white, coloured = (np.median([_width(one) for one in each]) for each in decays)
+    white, coloured = (np.median([_width(item) for item in each]) for each in decays)
     assert coloured > 2 * white
 
 
@@ -126,11 +126,11 @@ def test_a_plain_regression_would_lean() -> None:
 
 def test_a_large_record_is_fitted_by_means() -> None:
     record = simulated(count=200_000, noise=0.02)
-    found = identify_decay(record)
-    assert 10_000 < len(found.whole.time) <= 20_000
-    assert any("means of" in note for note in found.notes)
+    decay = identify_decay(record)
+    assert 10_000 < len(decay.whole.time) <= 20_000
+    assert any("means of" in note for note in decay.notes)
     for name, value in zip(NAMES, (OMEGA, 0.03, 0.02), strict=True):
-        quantity = found.by_record[name]
+        quantity = decay.by_record[name]
         assert quantity.value == pytest.approx(value, rel=0.01)
         assert quantity.low is not None and quantity.high is not None
         assert quantity.low <= value <= quantity.high

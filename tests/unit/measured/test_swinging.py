@@ -70,10 +70,10 @@ def test_it_sticks_within_the_friction_of_the_center() -> None:
 
 
 def test_noise_is_the_same_for_the_same_seed() -> None:
-    one, other = (simulated(noise=0.01, seed=seed).displacement for seed in (4, 4))
-    assert np.array_equal(one, other)
-    assert not np.array_equal(one, simulated(noise=0.01, seed=5).displacement)
-    assert np.std(one - simulated().displacement) == pytest.approx(0.01, rel=0.1)
+    first, other = (simulated(noise=0.01, seed=seed).displacement for seed in (4, 4))
+    assert np.array_equal(first, other)
+    assert not np.array_equal(first, simulated(noise=0.01, seed=5).displacement)
+    assert np.std(first - simulated().displacement) == pytest.approx(0.01, rel=0.1)
 
 
 @pytest.mark.parametrize(

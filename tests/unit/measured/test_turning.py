@@ -95,10 +95,10 @@ def test_a_gap_that_hides_turning_points_ends_the_decay() -> None:
 
 def test_a_record_turned_over_and_in_other_units() -> None:
     values = held(TIME, 0.5)
-    one = find_turns(noisy(TIME, values))
+    first = find_turns(noisy(TIME, values))
     other = find_turns(eq.measured.Record(TIME, -1e-3 * noisy(TIME, values).displacement))
-    np.testing.assert_allclose(other.heights, 1e-3 * one.heights, rtol=1e-9)
-    np.testing.assert_allclose(other.passed, one.passed, rtol=1e-9)
+    np.testing.assert_allclose(other.heights, 1e-3 * first.heights, rtol=1e-9)
+    np.testing.assert_allclose(other.passed, first.passed, rtol=1e-9)
     assert other.side == -1
 
 

@@ -181,32 +181,32 @@ def test_analysis_has_its_force_and_its_outputs(angle: float) -> None:
     one_by_one, rough = eq.analyze(machine, 90), with_position(machine)
     with only_loops():
         by_loops = eq.analyze(rough, 90)
-    for found in (one_by_one, by_loops):
-        force, teeth = found.forces.couplings["rollers"][NAME], geared.forces.gears[NAME]
+    for result in (one_by_one, by_loops):
+        force, teeth = result.forces.couplings["rollers"][NAME], geared.forces.gears[NAME]
         largest = np.max(np.abs(teeth.value))
         np.testing.assert_allclose(force.value, teeth.value, atol=1e-9 * largest)
         np.testing.assert_allclose(force.friction, teeth.tangential, atol=1e-9 * largest)
         for name, joint in geared.forces.joints.items():
             np.testing.assert_allclose(
-                found.forces.joints[name].value, joint.value, atol=1e-9 * np.max(joint.size)
+                result.forces.joints[name].value, joint.value, atol=1e-9 * np.max(joint.size)
             )
-        values = found.outputs[f"rollers.{NAME}.friction"].values
+        values = result.outputs[f"rollers.{NAME}.friction"].values
         np.testing.assert_allclose(values, force.friction)
-    told = " ".join(str(block) for block in model_blocks(machine))
-    assert f"Rollers: {GEAR.driver} drives {GEAR.driven} on frame" in told
+    text = " ".join(str(block) for block in model_blocks(machine))
+    assert f"Rollers: {GEAR.driver} drives {GEAR.driven} on frame" in text
 
 
-def test_what_it_says_of_its_own_is_found() -> None:
+def test_the_search_covers_what_it_says_of_its_own() -> None:
     """Outputs of its motion, figures, limits of the crank's speed, yardsticks and remarks."""
-    found = eq.analyze(MACHINE, 90)
-    creep = found.outputs[f"rollers.{NAME}.creep"].values
-    np.testing.assert_allclose(creep, RADII[0] * found.motion.links[GEAR.driver].angle)
-    assert found.part_figures["rollers"][NAME].slips_at == 0.5
-    assert found.to_dict()["rollers"][NAME]["slip_speed"] == 2 * found.motion.speed
-    entries = {item.figure: item for item in assess(found)}
+    analysis = eq.analyze(MACHINE, 90)
+    creep = analysis.outputs[f"rollers.{NAME}.creep"].values
+    np.testing.assert_allclose(creep, RADII[0] * analysis.motion.links[GEAR.driver].angle)
+    assert analysis.part_figures["rollers"][NAME].slips_at == 0.5
+    assert analysis.to_dict()["rollers"][NAME]["slip_speed"] == 2 * analysis.motion.speed
+    entries = {item.figure: item for item in assess(analysis)}
     assert entries[f"rollers.{NAME}.slip_speed"].ratio == 0.5
     assert f"rollers.{NAME}.peak" in entries
-    assert {"small rollers", "heavy rollers"} <= {*map(str, found.notes)}
+    assert {"small rollers", "heavy rollers"} <= {*map(str, analysis.notes)}
 
 
 def test_its_cycle_and_its_share_of_mobility_follow() -> None:

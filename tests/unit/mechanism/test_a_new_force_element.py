@@ -103,9 +103,9 @@ class Magnet(ForceElement):
         return f"magnet: {self.point} of {self.link} to {self.to}"
 
 
-def magnet_sign(one: Magnet, *_: Any) -> Iterator[BodyMark]:
+def magnet_sign(item: Magnet, *_: Any) -> Iterator[BodyMark]:
     """What its drawing consists of."""
-    yield BodyMark(one.link, one.point, circle("spiral", 0j, 0.01))
+    yield BodyMark(item.link, item.point, circle("spiral", 0j, 0.01))
 
 
 def mjcf_site(root: ET.Element, tree: Tree, _: Job) -> None:
@@ -136,19 +136,19 @@ def test_it_is_read_written_and_refused() -> None:
 
 
 def test_analysis_has_its_force_and_its_outputs() -> None:
-    found, bare = (eq.analyze(one, 90) for one in (MACHINE, magnetic()))
-    way = found.motion.points["S"].place - found.motion.points["C"].place
+    actual, bare = (eq.analyze(item, 90) for item in (MACHINE, magnetic()))
+    way = actual.motion.points["S"].place - actual.motion.points["C"].place
     force = way / np.abs(way) * 30.0 * (0.1 / np.abs(way)) ** 2
     np.testing.assert_allclose(
-        found.outputs["magnets.1.attraction"].values, np.abs(force), rtol=1e-12
+        actual.outputs["magnets.1.attraction"].values, np.abs(force), rtol=1e-12
     )
-    work = (np.conj(force) * found.motion.points["C"].place_1).real
-    more = found.forces.drive_torque - bare.forces.drive_torque
+    work = (np.conj(force) * actual.motion.points["C"].place_1).real
+    more = actual.forces.drive_torque - bare.forces.drive_torque
     np.testing.assert_allclose(more, -work, atol=1e-9)
-    np.testing.assert_allclose(found.forces.frame_force.value, bare.forces.frame_force.value)
-    assert np.max(np.abs(found.forces.joints["C"].value - bare.forces.joints["C"].value)) > 1.0
-    told = " ".join(str(block) for block in machine_blocks(MACHINE))
-    assert "magnet: C of rocker to S" in told
+    np.testing.assert_allclose(actual.forces.frame_force.value, bare.forces.frame_force.value)
+    assert np.max(np.abs(actual.forces.joints["C"].value - bare.forces.joints["C"].value)) > 1.0
+    text = " ".join(str(block) for block in machine_blocks(MACHINE))
+    assert "magnet: C of rocker to S" in text
 
 
 def test_compiled_loops_have_designs_by_its_numbers() -> None:

@@ -83,9 +83,9 @@ class StraightSlot(JointKind):
         return f"straight slot: {self.point} of {self.link} in {self.on}"
 
 
-def slot_sign(one: StraightSlot, *_: Any) -> Iterator[BodyMark]:
+def slot_sign(item: StraightSlot, *_: Any) -> Iterator[BodyMark]:
     """What its drawing consists of."""
-    yield BodyMark(one.on, one.through, circle("path-edge", 0j, 0.01))
+    yield BodyMark(item.on, item.through, circle("path-edge", 0j, 0.01))
 
 
 Slotted = machine_with(StraightSlot)
@@ -97,7 +97,7 @@ ROD = Link({"B": (0.0, 0.0), "C": (0.14, 0.0)}, mass=0.4, center_of_mass=(0.05, 
 def slotted(*slots: StraightSlot) -> Machine:
     """A crank and a rod whose end is in a slot."""
     links = {"crank": BASE.links["crank"], "rod": ROD}
-    sides = {one.name: "forward" for one in slots}
+    sides = {slot.name: "forward" for slot in slots}
     return with_own(Slotted, BASE, links=links, sliders=(), loads=(), assembly=sides, rows=(),
                     support=None, balance=None, straight_slots=slots)  # fmt: skip
 
@@ -128,22 +128,22 @@ def test_it_is_read_written_and_refused() -> None:
 
 
 def test_analysis_has_its_force_and_its_outputs() -> None:
-    found, block = (eq.analyze(one, 90) for one in (MACHINE, with_block()))
+    actual, block = (eq.analyze(item, 90) for item in (MACHINE, with_block()))
     for name in ("drive_torque", "frame_moment"):
         wanted = getattr(block.forces, name)
-        np.testing.assert_allclose(getattr(found.forces, name), wanted, rtol=1e-12)
-    pushed, guided = found.forces.joints["C in frame"], block.forces.joints["block on frame"]
-    assert found.forces.joints.keys() == {"A", "B", "C in frame"}
+        np.testing.assert_allclose(getattr(actual.forces, name), wanted, rtol=1e-12)
+    pushed, guided = actual.forces.joints["C in frame"], block.forces.joints["block on frame"]
+    assert actual.forces.joints.keys() == {"A", "B", "C in frame"}
     assert (pushed.on, pushed.by) == ("rod", "frame")
     np.testing.assert_allclose(pushed.value, guided.value, atol=1e-12 * np.max(guided.size))
     np.testing.assert_allclose(pushed.normal, guided.normal, atol=1e-12 * np.max(guided.size))
     travel = block.motion.sliders["block on frame"].travel
-    np.testing.assert_allclose(found.outputs["straight_slots.1.travel"].values, travel)
-    assert {*found.motion.links} == {"crank", "rod"}
-    assert {*found.motion.sliders} == set()
-    told = " ".join(str(block) for block in machine_blocks(MACHINE))
-    assert "straight slot: C of rod in frame" in told
-    assert "guide of" not in told
+    np.testing.assert_allclose(actual.outputs["straight_slots.1.travel"].values, travel)
+    assert {*actual.motion.links} == {"crank", "rod"}
+    assert {*actual.motion.sliders} == set()
+    text = " ".join(str(block) for block in machine_blocks(MACHINE))
+    assert "straight slot: C of rod in frame" in text
+    assert "guide of" not in text
 
 
 def test_compiled_loops_have_designs_by_its_numbers() -> None:

@@ -76,13 +76,13 @@ def test_size_and_direction(term: str, name: str, travel: str) -> None:
 
 def test_a_table_is_linear_between_its_rows_and_constant_beyond() -> None:
     depth = np.array([0.0, 0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.5])
-    found = resistance(Soil(table=TABLE), depth, np.zeros(8))
-    np.testing.assert_allclose(found, [4, 4, 4, 7, 10, 9, 8, 8], rtol=1e-14)
+    result = resistance(Soil(table=TABLE), depth, np.zeros(8))
+    np.testing.assert_allclose(result, [4, 4, 4, 7, 10, 9, 8, 8], rtol=1e-14)
 
 
 def test_a_table_of_one_row_is_a_constant() -> None:
-    found = resistance(Soil(table=SoilTable((0.02,), (6.0,))), np.array([0.0, 0.02, 1.0]), 0.0)  # type: ignore[arg-type]
-    np.testing.assert_array_equal(found, [6, 6, 6])
+    result = resistance(Soil(table=SoilTable((0.02,), (6.0,))), np.array([0.0, 0.02, 1.0]), 0.0)  # type: ignore[arg-type]
+    np.testing.assert_array_equal(result, [6, 6, 6])
 
 
 def test_a_tip_at_rest_over_ground_is_not_pushed() -> None:
@@ -96,9 +96,9 @@ def test_a_tip_at_rest_over_ground_is_not_pushed() -> None:
 
 def test_no_soil_no_force() -> None:
     for machine in (eq.load("kim-chung-a"), eq.load("yamashita-1")):
-        found = soil_force(eq.move(machine, 90))
-        assert found.shape == (90,)
-        assert not np.any(found)
+        force = soil_force(eq.move(machine, 90))
+        assert force.shape == (90,)
+        assert not np.any(force)
 
 
 def test_hills_tie_the_travel_to_the_crank() -> None:
@@ -126,8 +126,8 @@ def test_given_crank_angles_get_the_force_of_the_cycle() -> None:
     machine = planted("kim-chung-a", TERMS["all"][0])
     whole = soil_force(eq.move(machine, 360))
     some = [250, 200, 10, 240]
-    found = soil_force(eq.move(machine, np.radians([*some, 250 + 720, 200 - 360])))
-    np.testing.assert_allclose(found, whole[[*some, 250, 200]], atol=1e-10)
+    force = soil_force(eq.move(machine, np.radians([*some, 250 + 720, 200 - 360])))
+    np.testing.assert_allclose(force, whole[[*some, 250, 200]], atol=1e-10)
 
 
 def test_a_crank_that_swings_needs_a_surface() -> None:
@@ -182,14 +182,14 @@ def test_soil_adds_to_other_loads_on_the_link() -> None:
 def test_forces_at_another_speed_have_the_soil_of_that_speed() -> None:
     for changes in ({}, {"forward_speed": None, "hill_spacing": 0.15}):
         machine = planted("kim-chung-a", TERMS["all"][0], **changes)
-        found = eq.analyze(machine, 90).forces
+        forces = eq.analyze(machine, 90).forces
         for speed in (12.0, -30.0):
             fresh = eq.analyze(machine, 90, speed=speed).forces
             np.testing.assert_array_equal(
-                soil_force(found.at(speed).motion), soil_force(fresh.motion)
+                soil_force(forces.at(speed).motion), soil_force(fresh.motion)
             )
             np.testing.assert_allclose(
-                found.at(speed).drive_torque, fresh.drive_torque, rtol=1e-13, atol=1e-13
+                forces.at(speed).drive_torque, fresh.drive_torque, rtol=1e-13, atol=1e-13
             )
 
 
@@ -274,17 +274,17 @@ def lone_crank(free_length: float) -> eq.Machine:
 def test_ends_that_meet() -> None:
     expected = {"link": "crank", "to": "S", "angle": 90.0}
     refused("springs[1]", expected, lambda: eq.analyze(lone_crank(0.1), 360))
-    found = eq.analyze(lone_crank(0.0), 360).forces
-    assert found.drive_torque[90] == pytest.approx(0, abs=1e-14)
+    forces = eq.analyze(lone_crank(0.0), 360).forces
+    assert forces.drive_torque[90] == pytest.approx(0, abs=1e-14)
     with refusals.refused(ModelError, "springs", link="crank", to="S", angle=90.0):
-        spring_units(found.motion, "crank", "B", "S")
+        spring_units(forces.motion, "crank", "B", "S")
 
 
 def test_torque_of_a_spring_on_a_crank() -> None:
     """k a c sin: a spring without a free length from a crank to a hook at c above its pivot."""
-    found = eq.analyze(lone_crank(0.0), THETA).forces
-    np.testing.assert_allclose(found.drive_torque, -50 * 0.3 * 0.3 * np.cos(THETA), atol=1e-14)
+    forces = eq.analyze(lone_crank(0.0), THETA).forces
+    np.testing.assert_allclose(forces.drive_torque, -50 * 0.3 * 0.3 * np.cos(THETA), atol=1e-14)
     force = 50 * (0.3j - 0.3 * np.exp(1j * THETA))
-    np.testing.assert_allclose(found.joints["A"].value, -force, atol=1e-13)
-    np.testing.assert_allclose(found.frame_force.value, 0, atol=1e-13)
-    np.testing.assert_allclose(found.frame_moment, 0, atol=1e-13)
+    np.testing.assert_allclose(forces.joints["A"].value, -force, atol=1e-13)
+    np.testing.assert_allclose(forces.frame_force.value, 0, atol=1e-13)
+    np.testing.assert_allclose(forces.frame_moment, 0, atol=1e-13)

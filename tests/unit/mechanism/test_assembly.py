@@ -99,7 +99,7 @@ def test_left_and_right(side: str, sign: int) -> None:
     assert np.all(sign * kernels.cross(d - b, c - b) > 0)
 
 
-def test_left_is_told_in_file_order() -> None:
+def test_left_is_reported_in_file_order() -> None:
     """With the rocker before the coupler the line runs from D to B."""
     given = four_bar(1.0, 0.35, 0.9, 0.8, "left")
     names = ["crank", "rocker", "coupler"]
@@ -177,9 +177,9 @@ def test_idle_sides(given: eq.Machine, joint: str, expected: dict[str, str]) -> 
 # -- sliders from either side ----------------------------------------------------------------------
 
 
-def same_forces(one: eq.Machine, other: eq.Machine, slider: str, swapped: str) -> None:
+def same_forces(item: eq.Machine, other: eq.Machine, slider: str, swapped: str) -> None:
     """Compare all outputs of a machine told in two ways; the slider has another name."""
-    a, b = (eq.analyze(m, ANGLES).forces for m in (one, other))
+    a, b = (eq.analyze(m, ANGLES).forces for m in (item, other))
     assert a.joints.keys() - {slider} == b.joints.keys() - {swapped}
     np.testing.assert_allclose(a.drive_torque, b.drive_torque, atol=1e-11)
     for name in a.joints.keys() - {slider}:
@@ -191,18 +191,20 @@ def same_forces(one: eq.Machine, other: eq.Machine, slider: str, swapped: str) -
 
 
 def test_block_and_guide_change_roles_in_a_swinging_guide() -> None:
-    one = quick_return("forward")
+    first = quick_return("forward")
     other = replace(
-        one, sliders=(eq.Slider("lever", "D", "block", "B", 0.0, 0.0),), assembly={"D": "backward"}
+        first,
+        sliders=(eq.Slider("lever", "D", "block", "B", 0.0, 0.0),),
+        assembly={"D": "backward"},
     )
-    same_forces(one, other, "block on lever", "lever on block")
+    same_forces(first, other, "block on lever", "lever on block")
 
 
 def test_block_and_guide_change_roles_in_a_yoke() -> None:
-    one = eq.load("scotch-yoke")
-    slot, rail = one.sliders
+    first = eq.load("scotch-yoke")
+    slot, rail = first.sliders
     swapped = eq.Slider("yoke", "Y", "block", "B", 0.0, -slot.direction)
-    same_forces(one, replace(one, sliders=(swapped, rail)), "block on yoke", "yoke on block")
+    same_forces(first, replace(first, sliders=(swapped, rail)), "block on yoke", "yoke on block")
 
 
 def test_a_guide_on_the_crank() -> None:
@@ -213,11 +215,11 @@ def test_a_guide_on_the_crank() -> None:
         "block": heavy(C=ORIGIN),
         "rod": heavy(D=ORIGIN, C=(0.9, 0.0)),
     }
-    one = machine(frame, links, sliders=(eq.Slider("block", "C", "crank", "G", 0.2, 0.5),),
+    first = machine(frame, links, sliders=(eq.Slider("block", "C", "crank", "G", 0.2, 0.5),),
                   assembly={"C": "forward"})  # fmt: skip
-    other = replace(one, sliders=(eq.Slider("crank", "G", "block", "C", -0.5, -0.2),))
-    assert kernels_of(one) == kernels_of(other) == ["rrp"]
-    same_forces(one, other, "block on crank", "crank on block")
+    other = replace(first, sliders=(eq.Slider("crank", "G", "block", "C", -0.5, -0.2),))
+    assert kernels_of(first) == kernels_of(other) == ["rrp"]
+    same_forces(first, other, "block on crank", "crank on block")
 
 
 def test_crossed_guides_meet() -> None:
@@ -329,7 +331,7 @@ def test_missing_sides_are_those_of_the_position(name: str, angle: float) -> Non
 
 
 @pytest.mark.parametrize("name", ["yamashita-1", "slider-crank-engine"])
-def test_where_nothing_tells_both_sides_are_listed_with_their_places(name: str) -> None:
+def test_where_nothing_reports_both_sides_are_listed_with_their_places(name: str) -> None:
     given = eq.load(name)
     (joint,) = given.assembly
     _, lines = asked(given)
@@ -349,12 +351,12 @@ def test_places_of_a_pushed_machine_are_those_of_the_pose_that_is_named() -> Non
     del sides["E"]
     with pytest.raises(ModelError) as caught:
         eq.mechanism.assemble(replace(machine, assembly=sides))
-    told = re.findall(
+    matches = re.findall(
         r'E = "(\w+)"  # at \((.*), (.*)\) mm with boom at (.*) deg', str(caught.value)
     )
-    assert [words[0] for words in told] == ["parallel", "antiparallel"]
+    assert [words[0] for words in matches] == ["parallel", "antiparallel"]
     crank = replace(machine, drive=eq.Drive("boom", 1.0), loads=())
-    for side, x, y, degrees in told:
+    for side, x, y, degrees in matches:
         turned = replace(crank, assembly={**sides, "E": side})
         place = eq.move(turned, np.radians([float(degrees)])).points["E"]
         # four digits of some 2000 mm
@@ -383,7 +385,7 @@ def test_a_side_without_which_the_crank_cannot_turn() -> None:
             eq.move(other, 12)
 
 
-def test_wrong_and_idle_sides_are_told_with_missing_ones() -> None:
+def test_wrong_and_idle_sides_are_reported_with_missing_ones() -> None:
     given = replace(eq.load("watt-six-bar"), assembly={"C": "forward", "f": "left"})
     with refused(ModelError, "assembly", joint="F", given="forward", name="F") as caught:
         eq.mechanism.assemble(given)
@@ -431,7 +433,7 @@ def test_dyads_at_one_point_have_entries_of_their_own() -> None:
     np.testing.assert_allclose(turned[0], -turned[1])
 
 
-def test_two_blocks_on_one_point_lie_as_each_is_told() -> None:
+def test_two_blocks_on_one_point_lie_as_each_is_given() -> None:
     """A word for the point is that of both, as ever; their names tell them apart."""
     given = block_on_the_pin(arms=2)
     names = [slider.name for slider in given.sliders]
@@ -459,9 +461,11 @@ def test_a_guide_called_as_the_pin_of_another_dyad_is_refused() -> None:
 @pytest.mark.parametrize("key", ["mode", "block on rocker"])
 def test_a_guide_or_its_point_may_be_called_mode(key: str) -> None:
     quick = eq.load("quick-return")
-    slider = next(one for one in quick.sliders if one.on != FRAME)
+    slider = next(item for item in quick.sliders if item.on != FRAME)
     label = key if key == "mode" else ""
-    sliders = tuple(replace(one, label=label) if one == slider else one for one in quick.sliders)
+    sliders = tuple(
+        replace(item, label=label) if item == slider else item for item in quick.sliders
+    )
     name = label or slider.name
     entries = {
         name if joint == slider.point else joint: side for joint, side in quick.assembly.items()

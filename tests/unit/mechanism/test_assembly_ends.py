@@ -66,7 +66,7 @@ def test_each_group_reads_what_was_solved_before_it(first: int, tmp_path: Path) 
             continue
         links = [link for group in solved.groups for link in group.links]
         assert len(links) == len({*links})
-        driven = {machine.drive.link, *(one.link for one in machine.drives)} - {*links}
+        driven = {machine.drive.link, *(drive.link for drive in machine.drives)} - {*links}
         assert {*links} | driven == {*machine.links, *solved.joints.riders}
         start = initial_state(machine, angles)
         start |= {f"reference({name})": solved.cycle.reference(name, angles)

@@ -15,9 +15,9 @@ from unit.mechanism.build import crank_rocker, four_bar, two_gears
 
 
 def describe(*lengths: float) -> eq.mechanism.FourBar:
-    found = eq.mechanism.four_bar(four_bar(*lengths))
-    assert found is not None
-    return found
+    machine = eq.mechanism.four_bar(four_bar(*lengths))
+    assert machine is not None
+    return machine
 
 
 @pytest.mark.parametrize(
@@ -33,11 +33,15 @@ def describe(*lengths: float) -> eq.mechanism.FourBar:
     ],
 )
 def test_types(lengths: tuple[float, ...], grashof: str, name: str) -> None:
-    found = describe(*lengths)
-    assert (found.grashof, found.type) == (grashof, name)
-    assert (found.a, found.b, found.c, found.d) == pytest.approx(lengths)
-    assert (found.crank, found.coupler, found.rocker) == ("crank", "coupler", "rocker")
-    assert found.pins == ("A", "B", "C", "D")
+    description = describe(*lengths)
+    assert (description.grashof, description.type) == (grashof, name)
+    assert (description.a, description.b, description.c, description.d) == pytest.approx(lengths)
+    assert (description.crank, description.coupler, description.rocker) == (
+        "crank",
+        "coupler",
+        "rocker",
+    )
+    assert description.pins == ("A", "B", "C", "D")
 
 
 @pytest.mark.parametrize(
@@ -46,11 +50,11 @@ def test_types(lengths: tuple[float, ...], grashof: str, name: str) -> None:
      ("drag-link", "double-crank (drag link)"), ("stephenson-six-bar", "crank-rocker")],
 )  # fmt: skip
 def test_examples(name: str, kind: str) -> None:
-    found = eq.mechanism.four_bar(eq.load(name))
-    assert found is not None
-    assert found.type == kind
-    assert found.condition_5
-    assert found.condition_6
+    machine = eq.mechanism.four_bar(eq.load(name))
+    assert machine is not None
+    assert machine.type == kind
+    assert machine.condition_5
+    assert machine.condition_6
 
 
 @pytest.mark.parametrize("name", ["slider-crank-engine", "scotch-yoke", "class-three",
@@ -81,35 +85,39 @@ TURNING = [
 @pytest.mark.parametrize("lengths", TURNING)
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_transmission_angle_against_sampling(lengths: tuple[float, ...], side: str) -> None:
-    found = describe(*lengths)
+    description = describe(*lengths)
     points = eq.move(four_bar(*lengths, side=side), 7200).points
     b, c, d = (points[name].place for name in "BCD")
     angle = np.abs(np.angle((b - c) / (d - c)))
-    assert found.transmission_min == pytest.approx(angle.min(), abs=1e-6)
-    assert found.transmission_max == pytest.approx(angle.max(), abs=1e-6)
+    assert description.transmission_min == pytest.approx(angle.min(), abs=1e-6)
+    assert description.transmission_max == pytest.approx(angle.max(), abs=1e-6)
 
 
 @pytest.mark.parametrize("lengths", [row for row in TURNING if min(row) == row[1]])
 def test_swing_and_time_ratio_against_sampling(lengths: tuple[float, ...]) -> None:
-    found = describe(*lengths)
+    description = describe(*lengths)
     count = 72_000
     angle = eq.move(four_bar(*lengths), count).links["rocker"].angle
-    assert found.swing == pytest.approx(np.ptp(angle), abs=1e-6)
-    one = (int(np.argmax(angle)) - int(np.argmin(angle))) % count
-    slow, fast = max(one, count - one), min(one, count - one)
-    assert found.time_ratio == pytest.approx(slow / fast, abs=2e-4)
+    assert description.swing == pytest.approx(np.ptp(angle), abs=1e-6)
+    first = (int(np.argmax(angle)) - int(np.argmin(angle))) % count
+    slow, fast = max(first, count - first), min(first, count - first)
+    assert description.time_ratio == pytest.approx(slow / fast, abs=2e-4)
 
 
 def test_figures_of_a_drag_link() -> None:
-    found = describe(0.3, 0.8, 0.65, 0.75)
-    assert found.swing is None
-    assert found.time_ratio is None
-    assert found.transmission_min is not None
+    description = describe(0.3, 0.8, 0.65, 0.75)
+    assert description.swing is None
+    assert description.time_ratio is None
+    assert description.transmission_min is not None
 
 
 def test_figures_of_a_linkage_that_does_not_turn() -> None:
-    found = describe(1.0, 0.9, 0.5, 0.55)
-    assert (found.transmission_min, found.transmission_max, found.swing) == (None, None, None)
+    description = describe(1.0, 0.9, 0.5, 0.55)
+    assert (description.transmission_min, description.transmission_max, description.swing) == (
+        None,
+        None,
+        None,
+    )
 
 
 def lengths_at_random() -> list[tuple[float, ...]]:
@@ -158,7 +166,7 @@ def test_the_drive_pivot_need_not_be_the_origin() -> None:
     given = crank_rocker()
     shifted = replace(given, frame={"A": (3.0, 1.0), "D": (3.0, 2.0)})
     moved = shifted.with_link("crank", points={"A": (1.0, 1.0), "B": (1.0, 1.35)})
-    found, plain = eq.mechanism.four_bar(moved), eq.mechanism.four_bar(given)
-    assert found is not None
+    actual, plain = eq.mechanism.four_bar(moved), eq.mechanism.four_bar(given)
+    assert actual is not None
     assert plain is not None
-    assert (found.a, found.b, found.swing) == pytest.approx((plain.a, plain.b, plain.swing))
+    assert (actual.a, actual.b, actual.swing) == pytest.approx((plain.a, plain.b, plain.swing))

@@ -40,7 +40,7 @@ def test_life_uses_up_step_by_step(kind: str) -> None:
     """Second route: Miner's rule in small steps of time, each at the life that its load has."""
     machine = replace(engine(kind), loads=())  # without the gas, whose force jumps
     fine = eq.analyze(machine, 1440)
-    found = fine.rolling_bearings
+    bearings = fine.rolling_bearings
     period = 2 * pi / abs(machine.drive.speed)
     rod = fine.motion.links["rod"].angular_velocity
     crank = fine.motion.links["crank"].angular_velocity
@@ -48,11 +48,11 @@ def test_life_uses_up_step_by_step(kind: str) -> None:
         force = fine.forces.joints[name].size
         life = 1e6 * (25.5e3 / force) ** (3 if kind == "ball" else 10 / 3)
         turned = np.abs(turning) * period / len(force) / (2 * pi)
-        assert found[name].basic_life == pytest.approx(period / np.sum(turned / life), rel=1e-9)
-        assert found[name].basic_turns == pytest.approx(
-            found[name].basic_life / period * np.sum(turned), rel=1e-9
+        assert bearings[name].basic_life == pytest.approx(period / np.sum(turned / life), rel=1e-9)
+        assert bearings[name].basic_turns == pytest.approx(
+            bearings[name].basic_life / period * np.sum(turned), rel=1e-9
         )
-        assert found[name].static_safety == pytest.approx(15e3 / np.max(force), rel=1e-9)
+        assert bearings[name].static_safety == pytest.approx(15e3 / np.max(force), rel=1e-9)
 
 
 DUTY = (
@@ -68,7 +68,7 @@ def test_life_over_duty_states_by_hand() -> None:
     """
     machine = engine()
     assert machine.loads
-    shares = np.array([one.share for one in DUTY]) / 4.0
+    shares = np.array([item.share for item in DUTY]) / 4.0
     alone = []
     for state in DUTY:
         loads = tuple(
@@ -84,15 +84,17 @@ def test_life_over_duty_states_by_hand() -> None:
         slower = replace(machine, loads=loads).with_drive(speed=speed)
         alone.append(eq.analyze(slower).rolling_bearings)
     together = eq.analyze(replace(machine, duty=DUTY))
-    for name, found in together.rolling_bearings.items():
-        lives = np.array([one[name].basic_life for one in alone])
-        speeds = np.array([one[name].speed for one in alone])
-        loads_3 = np.array([one[name].equivalent_load for one in alone]) ** 3
-        assert found.basic_life == pytest.approx(1 / np.sum(shares / lives), rel=1e-9)
-        assert found.speed == pytest.approx(np.sum(shares * speeds), rel=1e-12)
+    for name, actual in together.rolling_bearings.items():
+        lives = np.array([item[name].basic_life for item in alone])
+        speeds = np.array([item[name].speed for item in alone])
+        loads_3 = np.array([item[name].equivalent_load for item in alone]) ** 3
+        assert actual.basic_life == pytest.approx(1 / np.sum(shares / lives), rel=1e-9)
+        assert actual.speed == pytest.approx(np.sum(shares * speeds), rel=1e-12)
         equivalent = (np.sum(shares * speeds * loads_3) / np.sum(shares * speeds)) ** (1 / 3)
-        assert found.equivalent_load == pytest.approx(equivalent, rel=1e-9)
-        assert found.static_safety == pytest.approx(min(one[name].static_safety for one in alone))
+        assert actual.equivalent_load == pytest.approx(equivalent, rel=1e-9)
+        assert actual.static_safety == pytest.approx(
+            min(item[name].static_safety for item in alone)
+        )
     assert set(together.rolling_bearings) == {"B", "C"}
     assert "over 3 duty states" in " ".join(map(str, together.blocks()))
     survives(replace(machine, duty=DUTY))
@@ -106,8 +108,8 @@ def test_check_counts_duty_states(tmp_path: Any) -> None:
 
 def test_one_duty_state_as_the_machine_runs_changes_nothing() -> None:
     machine = engine()
-    found = eq.analyze(replace(machine, duty=(DutyState(7.0),))).rolling_bearings
-    assert found == eq.analyze(machine).rolling_bearings
+    bearings = eq.analyze(replace(machine, duty=(DutyState(7.0),))).rolling_bearings
+    assert bearings == eq.analyze(machine).rolling_bearings
 
 
 @pytest.mark.parametrize(
@@ -126,9 +128,9 @@ def test_a_bearing_of_the_rating_that_is_needed_reaches_the_life_that_is_wanted(
     machine = engine()
     needed = eq.analyze(machine).rolling_bearings["C"].needed_rating
     enough = machine.with_number("joints[2].bearing.dynamic_rating", needed)
-    found = eq.analyze(enough).rolling_bearings["C"]
-    assert found.rated_life == pytest.approx(2000 * 3600.0)
-    assert found.reached == pytest.approx(0.95)
+    bearings = eq.analyze(enough).rolling_bearings["C"]
+    assert bearings.rated_life == pytest.approx(2000 * 3600.0)
+    assert bearings.reached == pytest.approx(0.95)
 
 
 def test_a_bearing_without_load_or_turning_has_no_life() -> None:
@@ -139,20 +141,20 @@ def test_a_bearing_without_load_or_turning_has_no_life() -> None:
     for link in free.links:
         free = free.with_link(link, mass=0.0, inertia=0.0)
     free = replace(free, gravity=(0.0, 0.0), loads=())
-    found = eq.analyze(free).rolling_bearings["B"]
-    assert (found.basic_life, found.reached, found.needed_rating) == (None, 1.0, 0.0)
+    bearings = eq.analyze(free).rolling_bearings["B"]
+    assert (bearings.basic_life, bearings.reached, bearings.needed_rating) == (None, 1.0, 0.0)
 
 
 def test_pressure_of_a_plain_bearing() -> None:
-    found = eq.analyze(engine(), 60)
-    pressure = found.outputs["joints.B.pressure"].values
-    np.testing.assert_allclose(pressure, found.forces.joints["B"].size / (WIDTH * 2 * RADIUS))
-    links = found.motion.links
+    analysis = eq.analyze(engine(), 60)
+    pressure = analysis.outputs["joints.B.pressure"].values
+    np.testing.assert_allclose(pressure, analysis.forces.joints["B"].size / (WIDTH * 2 * RADIUS))
+    links = analysis.motion.links
     turning = links["rod"].angular_velocity - links["crank"].angular_velocity
     np.testing.assert_allclose(
-        found.outputs["joints.B.pressure_speed"].values, pressure * np.abs(turning) * RADIUS
+        analysis.outputs["joints.B.pressure_speed"].values, pressure * np.abs(turning) * RADIUS
     )
-    assert "joints.B.pressure [Pa]" in to_csv(found).partition("\n")[0]
+    assert "joints.B.pressure [Pa]" in to_csv(analysis).partition("\n")[0]
 
 
 @pytest.mark.parametrize("gas", [True, False])
@@ -170,8 +172,8 @@ def test_pressure_over_duty_states_by_hand(gas: bool) -> None:
         turning = turning - analysis.motion.links["crank"].angular_velocity
         force = analysis.forces.joints["B"].size
         means.append(float(np.mean(force * np.abs(turning))) / (2 * WIDTH))
-    found = eq.analyze(replace(machine, duty=DUTY))
-    (bearing,) = found.plain_bearings.values()
+    result = eq.analyze(replace(machine, duty=DUTY))
+    (bearing,) = result.plain_bearings.values()
     worst = max(alone, key=lambda item: item.pressure)
     assert (bearing.pressure, bearing.pressure_at) == (worst.pressure, worst.pressure_at)
     warmest = max(alone, key=lambda item: item.pressure_speed)
@@ -180,7 +182,7 @@ def test_pressure_over_duty_states_by_hand(gas: bool) -> None:
     # the force of the gas jumps between two of the 360 crank angles of a mean by hand
     near = pytest.approx(shares @ means, rel=1 / 360 if gas else 1e-12)
     assert bearing.mean_pressure_speed == near
-    assert "Plain bearings in joints, over 3 duty states" in " ".join(map(str, found.blocks()))
+    assert "Plain bearings in joints, over 3 duty states" in " ".join(map(str, result.blocks()))
     same = eq.analyze(replace(machine, duty=(DutyState(7.0),))).plain_bearings
     assert same == eq.analyze(machine).plain_bearings
     assert [*eq.analyze(machine, [0.0, 0.1]).plain_bearings] == ["B"]
@@ -191,19 +193,19 @@ def test_they_change_neither_motion_nor_forces_and_survive() -> None:
     machine, bare = engine(), replace(engine(), joints=())
     text = survives(machine)
     assert 'bearing.dynamic_rating = "25500 N"' in text
-    given, free = (eq.analyze(one, 36) for one in (machine, bare))
+    given, free = (eq.analyze(item, 36) for item in (machine, bare))
     np.testing.assert_array_equal(given.forces.joints["B"].value, free.forces.joints["B"].value)
     assert machine.without_friction() == machine
 
 
 def test_they_are_reported_everywhere() -> None:
     machine = engine()
-    found = eq.analyze(machine, 90)
-    told = json.loads(json_text(found.to_dict()))["rolling_bearings"]["C"]
-    assert told["basic_life"] == found.rolling_bearings["C"].basic_life
+    analysis = eq.analyze(machine, 90)
+    content = json.loads(json_text(analysis.to_dict()))["rolling_bearings"]["C"]
+    assert content["basic_life"] == analysis.rolling_bearings["C"].basic_life
     assert dimension_of(machine, "analyze", "rolling_bearings.C.basic_life") == "time"
     assert dimension_of(machine, "analyze", "joints.B.pressure.max") == "modulus"
-    titles = [one.title for one in found.blocks() if isinstance(one, Table)]
+    titles = [block.title for block in analysis.blocks() if isinstance(block, Table)]
     assert "Rolling bearings in joints" in titles
     assert "Plain bearings in joints; largest with its crank angle" in titles
 

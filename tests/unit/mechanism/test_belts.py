@@ -76,9 +76,9 @@ def test_a_planet_on_a_belt_keeps_its_direction() -> None:
     With 2 to 1 it turns back once a turn: 1 - 2 of the arm.
     """
     for teeth, speed in (((20, 20), 0.0), ((40, 20), -1.0)):
-        one = Belt(FRAME, "planet", teeth=teeth, pitch=0.01, carrier="arm")
+        first = Belt(FRAME, "planet", teeth=teeth, pitch=0.01, carrier="arm")
         links = {"arm": heavy(A=ORIGIN, C=(0.5, 0.0)), "planet": heavy(C=ORIGIN)}
-        given = machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 2.0), belts=(one,))
+        given = machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 2.0), belts=(first,))
         np.testing.assert_allclose(eq.move(given, 12).links["planet"].angle_1, speed, atol=1e-15)
 
 
@@ -110,32 +110,32 @@ def test_strands_of_a_chain_and_of_a_belt(crossed: bool, torque: float) -> None:
     np.testing.assert_allclose(chain.belts[name].right, max(-left, 0.0))
     np.testing.assert_allclose(chain.joints["E"].size, abs(pull))
     tight = replace(given, belts=(belt(crossed=crossed, tension=40.0),))
-    found = eq.analyze(tight, 12, speed=0.0).forces
-    np.testing.assert_allclose(found.belts[name].left, 40 + left / 2)
-    np.testing.assert_allclose(found.belts[name].right, 40 - left / 2)
-    np.testing.assert_allclose(found.drive_torque, chain.drive_torque)
+    forces = eq.analyze(tight, 12, speed=0.0).forces
+    np.testing.assert_allclose(forces.belts[name].left, 40 + left / 2)
+    np.testing.assert_allclose(forces.belts[name].right, 40 - left / 2)
+    np.testing.assert_allclose(forces.drive_torque, chain.drive_torque)
     lean = np.arcsin((0.1 + (0.2 if crossed else -0.2)) / 0.5)
     along = 80 * np.cos(lean), pull * np.sin(lean) * (-1 if crossed else 1)
-    np.testing.assert_allclose(abs(found.joints["E"].x), along[0])
-    np.testing.assert_allclose(abs(found.joints["E"].y), abs(along[1]))
-    assert not [*slack(found)]
+    np.testing.assert_allclose(abs(forces.joints["E"].x), along[0])
+    np.testing.assert_allclose(abs(forces.joints["E"].y), abs(along[1]))
+    assert not [*slack(forces)]
 
 
-def test_a_slack_strand_is_told() -> None:
+def test_a_slack_strand_is_reported() -> None:
     """With the crank angle and the tension that it takes."""
     load = eq.Load("wheel", torque=-6.0, start=1.0, stop=2.0)
     given = belted(belt(tension=10.0), gravity=(0.0, 0.0), loads=(load,))
-    found = eq.analyze(given, np.radians([0.0, 90.0, 200.0]), speed=0.0)
-    (told,) = slack(found.forces)
-    assert str(told) == (
+    analysis = eq.analyze(given, np.radians([0.0, 90.0, 200.0]), speed=0.0)
+    (text,) = slack(analysis.forces)
+    assert str(text) == (
         "the belt crank to wheel hangs loose: at crank angle 90.0° its slack strand would have "
         "to push with 5.000 N; give it a tension of more than 15.00 N"
     )
-    assert any(isinstance(block, Notes) for block in analysis_blocks(found))
+    assert any(isinstance(block, Notes) for block in analysis_blocks(analysis))
     causes = next(
-        one
-        for one in analysis_blocks(found)
-        if str(getattr(one, "title", "")) == "Drive torque by cause"
+        item
+        for item in analysis_blocks(analysis)
+        if str(getattr(item, "title", "")) == "Drive torque by cause"
     )
     assert "springs" not in [str(row[0]) for row in causes.rows]
     chain = eq.analyze(replace(given, belts=(belt(),)), 12)
@@ -145,13 +145,13 @@ def test_a_slack_strand_is_told() -> None:
 def test_shares_of_strands_add_up() -> None:
     for tension in (None, 25.0):
         given = belted(belt(tension=tension), loads=(eq.Load("wheel", torque=2.0),))
-        found = eq.analyze(given, 12).forces
+        forces = eq.analyze(given, 12).forces
         for strand in ("left", "right"):
             output = f"belts.crank to wheel.{strand}"
-            whole = getattr(found.belts["crank to wheel"], strand)
-            for parts in (found.split.by_cause(output), found.split.by_link(output)):
+            whole = getattr(forces.belts["crank to wheel"], strand)
+            for parts in (forces.split.by_cause(output), forces.split.by_link(output)):
                 np.testing.assert_allclose(sum(parts.values()), whole, atol=1e-12)
-        assert found.split.by_cause(output)["spring"] == pytest.approx(tension or 0.0)
+        assert forces.split.by_cause(output)["spring"] == pytest.approx(tension or 0.0)
 
 
 # -- as loops --------------------------------------------------------------------------------------
@@ -164,21 +164,21 @@ def test_the_same_by_newtons_method(name: str) -> None:
     angles = np.linspace(0.0, 6.0, 12)
     want, first = eq.analyze(given, angles), eq.analyze(given, np.zeros(1)).motion
     places = {
-        point: (float(one.x[0]), float(one.y[0]))
-        for point, one in first.points.items()
+        point: (float(value.x[0]), float(value.y[0]))
+        for point, value in first.points.items()
         if point not in given.frame
     }
-    turned = {link: float(one.angle[0]) for link, one in first.links.items()}
+    turned = {link: float(value.angle[0]) for link, value in first.links.items()}
     rough = replace(given, assembly={}, position=Position(0.0, places, turned))
     with only_loops():
-        found = eq.analyze(rough, angles)
+        analysis = eq.analyze(rough, angles)
     size = max(np.max(joint.size) for joint in want.forces.joints.values())
-    for one in want.outputs.arrays:
-        if one.name.startswith(("belts.", "racks.", "drive_torque")):
-            got = next(other for other in found.outputs.arrays if other.name == one.name)
-            np.testing.assert_allclose(got.values, one.values, rtol=1e-11, atol=1e-11 * size)
+    for array in want.outputs.arrays:
+        if array.name.startswith(("belts.", "racks.", "drive_torque")):
+            got = next(other for other in analysis.outputs.arrays if other.name == array.name)
+            np.testing.assert_allclose(got.values, array.values, rtol=1e-11, atol=1e-11 * size)
     for link in given.links:
-        got, was = (a.motion.links[link].angle_2 for a in (found, want))
+        got, was = (a.motion.links[link].angle_2 for a in (analysis, want))
         np.testing.assert_allclose(got, was, atol=1e-11 * max(1.0, np.max(abs(was))))
 
 
@@ -199,14 +199,14 @@ def test_pulleys_that_overlap() -> None:
 
 def test_a_belt_across_a_link_of_its_carrier() -> None:
     """A crossed belt between equal pulleys, and a link that turns where its strands cross."""
-    one = Belt(FRAME, "planet", radii=(0.1, 0.1), crossed=True, carrier="arm")
+    first = Belt(FRAME, "planet", radii=(0.1, 0.1), crossed=True, carrier="arm")
     links = {
         "arm": heavy(A=ORIGIN, B=(0.25, 0.0), C=(0.5, 0.0)),
         "idler": heavy(B=ORIGIN),
         "planet": heavy(C=ORIGIN),
     }
     gears = (eq.Gear(FRAME, "idler", ratio=-1.0, carrier="arm"),)
-    given = machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 2.0), gears=gears, belts=(one,))
+    given = machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 2.0), gears=gears, belts=(first,))
     refused("belts[1]", {"link": "idler", "pin": "B", "carrier": "arm"},
             lambda: assembled(given))  # fmt: skip
 
@@ -222,15 +222,15 @@ def test_a_strand_across_a_link_that_turns_beside_it(length: float, told: float 
         "rod": heavy(B=ORIGIN, D=(length, 0.0)),
         "planet": heavy(C=ORIGIN),
     }
-    one = Belt(FRAME, "planet", radii=(0.1, 0.1), carrier="arm")
+    first = Belt(FRAME, "planet", radii=(0.1, 0.1), carrier="arm")
     gears = (eq.Gear(FRAME, "rod", ratio=-1.0, carrier="arm"),)
-    given = machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 2.0), gears=gears, belts=(one,))
-    found = [str(one) for one in linkage_remarks(assemble(given)) if "strand" in str(one)]
+    given = machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 2.0), gears=gears, belts=(first,))
+    actual = [str(remark) for remark in linkage_remarks(assemble(given)) if "strand" in str(remark)]
     sentence = (
         "belts[1]: a strand lies across 'rod' at crank angle {} deg; move B, change the radii, or "
         "give 'rod' a plane of its own"
     )
-    assert found == ([sentence.format(f"{told:.4g}")] if told else [])
+    assert actual == ([sentence.format(f"{told:.4g}")] if told else [])
     beside = {**links, "rod": replace(links["rod"], plane=0.01)}
     assert not [*crossings(assemble(replace(given, links=beside)))]
 
@@ -278,7 +278,7 @@ def test_a_rack_needs_a_guide_and_its_pinion_a_pin() -> None:
     refused("racks[1]", expected, lambda: assembled(given))
 
 
-def test_what_drives_tells_its_own_place() -> None:
+def test_what_drives_reports_its_own_place() -> None:
     rack = Rack("rocker", "ram", 0.05, "left", angle=1.0)
     refused("racks[1].angle", {}, lambda: racked(rack))
 
@@ -304,7 +304,7 @@ def test_strands_and_racks_are_drawn() -> None:
     motion = eq.move(wheel, 36)
     scene = Scene.of(motion)
     *strands, line = scene.marks
-    assert sorted(one.radius for one in scene.wheels) == [0.05, 0.07, 0.1]
+    assert sorted(item.radius for item in scene.wheels) == [0.05, 0.07, 0.1]
     pin, other = (complex(*wheel.frame[name]) for name in ("D", "E"))
     for taut in strands:
         assert (taut.body, taut.point) == (FRAME, "D")
@@ -324,7 +324,7 @@ def test_strands_and_racks_are_drawn() -> None:
 def test_the_guide_of_a_rack_is_hatched_away_from_its_teeth(side: Any, sense: int) -> None:
     scene = Scene.of(eq.move(racked(Rack("rocker", "ram", 0.07, side)), 12))
     (guide,) = (piece for piece in pieces(scene) if piece.layer == "guides")
-    begin, end = (one.offsets / np.exp(0.3j) for one in (guide.shapes[0], guide.shapes[-1]))
+    begin, end = (item.offsets / np.exp(0.3j) for item in (guide.shapes[0], guide.shapes[-1]))
     assert guide.shapes[0].role == "hatch" and guide.shapes[-1].role == "rail"
     assert np.all(begin.imag * sense < 0) and np.all(end.imag * sense > 0)
 

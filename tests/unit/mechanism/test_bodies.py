@@ -39,13 +39,15 @@ STEEL = 7850.0
 CLOSE = 1e-13
 
 
-def told(body: Body, points: dict[str, tuple[float, float]] | None = None) -> tuple[Any, Any, Any]:
+def mass_properties(
+    body: Body, points: dict[str, tuple[float, float]] | None = None
+) -> tuple[Any, Any, Any]:
     return inertia_of(body, POINTS if points is None else points)
 
 
-def same(found: Sequence[complex], wanted: Sequence[complex]) -> None:
-    for one, other in zip(found, wanted, strict=True):
-        assert abs(one - other) <= 1e-12 * (1e-9 + abs(other)), (found, wanted)
+def same(result: Sequence[complex], wanted: Sequence[complex]) -> None:
+    for item, other in zip(result, wanted, strict=True):
+        assert abs(item - other) <= 1e-12 * (1e-9 + abs(other)), (result, wanted)
 
 
 # -- textbook shapes -------------------------------------------------------------------------------
@@ -76,7 +78,7 @@ BAR = {"between": ("A", "B"), "mass": 2.0}
     ],
 )  # fmt: skip
 def test_moments_of_inertia_of_the_textbook(body: Body, wanted: float) -> None:
-    mass, _, inertia = told(body)
+    mass, _, inertia = mass_properties(body)
     assert mass == 2.0
     assert inertia == pytest.approx(wanted, rel=CLOSE)
 
@@ -113,12 +115,12 @@ def test_regular_polygons(count: int) -> None:
     ],
 )
 def test_masses_are_volumes_times_a_density(body: Body, volume: float) -> None:
-    assert told(body)[0] == pytest.approx(STEEL * volume, rel=CLOSE)
+    assert mass_properties(body)[0] == pytest.approx(STEEL * volume, rel=CLOSE)
 
 
 def test_a_mass_per_length() -> None:
     bar = Body("bar", between=("A", "C"), mass_per_length=1.5, overhang=0.01)
-    mass, center, inertia = told(bar)
+    mass, center, inertia = mass_properties(bar)
     length = hypot(0.1, 0.2) + 0.02
     same((mass, center, inertia), (1.5 * length, 0.05 + 0.1j, 1.5 * length**3 / 12))
 
@@ -131,10 +133,10 @@ def triangles(middle: complex, corners: Sequence[complex]) -> tuple[float, compl
     triangle by triangle, of which each has A (a^2 + b^2 + c^2) / 36 about its own centre.
     """
     parts = []
-    for one, two in zip(corners, [*corners[1:], corners[0]], strict=True):
-        area = abs(((one - middle).conjugate() * (two - middle)).imag) / 2
-        sides = abs(one - two) ** 2 + abs(two - middle) ** 2 + abs(middle - one) ** 2
-        parts.append((area, (middle + one + two) / 3, area * sides / 36))
+    for corner, two in zip(corners, [*corners[1:], corners[0]], strict=True):
+        area = abs(((corner - middle).conjugate() * (two - middle)).imag) / 2
+        sides = abs(corner - two) ** 2 + abs(two - middle) ** 2 + abs(middle - corner) ** 2
+        parts.append((area, (middle + corner + two) / 3, area * sides / 36))
     whole = sum(area for area, _, _ in parts)
     center = sum(area * place for area, place, _ in parts) / whole
     return whole, center, sum(j + a * abs(place - center) ** 2 for a, place, j in parts)
@@ -152,14 +154,16 @@ def test_polygons_by_their_triangles_wherever_they_lie(
     star: list[complex], place: complex, turn: float
 ) -> None:
     moved = [place + corner * exp(1j * turn) for corner in star]
-    found = polygon(moved)
-    for one, other in zip(found, triangles(place, moved), strict=True):
-        assert abs(one - other) <= 1e-12 * 10
+    result = polygon(moved)
+    for entry, other in zip(result, triangles(place, moved), strict=True):
+        assert abs(entry - other) <= 1e-12 * 10
     area, center, second = polygon(star)
     same = area, place + center * exp(1j * turn), second
-    assert all(abs(one - other) <= 1e-12 * 10 for one, other in zip(found, same, strict=True))
+    assert all(abs(item - other) <= 1e-12 * 10 for item, other in zip(result, same, strict=True))
     backwards = polygon(moved[::-1])
-    assert all(abs(one - other) <= 1e-12 * 10 for one, other in zip(found, backwards, strict=True))
+    assert all(
+        abs(item - other) <= 1e-12 * 10 for item, other in zip(result, backwards, strict=True)
+    )
 
 
 def test_far_from_the_origin_no_digits_are_lost() -> None:
@@ -201,8 +205,8 @@ def test_a_plate_with_holes_by_small_cells() -> None:
         )
         return (abs(turned) > pi) & np.all([abs(z - c) > r for c, r in holes], axis=0)
 
-    for one, other in zip(told(plate), by_cells(inside, 1.0, 1500), strict=True):
-        assert abs(one - other) < 1e-3
+    for item, other in zip(mass_properties(plate), by_cells(inside, 1.0, 1500), strict=True):
+        assert abs(item - other) < 1e-3
 
 
 def test_a_flat_bar_is_a_plate_and_a_hollow_one_what_is_left_of_two() -> None:
@@ -214,28 +218,33 @@ def test_a_flat_bar_is_a_plate_and_a_hollow_one_what_is_left_of_two() -> None:
     more = {"thickness": 0.01, "density": STEEL}
     plate = Body("plate", corners=[(z.real, z.imag) for z in sides], **more)
     bar = {"between": ("A", "C"), "overhang": 0.02}
-    same(told(Body("bar", **bar, width=0.03, **more)), told(plate))
+    same(mass_properties(Body("bar", **bar, width=0.03, **more)), mass_properties(plate))
 
     hole = [Hole("C", 0.004), Hole((0.03, 0.06), 0.01)]
-    same(told(Body("bar", **bar, width=0.03, **more, holes=hole)), told(replace(plate, holes=hole)))
+    same(
+        mass_properties(Body("bar", **bar, width=0.03, **more, holes=hole)),
+        mass_properties(replace(plate, holes=hole)),
+    )
 
-    outer = told(Body("bar", **bar, width=0.03, **more))
-    inner = told(Body("bar", **bar, width=0.026, thickness=0.006, density=STEEL))
-    hollow = told(Body("bar", **bar, width=0.03, wall=0.002, **more))
+    outer = mass_properties(Body("bar", **bar, width=0.03, **more))
+    inner = mass_properties(Body("bar", **bar, width=0.026, thickness=0.006, density=STEEL))
+    hollow = mass_properties(Body("bar", **bar, width=0.03, wall=0.002, **more))
     same(hollow, (outer[0] - inner[0], outer[1], outer[2] - inner[2]))
 
 
 def test_a_hole_is_a_disc_less() -> None:
     disc = Body("disc", at="C", radius=0.1, thickness=0.01, density=STEEL)
-    taken = told(Body("disc", at=(0.12, 0.17), radius=0.03, thickness=0.01, density=STEEL))
-    mass, center, inertia = told(replace(disc, holes=[Hole((0.12, 0.17), 0.03)]))
-    whole = told(disc)
+    taken = mass_properties(
+        Body("disc", at=(0.12, 0.17), radius=0.03, thickness=0.01, density=STEEL)
+    )
+    mass, center, inertia = mass_properties(replace(disc, holes=[Hole((0.12, 0.17), 0.03)]))
+    whole = mass_properties(disc)
     assert mass + taken[0] == pytest.approx(whole[0], rel=CLOSE)
     same([mass * center + taken[0] * taken[1]], [whole[0] * whole[1]])
     steiner = sum(j + m * abs(c - whole[1]) ** 2 for m, c, j in ((mass, center, inertia), taken))
     assert steiner == pytest.approx(whole[2], rel=CLOSE)
     ring = Body("ring", at="C", radius=0.1, inner_radius=0.03, thickness=0.01, density=STEEL)
-    same(told(ring), told(replace(disc, holes=[Hole("C", 0.03)])))
+    same(mass_properties(ring), mass_properties(replace(disc, holes=[Hole("C", 0.03)])))
 
 
 @given(
@@ -268,11 +277,11 @@ def test_a_bundled_machine_made_of_bodies_has_the_same_figures() -> None:
     shapes = {"crank": "disc", "coupler": "bar", "rocker": "point"}
     links = {name: like(link, shapes[name]) for name, link in machine.links.items()}
     made = loads(dumps(replace(machine, links=links)))
-    found, wanted = (eq.analyze(one).summary for one in (made, machine))
+    actual, wanted = (eq.analyze(item).summary for item in (made, machine))
     for name, figures in wanted.items():
         for figure in ("mean", "rms", "peak", "max", "min"):
             near = pytest.approx(getattr(figures, figure), rel=1e-9, abs=1e-9 * figures.peak)
-            assert getattr(found[name], figure) == near, name
+            assert getattr(actual[name], figure) == near, name
 
 
 # -- lengths ---------------------------------------------------------------------------------------
@@ -293,8 +302,8 @@ def test_a_triangle_by_its_sides(a: float, c: float, angle: float) -> None:
     assert places["B"] == 0 and places["C"] == a
     assert places["P"].imag >= 0
     for name, length in sides.items():
-        one, other = name.split("-")
-        assert abs(places[one] - places[other]) == pytest.approx(length, rel=1e-9)
+        first, other = name.split("-")
+        assert abs(places[first] - places[other]) == pytest.approx(length, rel=1e-9)
     assert phase(places["P"]) == pytest.approx(angle, abs=1e-6)
 
 
@@ -422,7 +431,7 @@ def test_a_cut_out_that_is_reached_from_the_edge() -> None:
     """A square with a square hole, as one line."""
     inner = ((0.25, 0.25), (0.25, 0.75), (0.75, 0.75), (0.75, 0.25))
     corners = (*SQUARE, SQUARE[0], *inner, inner[0])
-    mass, center, inertia = told(Body("plate", corners=corners, thickness=1, density=1))
+    mass, center, inertia = mass_properties(Body("plate", corners=corners, thickness=1, density=1))
     same((mass, center, inertia), (0.75, 0.5 + 0.5j, 1 / 6 - 0.5**4 / 6))
 
 
@@ -557,7 +566,7 @@ def test_numbers_of_bodies_and_lengths_by_their_path() -> None:
     )
 
 
-def test_errors_of_changed_links_tell_their_place() -> None:
+def test_errors_of_changed_links_report_their_place() -> None:
     machine = loads(TEXT)
     path = "links.rocker.bodies[1].width"
     refused(
@@ -569,7 +578,7 @@ def test_errors_of_changed_links_tell_their_place() -> None:
     )
 
 
-def test_what_is_given_itself_takes_the_place_of_what_told_it() -> None:
+def test_a_given_value_takes_the_place_of_a_derived_one() -> None:
     machine = loads(TEXT)
     heavy = machine.with_link("rocker", mass=1.0).links["rocker"]
     assert heavy.bodies == () and heavy.mass == 1.0
@@ -609,14 +618,14 @@ def test_columns_are_designs_of_their_own(paths: list[str]) -> None:
     columns = {path: np.array(COLUMNS[path])[:, None] for path in paths}
     columned = with_columns(machine, columns)
     assert not invalid_designs(columned, base, columns).any()
-    found = parameters(linkage_of(columned, base))
+    result = parameters(linkage_of(columned, base))
     for k in range(2):
         alone = machine
         for path in paths:
             alone = alone.with_number(path, COLUMNS[path][k])
         wanted = parameters(assemble(alone))
-        for one, other in zip(found, wanted, strict=True):
-            value = np.broadcast_to(one, (2, 1))[k, 0]
+        for item, other in zip(result, wanted, strict=True):
+            value = np.broadcast_to(item, (2, 1))[k, 0]
             assert abs(value - other) <= CLOSE * (1 + abs(other))
 
 
@@ -643,12 +652,12 @@ def test_columns_of_sides_and_what_no_machine_can_have() -> None:
         True,
     ]
     alone = machine.with_number("links.coupler.sides.C-P", 0.05).links["coupler"]
-    told = with_columns(machine, columns).links["coupler"].points["P"]
-    assert [float(part[0, 0]) for part in told] == pytest.approx(alone.points["P"])
+    reported = with_columns(machine, columns).links["coupler"].points["P"]
+    assert [float(part[0, 0]) for part in reported] == pytest.approx(alone.points["P"])
     columns = {f"{ROCKER}[3].radius": np.array([[0.05], [0.0], [-1.0]])}
     with np.errstate(all="ignore"):
-        found = invalid_designs(with_columns(machine, columns), base, columns)
-    assert found.tolist() == [False, True, True]
+        result = invalid_designs(with_columns(machine, columns), base, columns)
+    assert result.tolist() == [False, True, True]
 
 
 @pytest.mark.parametrize(
@@ -702,7 +711,7 @@ def test_plates_of_columns() -> None:
         machine.with_link("crank", points={"A": (0.0, 0.0), "B": (0.002, 0.05)})
 
 
-def test_what_only_a_machine_of_its_own_tells_is_not_computed_at_once() -> None:
+def test_what_only_a_machine_of_its_own_reports_is_not_computed_at_once() -> None:
     """A disc with a hole in it, whose radius varies: its designs are looked at one by one."""
     machine, figure = loads(MASSY), Figure("shaking_force.y", "rms")
     assert can_use(machine, [f"{ROCKER}[1].thickness"], [figure])

@@ -56,13 +56,13 @@ def deflections(theta: Any, bushing: Bushing) -> tuple[Any, Any]:
 
 def test_its_law_by_places_and_their_differences() -> None:
     """Deflections in the axes of the other body, their rates by differences: good to 1e-6."""
-    found, step = eq.analyze(MACHINE, 360), 1e-6
-    theta = found.motion.crank_angle
+    actual, step = eq.analyze(MACHINE, 360), 1e-6
+    theta = actual.motion.crank_angle
     for number, bushing in enumerate(MACHINE.bushings):
         way, turned = deflections(theta, bushing)
         ends = [deflections(theta + sign * step, bushing) for sign in (-1, 1)]
-        speed = (ends[1][0] - ends[0][0]) / (2 * step) * found.motion.speed
-        turning = (ends[1][1] - ends[0][1]) / (2 * step) * found.motion.speed
+        speed = (ends[1][0] - ends[0][0]) / (2 * step) * actual.motion.speed
+        turning = (ends[1][1] - ends[0][1]) / (2 * step) * actual.motion.speed
         law = bushing
         along = law.preload[0] - law.stiffness[0] * way.real - law.damping[0] * speed.real
         across = law.preload[1] - law.stiffness[1] * way.imag - law.damping[1] * speed.imag
@@ -70,7 +70,7 @@ def test_its_law_by_places_and_their_differences() -> None:
         torque = torque - (law.torsional_damping or 0.0) * turning
         loss = law.damping[0] * speed.real**2 + law.damping[1] * speed.imag**2
         loss = loss + (law.torsional_damping or 0.0) * turning**2
-        values = found.motion.element_values("bushings", number)
+        values = actual.motion.element_values("bushings", number)
         wanted = {"along": way.real, "across": way.imag, "force_along": along,
                   "force_across": across, "torque": torque, "loss": loss}  # fmt: skip
         for name, value in wanted.items():
@@ -95,20 +95,20 @@ def stored(theta: Any) -> Any:
 
 def test_the_drive_gives_what_they_store_and_lose_and_the_frame_bears_nothing_more() -> None:
     """Power at every instant, the rate of energy by a complex sum of Fourier: good to rounding."""
-    found, bare = (eq.analyze(one, 720) for one in (MACHINE, held()))
-    theta, speed = found.motion.crank_angle, found.motion.speed
+    actual, bare = (eq.analyze(item, 720) for item in (MACHINE, held()))
+    theta, speed = actual.motion.crank_angle, actual.motion.speed
     energy = np.fft.fft(stored(theta))
     order = np.fft.fftfreq(720, 1 / 720)
     rate = np.fft.ifft(1j * order * energy).real * speed
-    loss = sum(found.motion.element_values("bushings", number)["loss"] for number in range(2))
-    power = found.forces.power - bare.forces.power
+    loss = sum(actual.motion.element_values("bushings", number)["loss"] for number in range(2))
+    power = actual.forces.power - bare.forces.power
     assert np.max(loss) > 1e-2 and np.min(loss) >= 0.0 and np.ptp(stored(theta)) > 1e-2
     np.testing.assert_allclose(power, loss + rate, atol=1e-10 * np.max(np.abs(power)))
     for name in ("frame_force", "shaking_force"):
-        ours, theirs = (getattr(one.forces, name).value for one in (found, bare))
+        ours, theirs = (getattr(item.forces, name).value for item in (actual, bare))
         np.testing.assert_allclose(ours, theirs, atol=1e-8)
-    np.testing.assert_allclose(found.forces.frame_moment, bare.forces.frame_moment, atol=1e-8)
-    share = found.forces.split.by_cause("drive_torque")["bushing"]
+    np.testing.assert_allclose(actual.forces.frame_moment, bare.forces.frame_moment, atol=1e-8)
+    share = actual.forces.split.by_cause("drive_torque")["bushing"]
     np.testing.assert_allclose(share, power / speed, atol=1e-10 * np.max(np.abs(share)))
 
 
@@ -120,7 +120,7 @@ def test_a_run_follows_the_equation_of_a_wheel_in_a_bushing() -> None:
     frame = {"A": (0.0, 0.0), "T": (0.2, 0.05)}
     machine = eq.Machine("wheel", eq.Drive("wheel", 20.0), frame, {"wheel": link},
                          gravity=(0.0, 0.0), bushings=(bushing,))  # fmt: skip
-    found = eq.run(machine, "0.6 s", speed=1.0)
+    run = eq.run(machine, "0.6 s", speed=1.0)
 
     def rates(_: float, state: Any) -> Any:
         angle, speed = state
@@ -129,20 +129,20 @@ def test_a_run_follows_the_equation_of_a_wheel_in_a_bushing() -> None:
         push_y = -2.0 - 40.0 * (y - 0.05) - 1.5 * x * speed
         return speed, (x * push_y - y * push_x + 0.4 - 0.03 * speed) / 0.05
 
-    wanted = solve_ivp(rates, (0, 0.6), (0.0, 1.0), "DOP853", found.time, rtol=1e-12, atol=1e-13)
-    np.testing.assert_allclose(found.crank_angle, wanted.y[0], atol=1e-8)
-    np.testing.assert_allclose(found.crank_speed, wanted.y[1], atol=1e-7)
-    assert found.energy_error < 1e-9
+    wanted = solve_ivp(rates, (0, 0.6), (0.0, 1.0), "DOP853", run.time, rtol=1e-12, atol=1e-13)
+    np.testing.assert_allclose(run.crank_angle, wanted.y[0], atol=1e-8)
+    np.testing.assert_allclose(run.crank_speed, wanted.y[1], atol=1e-7)
+    assert run.energy_error < 1e-9
     change = 0.025 * (wanted.y[1, -1] ** 2 - 1.0)
     assert abs(change) > 1e-3
-    assert found.work["bushings"][-1] == pytest.approx(float(change), rel=1e-7)
+    assert run.work["bushings"][-1] == pytest.approx(float(change), rel=1e-7)
 
 
 def test_a_run_balances_the_energy_of_links_that_turn_in_bushings() -> None:
     """A crank thrown back by them, torsion and the turning of `on` included."""
-    found = eq.run(held(replace(ON_LINK, damping=(0.3, 0.2)), ON_FRAME), "0.4 s", speed=30.0)
-    assert np.min(found.crank_speed) < 0 and np.ptp(found.work["bushings"]) > 0.1
-    assert found.energy_error < 1e-9
+    run = eq.run(held(replace(ON_LINK, damping=(0.3, 0.2)), ON_FRAME), "0.4 s", speed=30.0)
+    assert np.min(run.crank_speed) < 0 and np.ptp(run.work["bushings"]) > 0.1
+    assert run.energy_error < 1e-9
 
 
 def test_it_is_read_written_and_refused() -> None:

@@ -149,7 +149,7 @@ def test_the_sharpest_place_is_closed_in_on() -> None:
     back = NORMAL["cycloidal"]().stretched(2 * pi - 1.2, -0.02).lifted(0.02)
     law, knots = joined([there, back]).at, np.array([0.0, 1.2])
     shape = CamShape(knots, Sliding(1.0, 0.1, 1.0), law)
-    radius, angle = lowest(shape, lambda one: one.radius_of_curvature, knots)
+    radius, angle = lowest(shape, lambda item: item.radius_of_curvature, knots)
     fine = np.linspace(0, 2 * pi, 200001)[:-1]
     assert radius == pytest.approx(float(np.min(0.1 + law(fine)[0] + law(fine)[2])), abs=1e-9)
     assert shape.at(np.array([angle])).radius_of_curvature[0] == pytest.approx(radius)

@@ -75,17 +75,17 @@ def lever(**more: Any) -> eq.Machine:
 
 def test_a_simple_harmonic_cam() -> None:
     """A flat tappet on an eccentric circle: y = h (1 - cos) / 2, force m (g + y''), torque F y'."""
-    found = eq.analyze(tappet()).forces
-    theta, speed = found.motion.crank_angle, found.motion.speed
+    forces = eq.analyze(tappet()).forces
+    theta, speed = forces.motion.crank_angle, forces.motion.speed
     half = HIGH / 2
     np.testing.assert_allclose(
-        found.motion.points["R"].y, 0.03 + half * (1 - np.cos(theta)), atol=1e-16
+        forces.motion.points["R"].y, 0.03 + half * (1 - np.cos(theta)), atol=1e-16
     )
     push = MASS * (GRAVITY + half * np.cos(theta) * speed**2)
-    (pressed,) = found.cams.values()
+    (pressed,) = forces.cams.values()
     np.testing.assert_allclose(pressed.normal, push, rtol=1e-13)
     np.testing.assert_allclose(pressed.value, 1j * push, rtol=1e-13)
-    np.testing.assert_allclose(found.drive_torque, push * half * np.sin(theta), atol=1e-14)
+    np.testing.assert_allclose(forces.drive_torque, push * half * np.sin(theta), atol=1e-14)
 
 
 def test_it_is_a_scotch_yoke() -> None:
@@ -104,7 +104,7 @@ def test_it_is_a_scotch_yoke() -> None:
     )
     # the tappet rises with the sine here, with minus the cosine there
     late = cam(lift=LengthLaw(between=(0.0, HIGH), phase=-pi / 2))
-    torques = [eq.analyze(one).forces.drive_torque for one in (yoke, tappet(late))]
+    torques = [eq.analyze(item).forces.drive_torque for item in (yoke, tappet(late))]
     np.testing.assert_allclose(torques[1], torques[0], atol=1e-14)
 
 
@@ -112,42 +112,42 @@ def test_from_which_speed_the_tappet_lifts_off() -> None:
     """At the top, where m h speed^2 / 2 is its weight."""
     light = tappet(cam(closed_by="spring"))
     limit = sqrt(GRAVITY / (HIGH / 2))
-    (found,) = let_go(eq.analyze(light, speed=0.9 * limit).forces)
-    assert found.ranges == ()
-    assert (found.speed, found.at) == (pytest.approx(limit), pytest.approx(pi))
-    (found,) = let_go(eq.analyze(light, 3600, speed=-2 * limit).forces)
-    ((begin, end),) = found.ranges
+    (actual,) = let_go(eq.analyze(light, speed=0.9 * limit).forces)
+    assert actual.ranges == ()
+    assert (actual.speed, actual.at) == (pytest.approx(limit), pytest.approx(pi))
+    (actual,) = let_go(eq.analyze(light, 3600, speed=-2 * limit).forces)
+    ((begin, end),) = actual.ranges
     beyond = np.arccos(-1 / 4)  # where the acceleration is that of gravity
     assert (begin, end) == (pytest.approx(beyond, abs=1e-6), pytest.approx(2 * pi - beyond))
-    assert found.least == (pytest.approx(MASS * GRAVITY * -3), pytest.approx(pi))
+    assert actual.least == (pytest.approx(MASS * GRAVITY * -3), pytest.approx(pi))
     assert let_go(eq.analyze(tappet()).forces) == ()
     fast = replace(light, drive=replace(light.drive, speed=2 * limit))
-    (told,) = lost_contacts(eq.analyze(fast).forces)
-    assert str(told).endswith(f"without [[springs]] it stays there up to {limit / PER_RPM:.4g} rpm")
+    (text,) = lost_contacts(eq.analyze(fast).forces)
+    assert str(text).endswith(f"without [[springs]] it stays there up to {limit / PER_RPM:.4g} rpm")
 
 
 def test_a_tappet_that_nothing_presses_on_lifts_off_at_once() -> None:
     """Where it dwells it is just there, and its force is 0; that is no place where it is lost."""
     loose = tappet(cam("roller", lift=RISE, closed_by="spring"), gravity=(0.0, 0.0))
-    (found,) = let_go(eq.analyze(loose, acceleration=0.0).forces)
+    (actual,) = let_go(eq.analyze(loose, acceleration=0.0).forces)
     middle = [(radians(30), radians(60)), (radians(180), radians(210))]
-    assert found.ranges == tuple(pytest.approx(pair, abs=radians(1)) for pair in middle)
-    assert found.speed == 0
+    assert actual.ranges == tuple(pytest.approx(pair, abs=radians(1)) for pair in middle)
+    assert actual.speed == 0
 
 
 def test_a_spring_presses_the_tappet_on() -> None:
     """Its force at the top adds to the weight; without gravity and it nothing holds."""
     spring = eq.Spring("tappet", "R", "S", 1000.0, 0.3)
     sprung = tappet(cam(closed_by="spring"), springs=(spring,))
-    (found,) = let_go(eq.analyze(sprung).forces)
+    (actual,) = let_go(eq.analyze(sprung).forces)
     top = MASS * GRAVITY + 1000.0 * (0.3 - (0.2 - 0.03 - HIGH))
-    assert found.speed == pytest.approx(sqrt(top / (MASS * HIGH / 2)))
+    assert actual.speed == pytest.approx(sqrt(top / (MASS * HIGH / 2)))
     loose_tappet = eq.analyze(tappet(cam(closed_by="spring"), gravity=(0.0, 5.0)))
     (loose,) = let_go(loose_tappet.forces)
     assert loose.speed == 0
     assert loose.ranges == ((pytest.approx(0), pytest.approx(2 * pi)),)
-    (told,) = lost_contacts(loose_tappet.forces)
-    assert str(told).endswith("; no [[springs]] press on it")
+    (text,) = lost_contacts(loose_tappet.forces)
+    assert str(text).endswith("; no [[springs]] press on it")
 
 
 def test_a_preload_that_holds_the_tappet_at_its_speed() -> None:
@@ -216,21 +216,21 @@ def test_at_the_lift_off_speed_the_contact_force_touches_zero(name: str) -> None
     """Analysed at that speed there and all around, and a thousandth beside it."""
     given = SPRUNG[name]()
     (cam,) = given.cams
-    (told,) = eq.analyze(given).part_figures["cams"].values()
-    assert told.lost == () and told.lift_off_speed > abs(given.drive.speed)
+    (text,) = eq.analyze(given).part_figures["cams"].values()
+    assert text.lost == () and text.lift_off_speed > abs(given.drive.speed)
 
     def normal(speed: float, angles: Any) -> Any:
         return eq.forces(eq.move(given, angles, speed)).cams[cam.name].normal
 
-    limit, around = told.lift_off_speed, told.lift_off_at + np.linspace(-0.02, 0.02, 4001)
+    limit, around = text.lift_off_speed, text.lift_off_at + np.linspace(-0.02, 0.02, 4001)
     size = np.max(normal(limit, 720))
-    assert abs(normal(limit, [told.lift_off_at])[0]) < 1e-7 * size
+    assert abs(normal(limit, [text.lift_off_at])[0]) < 1e-7 * size
     assert np.min(normal(limit, around)) > -1e-6 * size
     assert np.min(normal(limit, 20_000)) > -1e-6 * size
     assert np.min(normal(0.999 * limit, 20_000)) > 0
     assert np.min(normal(1.001 * limit, around)) < 0
     beyond = eq.analyze(given, speed=1.01 * limit).part_figures["cams"][cam.name].lost
-    assert any(begin < told.lift_off_at < end for begin, end in beyond)
+    assert any(begin < text.lift_off_at < end for begin, end in beyond)
 
 
 @pytest.mark.parametrize("name", SPRUNG)
@@ -252,10 +252,10 @@ def test_the_lift_off_speed_is_not_that_of_the_samples(name: str) -> None:
 
 
 @pytest.mark.parametrize("base", [0.02, 0.021, 0.0371])
-def test_of_equal_extremes_the_first_is_told(base: float) -> None:
+def test_of_equal_extremes_the_first_is_reported(base: float) -> None:
     """An eccentric circle bends alike all round; a cam of two lobes lets go at both tops alike."""
-    (found,) = eq.analyze(tappet(cam(base_radius=base))).part_figures["cams"].values()
-    assert (found.least_radius, found.least_radius_at) == (pytest.approx(base + HIGH / 2), 0)
+    (actual,) = eq.analyze(tappet(cam(base_radius=base))).part_figures["cams"].values()
+    assert (actual.least_radius, actual.least_radius_at) == (pytest.approx(base + HIGH / 2), 0)
     half = [LengthSegment(pi / 2, high, "harmonic") for high in (HIGH, 0.0)]
     twice = cam(
         base_radius=0.06 + base, lift=LengthLaw(segments=(*half, *half)), closed_by="spring"
@@ -267,19 +267,19 @@ def test_of_equal_extremes_the_first_is_told(base: float) -> None:
 def test_figures_of_a_cam_stand_in_plain_data() -> None:
     """Those of lifting off are null where ribs close it, or where masses are missing."""
     given = eq.load("cam-pusher")
-    found = eq.analyze(given, speed=65.0)
-    told = json.loads(json_text(found.to_dict()))["cams"]["crank to pusher"]
-    ((begin, end),) = found.part_figures["cams"]["crank to pusher"].lost
-    assert told["lost"] == [{"from": begin, "to": end}]
-    radius = found.summary["cams.crank to pusher.curvature"]
-    assert told["least_radius"] == pytest.approx(1 / radius.max, rel=1e-3)
-    assert told["lift_off_speed"] == pytest.approx(
-        found.part_figures["cams"]["crank to pusher"].lift_off_speed
+    analysis = eq.analyze(given, speed=65.0)
+    content = json.loads(json_text(analysis.to_dict()))["cams"]["crank to pusher"]
+    ((begin, end),) = analysis.part_figures["cams"]["crank to pusher"].lost
+    assert content["lost"] == [{"from": begin, "to": end}]
+    radius = analysis.summary["cams.crank to pusher.curvature"]
+    assert content["least_radius"] == pytest.approx(1 / radius.max, rel=1e-3)
+    assert content["lift_off_speed"] == pytest.approx(
+        analysis.part_figures["cams"]["crank to pusher"].lift_off_speed
     )
     ribbed = replace(given, cams=(replace(given.cams[0], closed_by="ribs"),))
     for other in (ribbed, given.with_link("arm", mass=None, center_of_mass=None, inertia=None)):
-        (told,) = eq.analyze(other).part_figures["cams"].values()
-        assert (told.lift_off_speed, told.lift_off_at, told.lost) == (None, None, ())
+        (content,) = eq.analyze(other).part_figures["cams"].values()
+        assert (content.lift_off_speed, content.lift_off_at, content.lost) == (None, None, ())
 
 
 @pytest.mark.parametrize("rides", ["flat", "roller", "knife"])
@@ -291,33 +291,33 @@ def test_curvature_is_that_of_the_profile(kind: str, rides: str) -> None:
     else:
         given = lever(rides=rides, **({"normal": pi / 2} if rides == "flat" else {}))
     motion = eq.move(given, 24)
-    told = motion.element_values("cams", 0)["curvature"]
+    reported = motion.element_values("cams", 0)["curvature"]
     (fit,) = fits_of(given, motion.linkage.joints)
     step = 1e-3
     before, here, after = (fit.shape(motion.crank_angle + k * step).surface for k in (-1, 0, 1))
     first, second = (after - before) / (2 * step), (after - 2 * here + before) / step**2
     bend = np.abs((np.conj(first) * second).imag) / np.abs(first) ** 3
-    np.testing.assert_allclose(np.abs(told), bend, rtol=1e-4)
+    np.testing.assert_allclose(np.abs(reported), bend, rtol=1e-4)
 
 
 def test_pull_of_a_return_spring() -> None:
     spring = eq.Spring("tappet", "R", "S", 1000.0, 0.3)
-    found = eq.analyze(tappet(cam(closed_by="spring"), springs=(spring,)))
-    length = 0.2 - found.motion.points["R"].y
-    told = found.outputs["springs.1.length"], found.outputs["springs.1.pull"]
-    np.testing.assert_allclose(told[0].values, length, rtol=1e-14)
-    np.testing.assert_allclose(told[1].values, 1000.0 * (length - 0.3), rtol=1e-13)
-    assert "Springs" in words(found.blocks())
+    analysis = eq.analyze(tappet(cam(closed_by="spring"), springs=(spring,)))
+    length = 0.2 - analysis.motion.points["R"].y
+    texts = analysis.outputs["springs.1.length"], analysis.outputs["springs.1.pull"]
+    np.testing.assert_allclose(texts[0].values, length, rtol=1e-14)
+    np.testing.assert_allclose(texts[1].values, 1000.0 * (length - 0.3), rtol=1e-13)
+    assert "Springs" in words(analysis.blocks())
 
 
 def test_pressure_angle_of_a_machine() -> None:
-    found = eq.analyze(tappet(cam("roller", lift=RISE)))
-    theta = found.crank_angle
-    slope = found.motion.sliders["tappet on frame"].travel_1
-    want = np.arctan(slope / (found.motion.points["R"].y))
-    (told,) = [o for o in found.outputs.arrays if o.name.endswith("pressure_angle")]
-    np.testing.assert_allclose(told.values, want, atol=1e-14)
-    assert len(told.values) == len(theta)
+    analysis = eq.analyze(tappet(cam("roller", lift=RISE)))
+    theta = analysis.crank_angle
+    slope = analysis.motion.sliders["tappet on frame"].travel_1
+    want = np.arctan(slope / (analysis.motion.points["R"].y))
+    (text,) = [o for o in analysis.outputs.arrays if o.name.endswith("pressure_angle")]
+    np.testing.assert_allclose(text.values, want, atol=1e-14)
+    assert len(text.values) == len(theta)
 
 
 def test_a_camshaft_at_half_the_speed_takes_two_turns() -> None:
@@ -340,9 +340,9 @@ def test_a_camshaft_at_half_the_speed_takes_two_turns() -> None:
 
 def test_a_cam_without_a_law_is_round() -> None:
     """What it lifts stands still, and it bears the weight, on a guide and on a pin."""
-    found = eq.analyze(tappet(cam(lift=None))).forces
-    np.testing.assert_allclose(found.motion.points["R"].y, 0.03, atol=1e-16)
-    np.testing.assert_allclose(found.cams["crank to tappet"].normal, MASS * GRAVITY, rtol=1e-13)
+    forces = eq.analyze(tappet(cam(lift=None))).forces
+    np.testing.assert_allclose(forces.motion.points["R"].y, 0.03, atol=1e-16)
+    np.testing.assert_allclose(forces.cams["crank to tappet"].normal, MASS * GRAVITY, rtol=1e-13)
     assert np.ptp(eq.move(lever(swing=None)).links["tappet"].angle) == 0
 
 
@@ -457,9 +457,9 @@ def test_the_least_base_radius_that_does(given: eq.Machine) -> None:
     """With it the cam is made; of 0.1 % less it is said again that it cannot be."""
     with pytest.raises(ModelError) as caught:
         assemble(given)
-    told = str(caught.value)
+    text = str(caught.value)
     least = float(dict(values_of(caught.value.note))["least"]) / 1e3
-    assert "undercut" in told
+    assert "undercut" in text
     right, small = (
         replace(given, cams=(replace(given.cams[0], base_radius=radius),))
         for radius in (least, 0.999 * least)

@@ -66,13 +66,13 @@ def test_a_file_has_all_that_it_is(tmp_path: Path) -> None:
     assert '[[circular_slots]]\nlink = "coupler"\npoint = "C"\non = "frame"\n' in text
     path = tmp_path / "mine.toml"
     eq.save(in_slot(BASE, slot), path)
-    told = " ".join(equipoise("check", path).out.split())
-    assert "circular slot: C of coupler about D of frame, radius 80.00 mm, from" in told
-    assert "coupler: dyad; joints B (pin on crank), track (pin in a slot)" in told
+    reported = " ".join(equipoise("check", path).out.split())
+    assert "circular slot: C of coupler about D of frame, radius 80.00 mm, from" in reported
+    assert "coupler: dyad; joints B (pin on crank), track (pin in a slot)" in reported
 
 
 def test_it_does_what_a_link_without_mass_does() -> None:
-    bar, slot = (eq.analyze(one, 90) for one in (BAR, MACHINE))
+    bar, slot = (eq.analyze(item, 90) for item in (BAR, MACHINE))
     for name in ("drive_torque", "frame_moment"):
         np.testing.assert_array_equal(getattr(bar.forces, name), getattr(slot.forces, name))
     held, pushed = bar.forces.joints, slot.forces.joints["C in frame"]
@@ -99,35 +99,35 @@ ON_CRANK = on_crank(CircularSlot("rocker", "C", "crank", "B", 0.0715))
 @pytest.mark.parametrize("machine", [MACHINE, ON_CRANK, eq.load("flap-folder")])
 def test_motion_and_forces_by_a_second_route(machine: Machine) -> None:
     """Newton's method on |PC| = R, and all free bodies with one push along PC."""
-    found = eq.analyze(machine, angles=ANGLES)
-    poses = from_motion(machine, found.motion)
+    analysis = eq.analyze(machine, angles=ANGLES)
+    poses = from_motion(machine, analysis.motion)
     traced = newton.trace(machine, ANGLES, newton.coordinates(poses, 0))
-    for name, link in found.motion.links.items():
+    for name, link in analysis.motion.links.items():
         np.testing.assert_allclose(np.exp(1j * (link.angle - traced.angle[name])), 1, atol=1e-10)
         rates = link.angular_velocity, link.angular_acceleration
         for got, want in zip(rates, (traced.omega[name], traced.alpha[name]), strict=True):
             np.testing.assert_allclose(got, want, atol=1e-9 * np.max(np.abs(want)))
     free = free_bodies.solve(machine, poses)
-    for name, joint in found.forces.joints.items():
+    for name, joint in analysis.forces.joints.items():
         reaction = free.joints[name]
         force = reaction.force[:, 0] + 1j * reaction.force[:, 1]
         assert (joint.on, joint.by) == (reaction.on, reaction.by)
         np.testing.assert_allclose(joint.value, force, atol=1e-10 * np.max(joint.size))
     torque = free.drives[machine.drive.link]
-    np.testing.assert_allclose(found.forces.drive_torque, torque, atol=1e-12)
+    np.testing.assert_allclose(analysis.forces.drive_torque, torque, atol=1e-12)
 
 
 def test_the_slot_does_no_work() -> None:
     """Power fed in is what kinetic energy and height take."""
     machine = ON_CRANK
-    found = eq.analyze(machine, angles=ANGLES)
+    analysis = eq.analyze(machine, angles=ANGLES)
     taken = 0.0
     for name, link in machine.links.items():
-        center, turning = found.motion.mass_centers[name], found.motion.links[name]
+        center, turning = analysis.motion.mass_centers[name], analysis.motion.links[name]
         pull = center.acceleration_vector - complex(*machine.gravity)
         taken = taken + link.mass * (np.conj(center.velocity) * pull).real
         taken = taken + link.inertia * turning.angular_velocity * turning.angular_acceleration
-    np.testing.assert_allclose(found.forces.power, taken, atol=1e-10 * np.max(np.abs(taken)))
+    np.testing.assert_allclose(analysis.forces.power, taken, atol=1e-10 * np.max(np.abs(taken)))
 
 
 def test_a_pin_stays_between_the_ends_of_its_slot() -> None:
@@ -151,12 +151,12 @@ def test_a_pin_that_never_moves_is_held_in_its_slot_too() -> None:
         links = {**BASE.links, "bar": bar}
         return replace(BASE, links=links, circular_slots=(slot,), assembly=sides)
 
-    found = {
+    actual = {
         side: eq.move(standing(side, (-pi, 3.0))).element_values("circular_slots", 0)["angle"]
         for side in ("left", "right")
     }
-    side = next(side for side, angle in found.items() if abs(angle[0] - 1) < 1e-9)
-    assert found[side] == pytest.approx(np.full(360, 1.0))
+    side = next(side for side, angle in actual.items() if abs(angle[0] - 1) < 1e-9)
+    assert actual[side] == pytest.approx(np.full(360, 1.0))
     with refused(ModelError, "circular_slots[1]", crank_angle=0.0):
         eq.move(standing(side, (2.0, 3.0)))
 
@@ -183,10 +183,10 @@ def test_designs_vary_its_radius_and_its_ends() -> None:
 def test_scripts_have_it(tmp_path: Path) -> None:
     linkage, names = assemble(MACHINE), ["drive_torque", "joints.C in frame.force_x",
                                          "circular_slots.1.angle"]  # fmt: skip
-    script, found = javascript(linkage, names), eq.analyze(MACHINE, 24)
-    got = run(script, script.numbers(linkage), found.motion.crank_angle, tmp_path)
+    script, actual = javascript(linkage, names), eq.analyze(MACHINE, 24)
+    got = run(script, script.numbers(linkage), actual.motion.crank_angle, tmp_path)
     for name, values in zip(names, got, strict=True):
-        wanted = found.outputs[name].values
+        wanted = actual.outputs[name].values
         np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
 
 
@@ -224,12 +224,12 @@ def test_pins_in_slots_have_radii_and_formats_without_slots_refuse(tmp_path: Pat
 
 def test_drawings_have_slots_with_their_ends() -> None:
     machine = in_slot(BASE, replace(SLOT, arc=(-1.0, 2.9)))
-    (path,) = (shape for one in pieces(Scene.of(eq.move(machine, 12))) for shape in one.shapes
+    (path,) = (shape for piece in pieces(Scene.of(eq.move(machine, 12))) for shape in piece.shapes
                if shape.role == "path")  # fmt: skip
     middle = path.places - complex(*BASE.frame["D"])
     np.testing.assert_allclose(np.abs(middle), 0.08)
     np.testing.assert_allclose([np.min(np.angle(middle)), np.max(np.angle(middle))], [-1.0, 2.9])
-    rings = [shape for one in pieces(Scene.of(eq.move(MACHINE, 12))) for shape in one.shapes
+    rings = [shape for piece in pieces(Scene.of(eq.move(MACHINE, 12))) for shape in piece.shapes
              if shape.role == "path-edge"]  # fmt: skip
     assert len(rings) == 2
 
@@ -242,11 +242,11 @@ def test_the_page_has_its_form_and_moves_it(tmp_path: Path) -> None:
     assert content.field("circular_slots[1].radius")["value"] == 0.08
     before = content.place("C")
     values = {"link": "coupler", "point": "C", "on": "frame", "center": "D", "radius": "80.5 mm"}
-    told = ask(session, "entry", place="circular_slots[1]", values=values, seq=1)
-    assert np.max(np.abs(state(told[0]).place("C") - before)) > 1e-4
+    reply = ask(session, "entry", place="circular_slots[1]", values=values, seq=1)
+    assert np.max(np.abs(state(reply[0]).place("C") - before)) > 1e-4
     wrong = {**values, "point": "Q"}
-    told = ask(session, "entry", place="circular_slots[1]", values=wrong, seq=2)
-    assert "point of coupler" in refusal(told)
+    reply = ask(session, "entry", place="circular_slots[1]", values=wrong, seq=2)
+    assert "point of coupler" in refusal(reply)
     state(ask(session, "make", do="rename", what="point", name="D", to="M", at=0)[0])
     assert session.shown.design.machine.circular_slots[0].center == "M"
     state(ask(session, "make", do="delete", what="point", name="M", at=0)[0])
@@ -262,6 +262,6 @@ def test_the_centre_of_a_slot_is_no_axle_that_a_belt_has_to_pass() -> None:
         links={**MACHINE.links, "wheel": wheel},
         belts=(Belt("crank", "wheel", radii=(0.02, 0.02)),),
     )
-    found = eq.analyze(belted, 90)
-    assert found.forces.joints["C in frame"] is not None
-    assert [*crossings(found.motion.linkage)] == []
+    analysis = eq.analyze(belted, 90)
+    assert analysis.forces.joints["C in frame"] is not None
+    assert [*crossings(analysis.motion.linkage)] == []

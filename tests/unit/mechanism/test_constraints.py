@@ -77,8 +77,8 @@ def vector(of: Machine, body: str, line: tuple[str, str]) -> Array:
     return np.subtract(points[line[1]], points[line[0]])
 
 
-def cross(one: Array, other: Array) -> float:
-    return float(one[0] * other[1] - one[1] * other[0])
+def cross(item: Array, other: Array) -> float:
+    return float(item[0] * other[1] - item[1] * other[0])
 
 
 def test_a_length_that_is_set_takes_the_other_one_with_it(tmp_path: Path) -> None:
@@ -106,10 +106,10 @@ def test_only_what_is_missed_moves(tmp_path: Path) -> None:
     ("kind", "line", "to", "holds"),
     [
         ("parallel", ("B", "C"), ("P", "R"), cross),
-        ("perpendicular", ("B", "C"), ("P", "R"), lambda one, two: one @ two),
+        ("perpendicular", ("B", "C"), ("P", "R"), lambda item, two: item @ two),
         ("in line", ("B", "C"), ("P", "R"), cross),
         ("in line", ("B", "P"), ("P", "R"), cross),
-        ("equal", ("B", "C"), ("P", "R"), lambda one, two: one @ one - two @ two),
+        ("equal", ("B", "C"), ("P", "R"), lambda item, two: item @ item - two @ two),
     ],
 )
 def test_each_kind_moves_points_no_further_than_it_has_to(
@@ -117,8 +117,8 @@ def test_each_kind_moves_points_no_further_than_it_has_to(
 ) -> None:
     """The places are those of an optimiser that knows the condition alone."""
     free = machine(tmp_path, MODEL.partition("[[constraints]]")[0])
-    one = Constraint(kind, line, to)
-    places = constrained([one], free.bodies)
+    first = Constraint(kind, line, to)
+    places = constrained([first], free.bodies)
     after = free.with_places(places)
     assert holds(vector(after, "coupler", line), vector(after, "coupler", to)) == pytest.approx(
         0.0, abs=1e-12
@@ -129,10 +129,10 @@ def test_each_kind_moves_points_no_further_than_it_has_to(
     def condition(values: Array) -> list[float]:
         moved = dict(zip((point for _, point in places), values.reshape(-1, 2), strict=True))
         at = {name: np.array(place) * 1000 for name, place in coupler.items()} | moved
-        found = [holds(at[line[1]] - at[line[0]], at[to[1]] - at[to[0]])]
+        actual = [holds(at[line[1]] - at[line[0]], at[to[1]] - at[to[0]])]
         if kind == "in line" and to[0] != line[1]:
-            found.append(cross(at[line[1]] - at[line[0]], at[to[1]] - at[line[0]]))
-        return found
+            actual.append(cross(at[line[1]] - at[line[0]], at[to[1]] - at[line[0]]))
+        return actual
 
     best = minimize(lambda values: float(((values - start) ** 2).sum()), start, method="SLSQP",
                     constraints={"type": "eq", "fun": condition},
@@ -236,7 +236,7 @@ def test_the_page_keeps_them_while_one_drags_and_types(tmp_path: Path) -> None:
 
 def test_every_kind_has_a_sign() -> None:
     assert SIGNS.keys() == MISSES.keys()
-    assert len({one.at for one in SIGNS.values()}) == len(SIGNS)
+    assert len({sign.at for sign in SIGNS.values()}) == len(SIGNS)
 
 
 def test_its_signs_lie_on_both_lines(tmp_path: Path) -> None:
@@ -244,7 +244,9 @@ def test_its_signs_lie_on_both_lines(tmp_path: Path) -> None:
     marks = [mark for mark in scene.marks if mark.shape.role == "constraint"]
     assert {mark.body for mark in marks} == {"rocker", "coupler"}
     assert len(marks) == 2 * 2 + 2 * 2  # strokes of two kinds on two lines each
-    drawn = [one for piece in pieces(scene) for one in piece.shapes if one.role == "constraint"]
+    drawn = [
+        shape for piece in pieces(scene) for shape in piece.shapes if shape.role == "constraint"
+    ]
     assert len(drawn) == len(marks)
 
 
@@ -261,8 +263,8 @@ def test_the_sign_of_one_that_is_missed_differs_in_colour_and_without_it(tmp_pat
     wrong, right = LOOKS["missed-constraint"], LOOKS["constraint"]
     assert wrong.line != right.line and wrong.dashes and not right.dashes
     session = Session()
-    told = state(ask(session, "open", text=dumps(missed))[0])
-    looks = told.content["scene"]["looks"]
+    reported = state(ask(session, "open", text=dumps(missed))[0])
+    looks = reported.content["scene"]["looks"]
     assert "stroke-dasharray" in looks["missed-constraint"]
     assert looks["missed-constraint"] != looks["constraint"]
 
@@ -276,8 +278,8 @@ def test_they_hold_while_a_machine_is_drawn() -> None:
         state(ask(session, "make", do="link", at=0, **spots)[0])
     state(ask(session, "make", do="ground", point="A", at=0)[0])
     values = {"kind": "equal", "line": ["A", "B"], "to": ["C", "D"]}
-    told = state(ask(session, "entry", place="constraints[1]", values=values, seq=1)[0]).content
-    roles = str(told["scene"])
+    content = state(ask(session, "entry", place="constraints[1]", values=values, seq=1)[0]).content
+    roles = str(content["scene"])
     assert "constraint" in roles
     edit(session, move("B", 0.03 + 0.04j, 0))
     bodies = session.view.design.bodies

@@ -50,7 +50,7 @@ def circle(count: int, first: float = 0.0, last: float = 2 * np.pi) -> Points:
     """Points of a circle of the radius of the circular slot; the last is left out all round."""
     closed = last - first > 6
     places = RADIUS * np.exp(1j * np.linspace(first, last, count + closed)[:count])
-    return tuple((float(one.real), float(one.imag)) for one in places)
+    return tuple((float(place.real), float(place.imag)) for place in places)
 
 
 def in_curve(points: Points, closed: bool = True, **more: Any) -> Machine:
@@ -134,10 +134,10 @@ def test_a_circle_of_points_converges_to_the_circular_slot() -> None:
     want = eq.analyze(CIRCULAR, 60)
     errors = []
     for count in (16, 32, 64):
-        found = eq.analyze(in_curve(circle(count)), 60)
-        torque = np.abs(found.forces.drive_torque - want.forces.drive_torque)
+        analysis = eq.analyze(in_curve(circle(count)), 60)
+        torque = np.abs(analysis.forces.drive_torque - want.forces.drive_torque)
         errors.append(np.max(torque) / np.max(np.abs(want.forces.drive_torque)))
-        push, pull = (one.forces.joints["C in frame"] for one in (found, want))
+        push, pull = (item.forces.joints["C in frame"] for item in (analysis, want))
         assert (push.on, push.by) == ("coupler", "frame")
         # left of the way round is towards the centre
         np.testing.assert_allclose(push.normal, -pull.normal, atol=1e-3 * np.max(pull.size))
@@ -161,13 +161,13 @@ def test_points_on_a_line_are_a_slider() -> None:
     near = eq.move(with_block, [0.0]).points["C"].place[0]
     curved = replace(bare, links=links, sliders=(), assembly={}, curved_slots=(slot,),
                      position=Position(0.0, {"C": (near.real, near.imag)}, {}))  # fmt: skip
-    want, found = (eq.analyze(one, 60) for one in (with_block, curved))
+    want, actual = (eq.analyze(item, 60) for item in (with_block, curved))
     torque = want.forces.drive_torque
-    np.testing.assert_allclose(found.forces.drive_torque, torque, atol=1e-10 * np.ptp(torque))
-    pushed, guided = found.forces.joints[slot.name], want.forces.joints[guide.name]
+    np.testing.assert_allclose(actual.forces.drive_torque, torque, atol=1e-10 * np.ptp(torque))
+    pushed, guided = actual.forces.joints[slot.name], want.forces.joints[guide.name]
     np.testing.assert_allclose(pushed.normal, guided.normal, atol=1e-10 * np.max(guided.size))
     travel = want.motion.sliders[guide.name]
-    values = found.motion.element_values("curved_slots", 0)
+    values = actual.motion.element_values("curved_slots", 0)
     np.testing.assert_allclose(np.ptp(values["distance"]), np.ptp(travel.travel), rtol=1e-10)
     np.testing.assert_allclose(values["speed"], travel.velocity, atol=1e-10)
 
@@ -177,10 +177,10 @@ def test_points_on_a_line_are_a_slider() -> None:
 def test_motion_and_forces_by_a_second_route(name: str) -> None:
     """Newton's method on the distance from SciPy's spline, and all free bodies at once."""
     machine = machine_named(name)
-    found = eq.analyze(machine, angles=ANGLES)
-    poses = from_motion(machine, found.motion)
+    analysis = eq.analyze(machine, angles=ANGLES)
+    poses = from_motion(machine, analysis.motion)
     traced = newton.trace(machine, ANGLES, newton.coordinates(poses, 0))
-    for link_name, link in found.motion.links.items():
+    for link_name, link in analysis.motion.links.items():
         off = np.exp(1j * (link.angle - traced.angle[link_name]))
         np.testing.assert_allclose(off, 1, atol=1e-8)
         rates = link.angular_velocity, link.angular_acceleration
@@ -189,15 +189,15 @@ def test_motion_and_forces_by_a_second_route(name: str) -> None:
             size = np.max(np.abs(want)) + abs(machine.drive.speed)
             np.testing.assert_allclose(got, want, atol=1e-7 * size)
     free = free_bodies.solve(machine, poses)
-    assert found.forces.joints.keys() == free.joints.keys()
-    largest = max(np.max(joint.size) for joint in found.forces.joints.values())
-    for joint_name, joint in found.forces.joints.items():
+    assert analysis.forces.joints.keys() == free.joints.keys()
+    largest = max(np.max(joint.size) for joint in analysis.forces.joints.values())
+    for joint_name, joint in analysis.forces.joints.items():
         reaction = free.joints[joint_name]
         force = reaction.force[:, 0] + 1j * reaction.force[:, 1]
         assert (joint.on, joint.by) == (reaction.on, reaction.by)
         np.testing.assert_allclose(joint.value, force, atol=1e-8 * largest)
     torque = free.drives[machine.drive.link]
-    np.testing.assert_allclose(found.forces.drive_torque, torque, atol=1e-8 * np.ptp(torque))
+    np.testing.assert_allclose(analysis.forces.drive_torque, torque, atol=1e-8 * np.ptp(torque))
 
 
 @EVERY
@@ -207,12 +207,12 @@ def test_rates_are_those_of_positions(name: str) -> None:
     h, at = 1e-4, np.linspace(0.1, 6.2, 24)
     low, here, high = (eq.move(machine, at + step) for step in (-h, 0.0, h))
     for point, motion in here.points.items():
-        before, now, after = (one.points[point].place for one in (low, here, high))
+        before, now, after = (item.points[point].place for item in (low, here, high))
         first, second = (after - before) / (2 * h), (after - 2 * now + before) / h**2
         size = np.max(np.abs(motion.place_2)) + 0.01
         np.testing.assert_allclose(motion.place_1, first, atol=1e-5 * size)
         np.testing.assert_allclose(motion.place_2, second, atol=1e-4 * size)
-    values = [one.element_values("curved_slots", 0) for one in (low, here, high)]
+    values = [item.element_values("curved_slots", 0) for item in (low, here, high)]
     way = values[2]["distance"] - values[0]["distance"]
     length = machine.curved_slots[0].curve.length
     way -= length * np.round(way / length)  # once round
@@ -224,16 +224,16 @@ def test_rates_are_those_of_positions(name: str) -> None:
 def test_the_slot_does_no_work(name: str) -> None:
     """Power fed in, and of loads, is what kinetic energy and height take."""
     machine = replace(machine_named(name), loads=())
-    found = eq.analyze(machine, angles=ANGLES)
+    analysis = eq.analyze(machine, angles=ANGLES)
     taken: Any = 0.0
     for link_name, link in machine.links.items():
-        center, turning = found.motion.mass_centers[link_name], found.motion.links[link_name]
+        center, turning = analysis.motion.mass_centers[link_name], analysis.motion.links[link_name]
         pull = center.acceleration_vector - complex(*machine.gravity)
         taken = taken + link.mass * (np.conj(center.velocity) * pull).real
         taken = taken + link.inertia * turning.angular_velocity * turning.angular_acceleration
-    np.testing.assert_allclose(found.forces.power, taken, atol=1e-9 * np.max(np.abs(taken)))
+    np.testing.assert_allclose(analysis.forces.power, taken, atol=1e-9 * np.max(np.abs(taken)))
     slot = machine.curved_slots[0]
-    push = found.forces.joints[slot.name]
+    push = analysis.forces.joints[slot.name]
     np.testing.assert_allclose(np.abs(push.normal), push.size, atol=1e-9 * np.max(push.size))
 
 
@@ -266,10 +266,10 @@ def test_circular_slots_in_groups_of_loops_are_links_without_mass() -> None:
     links = {name: link for name, link in base.links.items() if name != "front-link"}
     slot = CircularSlot("plate", "P", "frame", "D", light.points["P"][0])
     slotted = replace(base, links=links, circular_slots=(slot,))
-    want, found = (eq.analyze(one, 60) for one in (bars, slotted))
+    want, actual = (eq.analyze(item, 60) for item in (bars, slotted))
     torque = want.forces.drive_torque
-    np.testing.assert_allclose(found.forces.drive_torque, torque, atol=1e-10 * np.ptp(torque))
-    pushed, held = found.forces.joints["P in frame"], want.forces.joints["P"]
+    np.testing.assert_allclose(actual.forces.drive_torque, torque, atol=1e-10 * np.ptp(torque))
+    pushed, held = actual.forces.joints["P in frame"], want.forces.joints["P"]
     np.testing.assert_allclose(np.abs(pushed.value), held.size, atol=1e-9 * np.max(held.size))
     points = {name: place for name, place in base.position.points.items() if name in "BC"}
     lost = replace(slotted, position=replace(base.position, points=points))
@@ -286,13 +286,13 @@ def test_slots_have_planes() -> None:
     circular = replace(CIRCULAR, links=machine.links)
     assert machine.has_planes
     same = replace(in_curve(circle(64)), links=machine.links)
-    want, found = (eq.analyze(one, 36) for one in (circular, same))
-    names = [one.name for one in want.outputs if one.declared.needs == "planes"]
+    want, actual = (eq.analyze(item, 36) for item in (circular, same))
+    names = [output.name for output in want.outputs if output.declared.needs == "planes"]
     assert names
     for name in names:
         values = want.outputs[name].values
         size = np.max(np.abs(values)) + 1e-9
-        np.testing.assert_allclose(found.outputs[name].values, values, atol=1e-5 * size)
+        np.testing.assert_allclose(actual.outputs[name].values, values, atol=1e-5 * size)
 
 
 # -- limits ----------------------------------------------------------------------------------------
@@ -316,9 +316,9 @@ def test_a_pin_that_runs_out_of_an_open_curve_says_where() -> None:
     slot = replace(machine.curved_slots[0], closed=False)
     with refused(MotionError, crank_angle=337.472) as error:
         eq.analyze(replace(machine, curved_slots=(slot,)))
-    told = re.search(r"at crank angle ([\d.]+) deg; make the slot longer, or", str(error.value))
-    assert told
-    last = eq.move(machine, [np.radians(float(told[1]))]).points["R"].place[0]
+    match = re.search(r"at crank angle ([\d.]+) deg; make the slot longer, or", str(error.value))
+    assert match
+    last = eq.move(machine, [np.radians(float(match[1]))]).points["R"].place[0]
     place, before = (complex(*place) for place in slot.places[:-3:-1])
     assert abs(last - place) < 0.02 * abs(place - before)
 
@@ -371,10 +371,10 @@ def test_a_file_has_all_that_it_is(tmp_path: Path) -> None:
     assert "closed = true" in text
     path = tmp_path / "mine.toml"
     eq.save(machine, path)
-    told = " ".join(equipoise("check", path).out.split())
-    assert "curved slot: C of coupler in frame, closed curve through 6 points" in told
-    assert "coupler: by Newton's method on the loop equations; joints" in told
-    assert "track (pin in a slot)" in told
+    reported = " ".join(equipoise("check", path).out.split())
+    assert "curved slot: C of coupler in frame, closed curve through 6 points" in reported
+    assert "coupler: by Newton's method on the loop equations; joints" in reported
+    assert "track (pin in a slot)" in reported
 
 
 def test_points_may_stand_in_a_table(tmp_path: Path) -> None:
@@ -410,19 +410,19 @@ def test_designs_vary_its_place_and_what_it_holds(name: str, paths: list[str]) -
     machine = machine_named(name)
     slot = machine.curved_slots[0]
     names = ("drive_torque", f"joints.{slot.name}", "joints.B", "curved_slots.1.speed")
-    batch = Batch(machine, paths, [Figure(one, "rms") for one in names], angles=60)
+    batch = Batch(machine, paths, [Figure(item, "rms") for item in names], angles=60)
     if name == "open":
         sizes = [(0.0, machine.frame["D"][0]), (0.01, machine.frame["D"][0] + 1e-3), (1.5, 0.0)]
     else:
         sizes = [(0.105, -0.055), (0.104, -0.0545), (0.3, -0.055)]
     figures, reason = batch(np.array(sizes))
     assert reason.astype(bool).tolist() == [False, False, True]
-    for row, (one, other) in zip(figures, sizes[:2], strict=False):
+    for row, (figure, other) in zip(figures, sizes[:2], strict=False):
         if name == "open":
             alone = machine.with_point("frame", "D", (other, machine.frame["D"][1]))
-            alone = replace(alone, curved_slots=(replace(slot, direction=one),))
+            alone = replace(alone, curved_slots=(replace(slot, direction=figure),))
         else:
-            alone = machine.with_point("reel", "B", (one, 0.0))
+            alone = machine.with_point("reel", "B", (figure, 0.0))
             alone = alone.with_point("tine", "R", (0.0, other))
         summary = eq.analyze(alone, 60).summary
         np.testing.assert_allclose(row, [summary[key].rms for key in names], rtol=1e-8)
@@ -430,13 +430,13 @@ def test_designs_vary_its_place_and_what_it_holds(name: str, paths: list[str]) -
 
 def test_drawings_have_slots_with_their_ends() -> None:
     machine = in_curve(circle(9, -1.0, 2.9), closed=False, direction=0.2)
-    (path,) = (shape for one in pieces(Scene.of(eq.move(machine, 12))) for shape in one.shapes
+    (path,) = (shape for piece in pieces(Scene.of(eq.move(machine, 12))) for shape in piece.shapes
                if shape.role == "path")  # fmt: skip
     middle = path.places - complex(*BASE.frame["D"])
     np.testing.assert_allclose(np.abs(middle), RADIUS, rtol=1e-3)
     np.testing.assert_allclose([np.min(np.angle(middle)), np.max(np.angle(middle))], [-0.8, 3.1])
     motion = eq.move(machine_named("baler-pickup"), 12)
-    rings = [shape for one in pieces(Scene.of(motion)) for shape in one.shapes
+    rings = [shape for piece in pieces(Scene.of(motion)) for shape in piece.shapes
              if shape.role == "path-edge"]  # fmt: skip
     assert len(rings) == 2
 
@@ -445,7 +445,9 @@ def test_a_slot_is_as_wide_as_its_pin() -> None:
     """The roller of 14 mm lies between both edges, whatever the scale."""
     motion = eq.move(machine_named("baler-pickup"), 12)
     scene = Scene.of(motion)
-    edges = [shape for one in pieces(scene) for shape in one.shapes if shape.role == "path-edge"]
+    edges = [
+        shape for piece in pieces(scene) for shape in piece.shapes if shape.role == "path-edge"
+    ]
     (slot,) = motion.machine.curved_slots
     for edge, side in zip(edges, (1, -1), strict=True):
         middle, ahead, *_ = slot.curve.at(slot.curve.nearest(edge.places))
@@ -471,11 +473,11 @@ def test_the_page_has_its_form_and_moves_it(tmp_path: Path) -> None:
     points = [[f"{1.01e3 * x} mm", f"{1e3 * y} mm"] for x, y in circle(12)]
     values = {"link": "coupler", "point": "C", "on": "frame", "origin": "D", "points": points,
               "closed": True}  # fmt: skip
-    told = ask(session, "entry", place="curved_slots[1]", values=values, seq=1)
-    assert np.max(np.abs(state(told[0]).place("C") - before)) > 1e-4
+    reply = ask(session, "entry", place="curved_slots[1]", values=values, seq=1)
+    assert np.max(np.abs(state(reply[0]).place("C") - before)) > 1e-4
     wrong = {**values, "points": points[:2]}
-    told = ask(session, "entry", place="curved_slots[1]", values=wrong, seq=2)
-    assert "give 4 to 400" in refusal(told)
+    reply = ask(session, "entry", place="curved_slots[1]", values=wrong, seq=2)
+    assert "give 4 to 400" in refusal(reply)
     state(ask(session, "make", do="rename", what="point", name="D", to="M", at=0)[0])
     assert session.shown.design.machine.curved_slots[0].origin == "M"
 

@@ -51,24 +51,24 @@ def test_the_law_of_cosines() -> None:
 
 
 def test_the_force_at_rest_holds_the_weight_by_its_lever() -> None:
-    found = eq.analyze(boom(), 30, speed=0.0)
-    motion = found.motion
+    analysis = eq.analyze(boom(), 30, speed=0.0)
+    motion = analysis.motion
     a, b = complex(*A), motion.points["B"].place
     lever = (b.conj() * (b - a)).imag / np.abs(b - a)
     weight = 0.5 * 9.80665 * motion.mass_centers["boom"].x
-    np.testing.assert_allclose(found.forces.drive_force * lever, weight, rtol=1e-12)
-    pin, push = found.forces.joints["P"], found.forces.drive_force * (b - a) / np.abs(b - a)
+    np.testing.assert_allclose(analysis.forces.drive_force * lever, weight, rtol=1e-12)
+    pin, push = analysis.forces.joints["P"], analysis.forces.drive_force * (b - a) / np.abs(b - a)
     np.testing.assert_allclose(pin.value + push, 0.5j * 9.80665, rtol=1e-12)
-    assert "drive_torque" not in found.outputs
-    assert "drive_force" in found.outputs
+    assert "drive_torque" not in analysis.outputs
+    assert "drive_force" in analysis.outputs
 
 
 def test_the_regressor_and_the_parts_add_up_to_the_force() -> None:
-    found = eq.analyze(boom(), 24)
-    whole = found.forces.drive_force
-    columns = regressor(found.motion).drive_force
+    analysis = eq.analyze(boom(), 24)
+    whole = analysis.forces.drive_force
+    columns = regressor(analysis.motion).drive_force
     np.testing.assert_allclose(parameter_values(boom()) @ columns, whole, rtol=1e-12)
-    np.testing.assert_allclose(sum(found.forces.split.by_cause("drive_force").values()), whole)
+    np.testing.assert_allclose(sum(analysis.forces.split.by_cause("drive_force").values()), whole)
 
 
 def arm(
@@ -86,9 +86,9 @@ def arm(
 
 def test_several_cylinders_have_a_force_each() -> None:
     """Whose parts add up, and whose powers are all that is fed in."""
-    found = eq.analyze(arm(), 24)
-    forces, outputs = found.forces, found.outputs
-    columns, values = regressor(found.motion), parameter_values(found.machine)
+    analysis = eq.analyze(arm(), 24)
+    forces, outputs = analysis.forces, analysis.outputs
+    columns, values = regressor(analysis.motion), parameter_values(analysis.machine)
     for link in ("boom", "stick"):
         name = f"drives.{link}.force"
         assert outputs[name].values is forces.drives[link]
@@ -96,7 +96,7 @@ def test_several_cylinders_have_a_force_each() -> None:
         np.testing.assert_allclose(sum(forces.split.by_cause(name).values()), forces.drives[link])
     power = sum(outputs[f"drives.{link}.power"].values for link in ("boom", "stick"))
     np.testing.assert_allclose(power, forces.power, rtol=1e-12)
-    assert eq.loads(eq.dumps(found.machine)) == found.machine
+    assert eq.loads(eq.dumps(analysis.machine)) == analysis.machine
 
 
 @pytest.mark.parametrize(
@@ -187,13 +187,13 @@ def test_programs_that_turn_a_crank_refuse_it(name: str) -> None:
 
 def test_everything_is_shown_of_it() -> None:
     """Pictures and page have the force in the place of the torque, and the cylinder."""
-    found = Findings(boom(), "", "boom.toml", 120)
-    drawn = {one.name: one for one in each(found)}
+    findings = Findings(boom(), "", "boom.toml", 120)
+    drawn = {item.name: item for item in each(findings)}
     assert "Force of the drive on boom" in render(drawn["torque"].chart).decode()
-    blocks = [getattr(one, "title", "") for one in found.analysis.blocks()]
+    blocks = [getattr(block, "title", "") for block in findings.analysis.blocks()]
     assert "Drive force by cause" in blocks
-    told = " ".join(str(one) for one in found.analysis.blocks())
-    assert "cylinder A to B from 550.0 to 800.0 mm and back, 19.10 cycles a minute" in told
+    text = " ".join(str(block) for block in findings.analysis.blocks())
+    assert "cylinder A to B from 550.0 to 800.0 mm and back, 19.10 cycles a minute" in text
 
 
 def test_a_load_over_two_turns_halves_the_cycles_a_minute_everywhere() -> None:
@@ -213,11 +213,11 @@ def test_a_load_over_two_turns_halves_the_cycles_a_minute_everywhere() -> None:
 def test_the_page_draws_barrel_and_rod_which_keep_their_lengths() -> None:
     session = Session()
     session.open(Design("boom.toml", boom()))
-    replies = [one.content for one in session.receive(message_of({"type": "ready"}))]
-    (state,) = [one for one in replies if one["type"] == "state"]
+    replies = [item.content for item in session.receive(message_of({"type": "ready"}))]
+    (state,) = [reply for reply in replies if reply["type"] == "state"]
     pushed = [sign for sign in state["scene"]["signs"] if (sign["hold"] or {}).get("rigid")]
     assert [sign["shapes"][0][0] for sign in pushed] == ["piston", "barrel"]
-    assert [one["name"] for one in state["charts"] if one["name"].startswith("drive")] == [
+    assert [item["name"] for item in state["charts"] if item["name"].startswith("drive")] == [
         "drive_force"
     ]
 
@@ -240,10 +240,10 @@ def test_a_stroke_beside_other_drives_hangs_on_geared_links() -> None:
     with refusals.refused(ModelError, "drives"):
         eq.analyze(machine(frame, links, drive=drive, gears=(*gears, more), drives=(lifted,)))
     del links["pinion"]
-    found = eq.analyze(machine(frame, links, drive=drive, gears=gears, drives=(lifted,)), 360)
-    ends = (found.motion.points[name].place for name in "QT")
+    analysis = eq.analyze(machine(frame, links, drive=drive, gears=gears, drives=(lifted,)), 360)
+    ends = (analysis.motion.points[name].place for name in "QT")
     lengths = np.abs(next(ends) - next(ends))
-    np.testing.assert_allclose(lengths, law.value(found.crank_angle)[0], atol=1e-14)
-    work = found.forces.work
+    np.testing.assert_allclose(lengths, law.value(analysis.crank_angle)[0], atol=1e-14)
+    work = analysis.forces.work
     assert abs(work["crank"]) > 1e-3
     assert sum(work.values()) == pytest.approx(0.0, abs=1e-12)

@@ -49,8 +49,8 @@ def damped(*dampers: Damper | TorsionDamper) -> Machine:
         machine,
         springs=(),
         links=links,
-        dampers=tuple(one for one in dampers if isinstance(one, Damper)),
-        torsion_dampers=tuple(one for one in dampers if isinstance(one, TorsionDamper)),
+        dampers=tuple(damper for damper in dampers if isinstance(damper, Damper)),
+        torsion_dampers=tuple(damper for damper in dampers if isinstance(damper, TorsionDamper)),
     )
 
 
@@ -79,16 +79,16 @@ def lengthening(motion: eq.mechanism.Motion, damper: Damper, step: float = 1e-6)
 
 def test_pull_follows_the_speed_of_the_length() -> None:
     """Speeds by differences of lengths, good to 1e-9 of them; forces by the table searched anew."""
-    found = eq.analyze(MACHINE, 72)
+    analysis = eq.analyze(MACHINE, 72)
     for number, damper in enumerate(MACHINE.dampers):
-        values = found.motion.element_values("dampers", number)
-        speed = lengthening(found.motion, damper)
+        values = analysis.motion.element_values("dampers", number)
+        speed = lengthening(analysis.motion, damper)
         np.testing.assert_allclose(values["speed"], speed, atol=1e-7 * np.max(np.abs(speed)))
         law = 40.0 * values["speed"] if number == 0 else resisted((SPEEDS, FORCES), values["speed"])
         np.testing.assert_allclose(values["pull"], law, atol=1e-12 * np.max(np.abs(law)))
-    links = found.motion.links
+    links = analysis.motion.links
     speed = links["coupler"].angular_velocity - links["rocker"].angular_velocity
-    values = found.motion.element_values("torsion_dampers", 1)
+    values = analysis.motion.element_values("torsion_dampers", 1)
     np.testing.assert_allclose(values["speed"], speed, atol=1e-12)
     np.testing.assert_allclose(values["torque"], -resisted((RATES, TORQUES), speed), atol=1e-12)
 
@@ -96,18 +96,18 @@ def test_pull_follows_the_speed_of_the_length() -> None:
 @pytest.mark.parametrize("speed", [15.7, -3.0])
 def test_what_dampers_take_the_drive_gives(speed: float) -> None:
     """At every crank angle, and nothing of it reaches the frame's force and moment."""
-    found, bare = (eq.analyze(one, 90, speed=speed) for one in (MACHINE, damped()))
-    losses = np.array([found.outputs[f"{name}.loss"].values for name in NAMES])
+    actual, bare = (eq.analyze(item, 90, speed=speed) for item in (MACHINE, damped()))
+    losses = np.array([actual.outputs[f"{name}.loss"].values for name in NAMES])
     assert np.all(losses > -1e-12) and np.all(np.max(losses, axis=1) > 1e-4)
-    more = found.forces.power - bare.forces.power
+    more = actual.forces.power - bare.forces.power
     np.testing.assert_allclose(more, np.sum(losses, axis=0), atol=1e-11)
     for name in ("shaking_force", "frame_force"):
-        ours, theirs = (getattr(one.forces, name).value for one in (found, bare))
+        ours, theirs = (getattr(item.forces, name).value for item in (actual, bare))
         np.testing.assert_allclose(ours, theirs, atol=1e-9)
-    np.testing.assert_allclose(found.forces.frame_moment, bare.forces.frame_moment, atol=1e-9)
-    by_cause = found.forces.split.by_cause("drive_torque")
+    np.testing.assert_allclose(actual.forces.frame_moment, bare.forces.frame_moment, atol=1e-9)
+    by_cause = actual.forces.split.by_cause("drive_torque")
     np.testing.assert_allclose(by_cause["damper"], more / speed, atol=1e-11)
-    pins = [one.forces.joints["C"].value for one in (found, bare)]
+    pins = [item.forces.joints["C"].value for item in (actual, bare)]
     assert np.max(np.abs(pins[0] - pins[1])) > 1.0
 
 
@@ -125,15 +125,15 @@ def test_on_random_machines(name: str) -> None:
     far = {link: f"far {link}" for link in links[:2]}
     both = {link: _with_point(machine.links[link], far[link]) for link in far}
     machine = replace(machine, links={**machine.links, **both})
-    one, other = far
-    dampers = (Damper(one, far[one], far[other], 30.0, on=other),)
-    torsion = (TorsionDamper(other, damping=0.4), TorsionDamper(one, other, 0.3))
-    found = eq.analyze(replace(machine, dampers=dampers, torsion_dampers=torsion), 60)
+    first, other = far
+    dampers = (Damper(first, far[first], far[other], 30.0, on=other),)
+    torsion = (TorsionDamper(other, damping=0.4), TorsionDamper(first, other, 0.3))
+    analysis = eq.analyze(replace(machine, dampers=dampers, torsion_dampers=torsion), 60)
     bare = eq.analyze(machine, 60)
-    losses = sum(found.outputs[f"{kind}.loss"].values
+    losses = sum(analysis.outputs[f"{kind}.loss"].values
                  for kind in ("dampers.1", "torsion_dampers.1", "torsion_dampers.2"))  # fmt: skip
-    scale = np.max(np.abs(found.forces.power))
-    np.testing.assert_allclose(found.forces.power - bare.forces.power, losses, atol=1e-9 * scale)
+    scale = np.max(np.abs(analysis.forces.power))
+    np.testing.assert_allclose(analysis.forces.power - bare.forces.power, losses, atol=1e-9 * scale)
 
 
 def test_a_file_has_all_that_they_are(tmp_path: Path) -> None:
@@ -153,7 +153,7 @@ def test_a_file_has_all_that_they_are(tmp_path: Path) -> None:
     assert "torsion damper: crank on frame, 3 rows" in lines
     listed = (Damper("rocker", "F", "S", speeds=SPEEDS, forces=FORCES),
               TorsionDamper("crank", speeds=RATES, torques=TORQUES))  # fmt: skip
-    peaks = [eq.analyze(one, 60).summary["drive_torque"].peak for one in (again, damped(*listed))]
+    peaks = [eq.analyze(item, 60).summary["drive_torque"].peak for item in (again, damped(*listed))]
     assert peaks[0] == peaks[1]
 
 
@@ -212,17 +212,17 @@ def test_a_disc_slows_down_exponentially() -> None:
     link = eq.Link({"A": (0.0, 0.0), "B": (0.1, 0.0)}, 2.0, (0.0, 0.0), 0.05)
     machine = eq.Machine("disc", eq.Drive("disc", 20.0), {"A": (0.0, 0.0)}, {"disc": link},
                          torsion_dampers=(TorsionDamper("disc", damping=0.02),))  # fmt: skip
-    found = eq.run(machine, "4 s", speed=20.0)
-    np.testing.assert_allclose(found.crank_speed, 20.0 * np.exp(-0.4 * found.time), rtol=1e-9)
-    lost = 0.5 * 0.05 * (found.crank_speed[-1] ** 2 - 400.0)
-    assert found.work["dampers"][-1] == pytest.approx(lost, rel=1e-9)
+    run = eq.run(machine, "4 s", speed=20.0)
+    np.testing.assert_allclose(run.crank_speed, 20.0 * np.exp(-0.4 * run.time), rtol=1e-9)
+    lost = 0.5 * 0.05 * (run.crank_speed[-1] ** 2 - 400.0)
+    assert run.work["dampers"][-1] == pytest.approx(lost, rel=1e-9)
 
 
 def test_a_run_is_that_of_scipy_on_virtual_work() -> None:
     """J and the losses from analyses at each crank angle; to the tolerance of SciPy, 1e-9."""
     machine = replace(MACHINE, gravity=(0.0, 0.0))
     equation = CrankEquation(machine)
-    found = eq.run(machine, "0.01 s", speed=30.0)
+    run = eq.run(machine, "0.01 s", speed=30.0)
 
     def rates(_: float, state: Any) -> list[float]:
         theta, speed = state
@@ -233,8 +233,8 @@ def test_a_run_is_that_of_scipy_on_virtual_work() -> None:
         return [speed, (-loss / speed - slope * speed**2 / 2) / inertia]
 
     wanted = solve_ivp(rates, (0.0, 0.01), (0.0, 30.0), rtol=1e-9, atol=1e-10)
-    assert found.crank_speed[-1] == pytest.approx(wanted.y[1, -1], rel=1e-6)
-    assert 1.0 < found.crank_speed[-1] < 25.0
+    assert run.crank_speed[-1] == pytest.approx(wanted.y[1, -1], rel=1e-6)
+    assert 1.0 < run.crank_speed[-1] < 25.0
 
 
 # -- what is wrong ---------------------------------------------------------------------------------

@@ -61,13 +61,13 @@ def test_power_of_both_drives_is_what_the_machine_takes():
     assert len(forces.drives) == 2
 
 
-def test_work_of_the_drives_is_told_and_cancels_without_losses():
+def test_work_of_the_drives_is_reported_and_cancels_without_losses():
     analysis = eq.analyze(five_bar(), acceleration=0.0)
-    work = [one["work"] for one in analysis.to_dict()["drives"].values()]
+    work = [value["work"] for value in analysis.to_dict()["drives"].values()]
     period = 2 * pi * analysis.motion.turns / abs(analysis.motion.speed)
-    for link, one in zip(analysis.forces.drives, work, strict=True):
+    for link, item in zip(analysis.forces.drives, work, strict=True):
         mean = np.mean(analysis.outputs[f"drives.{link}.power"].values)
-        assert one == pytest.approx(mean * period, abs=1e-9)
+        assert item == pytest.approx(mean * period, abs=1e-9)
     assert sum(work) == pytest.approx(0, abs=1e-9 * max(map(abs, work)))
 
 
@@ -87,7 +87,7 @@ def test_the_cycle_is_that_of_all_drives_and_laws():
     assert eq.move(machine, 4).turns == 6
 
 
-def test_cycles_that_take_too_many_turns_are_told():
+def test_cycles_that_take_too_many_turns_are_reported():
     machine = five_bar(drives=(FurtherDrive("follower", motion=replace(SWING, turns=97)),))
     machine = machine.with_drive(motion=replace(SWING, turns=89))
     with refused(MotionError, turns="8633"):
@@ -98,17 +98,19 @@ def test_a_jump_of_acceleration_is_noted_and_is_no_place_without_effect():
     """A trapezoid of speed, whose acceleration jumps at four crank angles; a cycloid has none."""
     ways = (AngleSegment(pi, 0.8, "trapezoid"), AngleSegment(pi, 0.0, "trapezoid"))
     pendulum = crank_rocker().with_drive(motion=AngleLaw(segments=ways))
-    (told,) = [
-        str(one) for one in linkage_remarks(assemble(pendulum)) if "infinite jerk" in str(one)
+    (text,) = [
+        str(remark)
+        for remark in linkage_remarks(assemble(pendulum))
+        if "infinite jerk" in str(remark)
     ]
-    assert "'crank' commands jumps at crank angle 60, 120, 240, 300 deg, an" in told
-    found = sensitivities(pendulum, "drive_torque")
-    theta = found["rocker.inertia"].no_effect_at
+    assert "'crank' commands jumps at crank angle 60, 120, 240, 300 deg, an" in text
+    result = sensitivities(pendulum, "drive_torque")
+    theta = result["rocker.inertia"].no_effect_at
     away = np.abs(theta[:, None] - np.arange(7) * pi / 3)
     assert len(theta) and np.min(away) > 1e-6
     smooth = AngleLaw(segments=tuple(replace(way, law="cycloidal") for way in ways))
-    told = map(str, linkage_remarks(assemble(pendulum.with_drive(motion=smooth))))
-    assert not any("jerk" in one for one in told)
+    text = map(str, linkage_remarks(assemble(pendulum.with_drive(motion=smooth))))
+    assert not any("jerk" in item for item in text)
 
 
 @pytest.mark.parametrize(
@@ -128,12 +130,12 @@ def test_a_jump_of_acceleration_is_noted_and_is_no_place_without_effect():
         ((FurtherDrive("follower", motion=AngleLaw()),), {"place": "drives[1].motion"}),
     ],
 )
-def test_a_wrong_drive_is_told(drives, expected):
+def test_a_wrong_drive_is_reported(drives, expected):
     with refused(ModelError, **expected):
         five_bar(drives=drives)
 
 
-def test_drives_that_are_too_many_or_hang_nowhere_are_told():
+def test_drives_that_are_too_many_or_hang_nowhere_are_reported():
     machine = eq.load("yamashita-1")
     with refused(
         MobilityError,
@@ -174,11 +176,11 @@ def test_a_file_keeps_drives_and_laws():
 def test_a_page_can_take_such_a_machine_apart_and_put_it_together_again():
     """Its crank angle is the phase, which the pose of no link tells."""
     machine = eq.load("pick-and-place")
-    found = solved(Design("pick-and-place", machine, {}))
-    again = Sketch.of(found, 100).finished()
+    solution = solved(Design("pick-and-place", machine, {}))
+    again = Sketch.of(solution, 100).finished()
     assert again.design.own.drives == machine.drives
     assert again.design.own.assembly == machine.assembly
-    status = status_of(found)
+    status = status_of(solution)
     assert (status["mobility"], status["drive"]) == (2, None)
 
 
@@ -196,13 +198,13 @@ def test_a_flywheel_counts_as_inertia_of_the_crank(name: str) -> None:
     assert crank.inertia is not None
     beside = machine.with_drive(flywheel=WHEEL)
     within = machine.with_link(machine.drive.link, inertia=crank.inertia + WHEEL)
-    found, wanted, without = (eq.analyze(one, 90) for one in (beside, within, machine))
+    actual, wanted, without = (eq.analyze(item, 90) for item in (beside, within, machine))
     for output, figures in wanted.summary.items():
-        assert found.summary[output].rms == pytest.approx(figures.rms, rel=1e-12), output
-    torque = found.forces.drive_torque - without.forces.drive_torque
+        assert actual.summary[output].rms == pytest.approx(figures.rms, rel=1e-12), output
+    torque = actual.forces.drive_torque - without.forces.drive_torque
     assert torque == pytest.approx(-35.0 * WHEEL)
-    assert sum(found.forces.split.drive_torque.reshape(-1, 90)) == pytest.approx(
-        found.forces.drive_torque, rel=1e-10, abs=1e-10
+    assert sum(actual.forces.split.drive_torque.reshape(-1, 90)) == pytest.approx(
+        actual.forces.drive_torque, rel=1e-10, abs=1e-10
     )
     still = eq.analyze(beside, 90, acceleration=0.0).forces.drive_torque
     assert still == pytest.approx(eq.analyze(machine, 90, acceleration=0.0).forces.drive_torque)
@@ -210,11 +212,11 @@ def test_a_flywheel_counts_as_inertia_of_the_crank(name: str) -> None:
 
 def test_rows_share_one_flywheel() -> None:
     machine = eq.load("four-row-transplanter").with_drive(acceleration=20.0)
-    found, without = (
-        eq.analyze(one, 90).rows_total for one in (machine.with_drive(flywheel=WHEEL), machine)
+    actual, without = (
+        eq.analyze(item, 90).rows_total for item in (machine.with_drive(flywheel=WHEEL), machine)
     )
-    assert found["drive_torque"] - without["drive_torque"] == pytest.approx(20.0 * WHEEL)
-    assert found["shaking_moment"] - without["shaking_moment"] == pytest.approx(-20.0 * WHEEL)
+    assert actual["drive_torque"] - without["drive_torque"] == pytest.approx(20.0 * WHEEL)
+    assert actual["shaking_moment"] - without["shaking_moment"] == pytest.approx(-20.0 * WHEEL)
 
 
 @pytest.mark.parametrize("kind", [Batch, MassBatch])

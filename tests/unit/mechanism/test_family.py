@@ -79,10 +79,10 @@ def same_as_alone(designs: Sequence[eq.Machine]) -> Family:
     return family
 
 
-def close(found: np.ndarray, want: np.ndarray) -> None:
-    assert found.shape == want.shape
+def close(result: np.ndarray, want: np.ndarray) -> None:
+    assert result.shape == want.shape
     largest = float(np.max(np.abs(want))) or 1.0
-    np.testing.assert_allclose(found, want, rtol=0, atol=WITHIN * largest)
+    np.testing.assert_allclose(result, want, rtol=0, atol=WITHIN * largest)
 
 
 @pytest.mark.parametrize("count", [1, 2, 9])
@@ -124,8 +124,8 @@ def test_numbers_are_squared_sines_of_transmission_angles() -> None:
     designs = designs_of(eq.load("kim-chung-a"), 4)
     family = Family([eq.mechanism.assemble(design) for design in designs])
     theta = rows(4)
-    found = family.margins(family.solve(theta))
-    for row, each, angles in zip(found, designs, theta, strict=True):
+    result = family.margins(family.solve(theta))
+    for row, each, angles in zip(result, designs, theta, strict=True):
         points = eq.move(each, angles).points
         coupler, rocker = (points["C"].place - points[p].place for p in "BD")
         sine = (np.conj(coupler) * rocker).imag / np.abs(coupler * rocker)
@@ -190,12 +190,12 @@ def same_steps(base: Machine, numbers: Sequence[Number], values: Array) -> None:
     linkage = assemble(base)
     columned = with_columns(base, columns_of(numbers, values))
     assert not invalid_designs(columned, linkage, columns_of(numbers, values)).any()
-    found = list(parameters(linkage_of(columned, linkage)))
+    result = list(parameters(linkage_of(columned, linkage)))
     for k, row in enumerate(values):
         own = design(base, numbers, row)
-        told = list(parameters(assemble(own)))
-        assert [name for name, _ in found] == [name for name, _ in told]
-        for (name, value), (_, wanted) in zip(found, told, strict=True):
+        texts = list(parameters(assemble(own)))
+        assert [name for name, _ in result] == [name for name, _ in texts]
+        for (name, value), (_, wanted) in zip(result, texts, strict=True):
             apart = abs(row_of(value, k) - wanted)
             assert apart <= CLOSE * (1 + abs(wanted)), name
         same_values(plain_of(columned), plain_of(own), k)
@@ -208,8 +208,8 @@ def same_values(got: Any, wanted: Any, k: int) -> None:
         for key in wanted:
             same_values(got[key], wanted[key], k)
     elif isinstance(wanted, list):
-        for one, other in zip(got, wanted, strict=True):
-            same_values(one, other, k)
+        for item, other in zip(got, wanted, strict=True):
+            same_values(item, other, k)
     elif wanted is None:
         assert got is None
     else:
@@ -340,9 +340,9 @@ def refusals(paths: Sequence[str], values: Any) -> list[bool]:
     numbers = named(GEARED, *paths)
     values = np.array(values, float)
     columned = with_columns(GEARED, columns_of(numbers, values))
-    found = invalid_designs(columned, assemble(GEARED), columns_of(numbers, values))
-    assert list(found) == [reason_of(GEARED, numbers, row) == 4 for row in values]
-    return list(found)
+    result = invalid_designs(columned, assemble(GEARED), columns_of(numbers, values))
+    assert list(result) == [reason_of(GEARED, numbers, row) == 4 for row in values]
+    return list(result)
 
 
 @pytest.mark.parametrize(
@@ -413,7 +413,7 @@ def test_laws_of_gears_side_by_side(kind: str) -> None:
         for given in (*SHAPES[kind], SHAPES[kind][0])
     ]
     theta = rows(len(laws)) * 3 - 9
-    found = _stacked_values(tuple(laws))(theta)
+    result = _stacked_values(tuple(laws))(theta)
     alone = [law(row) for law, row in zip(laws, theta, strict=True)]
-    for values, want in zip(found, zip(*alone, strict=True), strict=True):
+    for values, want in zip(result, zip(*alone, strict=True), strict=True):
         np.testing.assert_allclose(values, np.array(want), atol=1e-13)

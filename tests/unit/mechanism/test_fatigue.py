@@ -25,20 +25,20 @@ def test_closed_loops_make_up_the_way_of_a_load_that_repeats(seed: int) -> None:
     """
     rng = np.random.default_rng(seed)
     load = rng.integers(-9, 10, 60).astype(float) if seed < 3 else rng.normal(size=200)
-    found = rainflow(load, repeats=True)
+    result = rainflow(load, repeats=True)
     way = np.sum(np.abs(np.diff(np.append(load, load[0]))))
-    assert np.all(found.counts == 1)
-    assert 2 * np.sum(found.ranges) == pytest.approx(way)
-    assert np.max(found.ranges) == np.ptp(load)
+    assert np.all(result.counts == 1)
+    assert 2 * np.sum(result.ranges) == pytest.approx(way)
+    assert np.max(result.ranges) == np.ptp(load)
     later = rainflow(np.roll(load, 17), repeats=True)
-    np.testing.assert_allclose(np.sort(later.ranges), np.sort(found.ranges))
-    np.testing.assert_allclose(np.sort(later.means), np.sort(found.means))
+    np.testing.assert_allclose(np.sort(later.ranges), np.sort(result.ranges))
+    np.testing.assert_allclose(np.sort(later.means), np.sort(result.means))
 
 
 def test_a_small_swing_rides_on_a_large_one() -> None:
     angle = np.linspace(0, 2 * np.pi, 720, endpoint=False)
-    found = rainflow(10 * np.sin(angle) + 3 * np.sin(9 * angle), repeats=True)
-    assert np.sum(found.ranges > 20) == 1 and np.sum(found.counts) > 4
+    result = rainflow(10 * np.sin(angle) + 3 * np.sin(9 * angle), repeats=True)
+    assert np.sum(result.ranges > 20) == 1 and np.sum(result.counts) > 4
     assert rainflow(np.full(5, 3.0), repeats=True).ranges.size == 0
 
 

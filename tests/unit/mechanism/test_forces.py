@@ -47,9 +47,9 @@ def test_links_of_mass_0_are_neglected() -> None:
     given = crank_rocker()
     for name in given.links:
         given = given.with_link(name, mass=0.0, center_of_mass=ORIGIN, inertia=0.0)
-    found = forces(given)
-    assert not np.any(found.drive_torque)
-    assert not np.any(found.frame_force.size)
+    result = forces(given)
+    assert not np.any(result.drive_torque)
+    assert not np.any(result.frame_force.size)
 
 
 # -- names and places ------------------------------------------------------------------------------
@@ -71,23 +71,23 @@ def test_pins_of_three_bodies_are_named_by_the_link_held() -> None:
         },
         assembly={"C": "left", "F": "left"},
     )
-    found = forces(given).joints
-    assert {name for name in found if name.startswith("C")} == {"C/rocker", "C/arm"}
-    assert {found["C/rocker"].by, found["C/arm"].by} == {"coupler"}
+    joints = forces(given).joints
+    assert {name for name in joints if name.startswith("C")} == {"C/rocker", "C/arm"}
+    assert {joints["C/rocker"].by, joints["C/arm"].by} == {"coupler"}
 
 
 @pytest.mark.parametrize("about", ["A", (0.0, 0.0), 0j, None])
 def test_ways_to_name_a_pole(about: Any) -> None:
-    found = forces(crank_rocker(), about=about)
-    assert found.about == 0j
-    np.testing.assert_array_equal(found.shaking_moment, forces(crank_rocker()).shaking_moment)
+    result = forces(crank_rocker(), about=about)
+    assert result.about == 0j
+    np.testing.assert_array_equal(result.shaking_moment, forces(crank_rocker()).shaking_moment)
 
 
 def test_poles_elsewhere() -> None:
-    found = forces(crank_rocker(), about="D")
-    assert found.about == 1 + 0j
+    result = forces(crank_rocker(), about="D")
+    assert result.about == 1 + 0j
     np.testing.assert_allclose(
-        found.shaking_moment, forces(crank_rocker()).shaking_moment_about("D")
+        result.shaking_moment, forces(crank_rocker()).shaking_moment_about("D")
     )
 
 
@@ -103,21 +103,21 @@ def test_poles_that_cannot_be_used(about: Any, expected: dict[str, Any]) -> None
         forces(crank_rocker(), about=about)
 
 
-def test_unknown_names_tell_what_there_is() -> None:
-    found = forces(crank_rocker())
+def test_unknown_names_report_what_there_is() -> None:
+    result = forces(crank_rocker())
     with refused(UsageError, name="drive_torque"):
-        found.split.by_cause("drive_torqe")
+        result.split.by_cause("drive_torqe")
     with pytest.raises(KeyError, match="no link is called 'croupier'"):
-        found.motion.links["croupier"]
+        result.motion.links["croupier"]
     with pytest.raises(KeyError, match="no point is called 'X'"):
-        found.motion.points["X"]
+        result.motion.points["X"]
 
 
 def test_a_joint_that_is_called_like_an_output() -> None:
     given = renamed(crank_rocker(), lambda name: "drive_torque" if name == "B" else name)
-    found = forces(given)
-    parts = found.split.by_cause("drive_torque")
-    np.testing.assert_allclose(sum(parts.values()), found.drive_torque, atol=1e-12)
+    result = forces(given)
+    parts = result.split.by_cause("drive_torque")
+    np.testing.assert_allclose(sum(parts.values()), result.drive_torque, atol=1e-12)
 
 
 def test_vectors_have_size_and_direction() -> None:
@@ -127,15 +127,15 @@ def test_vectors_have_size_and_direction() -> None:
 
 
 def test_weight_is_the_same_everywhere() -> None:
-    found = forces(crank_rocker())
-    np.testing.assert_allclose(found.weight.value, -1.5j * 9.80665)
-    arms = sum(0.5 * center.x for center in found.motion.mass_centers.values())
-    np.testing.assert_allclose(found.weight_moment, -9.80665 * arms)
+    result = forces(crank_rocker())
+    np.testing.assert_allclose(result.weight.value, -1.5j * 9.80665)
+    arms = sum(0.5 * center.x for center in result.motion.mass_centers.values())
+    np.testing.assert_allclose(result.weight_moment, -9.80665 * arms)
 
 
 def test_slider_forces_are_split_by_the_line() -> None:
-    found = forces(slider_crank(sliders=(eq.Slider("piston", "C", FRAME, "A", 1.1),)))
-    rail = found.joints["piston on frame"]
+    result = forces(slider_crank(sliders=(eq.Slider("piston", "C", FRAME, "A", 1.1),)))
+    rail = result.joints["piston on frame"]
     along = np.exp(1.1j)
     np.testing.assert_allclose((rail.value / along).imag, rail.normal)  # type: ignore[attr-defined]
     np.testing.assert_allclose((rail.value / along).real, 0, atol=1e-12)
@@ -167,9 +167,9 @@ def test_tables_are_closed_polygons() -> None:
 
 
 def test_tables_may_begin_before_0() -> None:
-    one = eq.mechanism.LoadTable((-1.0, 1.0, 2.0), ((1.0, 5.0, -3.0),))
+    first = eq.mechanism.LoadTable((-1.0, 1.0, 2.0), ((1.0, 5.0, -3.0),))
     other = eq.mechanism.LoadTable((1.0, 2.0, 2 * pi - 1.0), ((5.0, -3.0, 1.0),))
-    both = [torque_of(eq.Load("crank", table=t, outside="wrap")) for t in (one, other)]
+    both = [torque_of(eq.Load("crank", table=t, outside="wrap")) for t in (first, other)]
     np.testing.assert_allclose(*both)
 
 
@@ -181,7 +181,7 @@ def test_tables_in_a_window() -> None:
 
 @pytest.mark.parametrize(("start", "stop", "told"), [(5, 175, True), (-350, -300, True),
                                                     (5, 181, False), (0, 20, False)])  # fmt: skip
-def test_a_window_within_the_rows_of_a_table_tells_all(start: int, stop: int, told: bool) -> None:
+def test_a_window_within_the_rows_of_a_table_reports_all(start: int, stop: int, told: bool) -> None:
     rows = eq.mechanism.LoadTable(tuple(np.radians((5.0, 90.0, 180.0))), ((4.0, 7.0, 4.0),))
     load = eq.Load("coupler", table=rows, start=radians(start), stop=radians(stop))
     if told:
@@ -203,9 +203,9 @@ def test_force_at_a_point_of_the_crank() -> None:
         {"A": ORIGIN}, {"crank": eq.Link({"A": ORIGIN, "P": (0.0, 2.0)}, 0.0, ORIGIN, 0)}
     )
     load = eq.Load("crank", "P", force=(1.0, 0.0))
-    found = eq.analyze(replace(given, loads=(load,)), CIRCLE).forces
-    np.testing.assert_allclose(found.drive_torque, 2 * np.cos(CIRCLE), atol=1e-14)
-    np.testing.assert_allclose(found.frame_force.value, 1.0)
+    actual = eq.analyze(replace(given, loads=(load,)), CIRCLE).forces
+    np.testing.assert_allclose(actual.drive_torque, 2 * np.cos(CIRCLE), atol=1e-14)
+    np.testing.assert_allclose(actual.frame_force.value, 1.0)
 
 
 # -- remarks ---------------------------------------------------------------------------------------
@@ -233,9 +233,9 @@ def test_a_good_machine_gives_no_remark() -> None:
     ],
 )  # fmt: skip
 def test_remarks(given: eq.Machine, words: str) -> None:
-    found = remarked(given)
-    assert len(found) == 1
-    assert words in found[0]
+    result = remarked(given)
+    assert len(result) == 1
+    assert words in result[0]
 
 
 @pytest.mark.parametrize(
@@ -244,9 +244,9 @@ def test_remarks(given: eq.Machine, words: str) -> None:
 def test_a_slip_of_units_of_an_inertia(slip: float, noted: bool) -> None:
     """A factor of a thousand, either way; nothing at all is meant."""
     bar = 0.5 * 0.8**2 / 12
-    found = remarked(crank_rocker().with_link("rocker", inertia=slip * bar))
-    assert bool(found) == noted
-    assert all("links.rocker.inertia gives a radius of gyration of" in one for one in found)
+    result = remarked(crank_rocker().with_link("rocker", inertia=slip * bar))
+    assert bool(result) == noted
+    assert all("links.rocker.inertia gives a radius of gyration of" in item for item in result)
 
 
 def upright(direction: float, angle: float = 0.0, **points: tuple[float, float]) -> eq.Machine:
@@ -308,8 +308,8 @@ def table(
 def test_tables_between_their_rows(
     given: eq.Load, at: tuple[float, ...], torque: tuple[float, ...]
 ) -> None:
-    found = load_at(given, np.radians(at))[1]
-    np.testing.assert_allclose(found, torque, atol=1e-4)
+    result = load_at(given, np.radians(at))[1]
+    np.testing.assert_allclose(result, torque, atol=1e-4)
 
 
 # -- work ------------------------------------------------------------------------------------------
@@ -369,14 +369,14 @@ def test_a_load_of_two_turns_makes_a_cycle_of_two() -> None:
     """Of four strokes one works; half orders appear, and so does all of the work in two turns."""
     stroke = table((0, 180, 360, 540, 720), (0.0, 5.0, 0.0, 0.0, 0.0), None)
     once = replace(crank_rocker(), loads=(replace(stroke, link="crank"),))
-    found = eq.analyze(once, 720)
-    assert found.motion.turns == 2
+    analysis = eq.analyze(once, 720)
+    assert analysis.motion.turns == 2
     plain = eq.analyze(replace(once, loads=()), 720)
-    first, second = found.forces.drive_torque.reshape(2, -1) - plain.forces.drive_torque
+    first, second = analysis.forces.drive_torque.reshape(2, -1) - plain.forces.drive_torque
     assert np.max(np.abs(first)) == pytest.approx(5.0)
     np.testing.assert_allclose(second, 0.0, atol=1e-12)
     assert work_in_cycle(once, once.loads[0])[0] == pytest.approx(5.0 * pi)
-    assert np.mean(found.forces.drive_torque) * 4 * pi == pytest.approx(-5.0 * pi, rel=1e-4)
+    assert np.mean(analysis.forces.drive_torque) * 4 * pi == pytest.approx(-5.0 * pi, rel=1e-4)
     three = replace(stroke, table=eq.mechanism.LoadTable((0.0, 6 * pi), ((1.0, 1.0),)))
     both = replace(once, loads=(*once.loads, three))
     assert eq.mechanism.assemble(both).cycle.turns == 6

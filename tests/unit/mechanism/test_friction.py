@@ -41,9 +41,9 @@ def weightless(machine: eq.Machine, **changes: Any) -> eq.Machine:
 def rubbing(machine: eq.Machine, **given: JointProperties | float) -> eq.Machine:
     """A machine with friction in some pins, by coefficient times 20 mm, and in sliders."""
     joints = [
-        JointProperties(f"joints.{name}", radius=0.02, friction=one)
-        for name, one in given.items()
-        if isinstance(one, float)
+        JointProperties(f"joints.{name}", radius=0.02, friction=value)
+        for name, value in given.items()
+        if isinstance(value, float)
     ]
     return replace(machine, joints=tuple(joints), balance=None)
 
@@ -68,7 +68,7 @@ def test_a_rod_pushes_along_the_tangent_of_its_friction_circles() -> None:
     """Without mass its line of action touches a circle of mu r about each of its pins."""
     push, mu, radius = 1000.0, 0.1, 0.02
     machine = weightless(ENGINE, loads=(Load("piston", "C", force=(0.0, -push)),))
-    found = eq.analyze(rubbing(machine, B=mu, C=mu), ANGLES).forces
+    forces = eq.analyze(rubbing(machine, B=mu, C=mu), ANGLES).forces
     plain = eq.analyze(machine, ANGLES).motion
     crank, rod = plain.links["crank"], plain.links["rod"]
     a, b, c = (plain.points[name].place for name in "ABC")
@@ -79,7 +79,7 @@ def test_a_rod_pushes_along_the_tangent_of_its_friction_circles() -> None:
     along = (c - b) / np.abs(c - b)
     for sign in (1.0, -1.0):
         line = along * np.exp(1j * sign * lean)
-        if np.allclose(found.joints["C"].value.real / np.abs(found.joints["C"].value),
+        if np.allclose(forces.joints["C"].value.real / np.abs(forces.joints["C"].value),
                        line.real * np.sign(line.imag), rtol=0, atol=1e-10):  # fmt: skip
             break
     else:
@@ -87,7 +87,7 @@ def test_a_rod_pushes_along_the_tangent_of_its_friction_circles() -> None:
     thrust = push / line.imag  # of the rod on the piston, whose guide has no friction
     on_crank = -thrust * line
     lever = (np.conj(b - a) * on_crank).imag + mu * radius * np.abs(thrust) * turns_b
-    np.testing.assert_allclose(found.drive_torque, -lever, atol=1e-10 * np.max(np.abs(lever)))
+    np.testing.assert_allclose(forces.drive_torque, -lever, atol=1e-10 * np.max(np.abs(lever)))
 
 
 def wedge(slope: float, friction: float) -> eq.Machine:
@@ -114,12 +114,12 @@ def wedge(slope: float, friction: float) -> eq.Machine:
 @pytest.mark.parametrize("slope", [10.0, 30.0])
 def test_a_wedge_lifts_with_the_tangent_of_both_angles(slope: float, friction: float) -> None:
     """F = W tan(slope + phi) forwards, and W tan(slope - phi) back: below 0 it has to be pulled."""
-    found = eq.analyze(wedge(radians(slope), friction), ANGLES)
-    way = found.motion.points["Y"].place_1.real
-    phi, rising = atan(friction), found.motion.points["D"].velocity.imag > 0
+    analysis = eq.analyze(wedge(radians(slope), friction), ANGLES)
+    way = analysis.motion.points["Y"].place_1.real
+    phi, rising = atan(friction), analysis.motion.points["D"].velocity.imag > 0
     force = 100.0 * np.where(rising, tan(radians(slope) + phi), tan(radians(slope) - phi))
     # the wedge rises to the left, so that going right lifts
-    np.testing.assert_allclose(found.forces.drive_torque, force * way, atol=1e-10)
+    np.testing.assert_allclose(analysis.forces.drive_torque, force * way, atol=1e-10)
 
 
 def test_a_wedge_that_locks_is_refused_with_its_place() -> None:
@@ -135,7 +135,7 @@ def test_a_wedge_that_locks_is_refused_with_its_place() -> None:
     assert str(caught.value).endswith("it moves with less than 0.8 of the coefficients given")
 
 
-def test_a_locked_machine_is_told_in_a_sentence(tmp_path: Any) -> None:
+def test_a_locked_machine_is_reported_in_a_sentence(tmp_path: Any) -> None:
     file = tmp_path / "wedge.toml"
     eq.save(wedge(radians(50.0), 2.0), file)
     for command in ("analyze", "report"):
@@ -152,17 +152,17 @@ def test_a_locked_machine_is_told_in_a_sentence(tmp_path: Any) -> None:
 def test_power_fed_in_is_the_rate_of_energy_and_what_friction_takes(
     speed: float | None, acceleration: float | None
 ) -> None:
-    found = eq.analyze(WORN, ANGLES, speed, acceleration).forces
-    rows = [*kinetic_power(found), *-gravity_power(found), *-load_power(found)]
-    rows = [*rows, *-spring_power(found), found.friction_loss]
+    forces = eq.analyze(WORN, ANGLES, speed, acceleration).forces
+    rows = [*kinetic_power(forces), *-gravity_power(forces), *-load_power(forces)]
+    rows = [*rows, *-spring_power(forces), forces.friction_loss]
     size = np.max(np.sum(np.abs(rows), axis=0))
-    np.testing.assert_allclose(found.power, np.sum(rows, axis=0), atol=1e-12 * size)
-    assert all(np.all(one.loss >= 0) for one in found.frictions.values())
-    assert np.all(found.friction_loss > 0)
+    np.testing.assert_allclose(forces.power, np.sum(rows, axis=0), atol=1e-12 * size)
+    assert all(np.all(value.loss >= 0) for value in forces.frictions.values())
+    assert np.all(forces.friction_loss > 0)
 
 
 def test_friction_changes_neither_shaking_nor_the_load_on_the_frame() -> None:
-    worn, plain = (eq.analyze(one, ANGLES).forces for one in (WORN, ENGINE))
+    worn, plain = (eq.analyze(item, ANGLES).forces for item in (WORN, ENGINE))
     for name in ("shaking_force", "frame_force"):
         got, want = getattr(worn, name).value, getattr(plain, name).value
         np.testing.assert_allclose(got, want, atol=1e-11 * np.max(np.abs(want)))
@@ -172,21 +172,21 @@ def test_friction_changes_neither_shaking_nor_the_load_on_the_frame() -> None:
 
 
 def test_causes_and_links_add_up_with_friction_among_them() -> None:
-    found = eq.analyze(WORN, ANGLES).forces
+    forces = eq.analyze(WORN, ANGLES).forces
     for name, whole in {
-        "drive_torque": found.drive_torque,
-        "joints.piston on frame": found.joints["piston on frame"].value,
-        "joints.A": found.joints["A"].value,
-        "frame_moment": found.frame_moment,
+        "drive_torque": forces.drive_torque,
+        "joints.piston on frame": forces.joints["piston on frame"].value,
+        "joints.A": forces.joints["A"].value,
+        "frame_moment": forces.frame_moment,
     }.items():
-        causes, links = found.split.by_cause(name), found.split.by_link(name)
+        causes, links = forces.split.by_cause(name), forces.split.by_link(name)
         size = np.max(np.abs(whole))
         assert [*causes][-1] == "friction"
         np.testing.assert_allclose(sum(causes.values()), whole, atol=1e-11 * size)
         np.testing.assert_allclose(sum(links.values()), whole, atol=1e-11 * size)
     plain = eq.analyze(ENGINE, ANGLES).forces.split.by_cause("drive_torque")
     assert "friction" not in plain
-    np.testing.assert_allclose(found.split.by_cause("drive_torque")["load"], plain["load"])
+    np.testing.assert_allclose(forces.split.by_cause("drive_torque")["load"], plain["load"])
 
 
 def test_means_are_taken_piece_by_piece_between_reversals() -> None:
@@ -222,29 +222,34 @@ def test_losses_efficiency_and_wear_of_a_cycle() -> None:
 
 
 def test_at_rest_nothing_rubs() -> None:
-    found = eq.analyze(WORN, ANGLES, 0.0, 0.0).forces
-    assert not np.any(found.friction_loss)
+    forces = eq.analyze(WORN, ANGLES, 0.0, 0.0).forces
+    assert not np.any(forces.friction_loss)
     plain = eq.analyze(ENGINE, ANGLES, 0.0, 0.0).forces
-    np.testing.assert_allclose(found.drive_torque, plain.drive_torque)
+    np.testing.assert_allclose(forces.drive_torque, plain.drive_torque)
 
 
 def test_flanks_bear_as_friction_loads_them() -> None:
     """A geared counterweight driven against a strong drag on its gear: its teeth never change."""
     machine = replace(eq.load("geared-counterweight"), balance=None)
-    names = [name for name, one in assemble(machine).named_reactions if one.kind == "pin"]
+    names = [name for name, first in assemble(machine).named_reactions if first.kind == "pin"]
     last = names[-1]
     size = np.max(np.abs(eq.analyze(machine).forces.drive_torque))
     drag = JointProperties(f"joints.{last}", drag_torque=100 * size)
-    found = eq.analyze(replace(machine, joints=(drag,)), ANGLES).forces
-    rows = [*kinetic_power(found), *-gravity_power(found), *-load_power(found), found.friction_loss]
-    np.testing.assert_allclose(found.power, np.sum(rows, axis=0),
-                               atol=1e-11 * np.max(np.abs(found.power)))  # fmt: skip
+    forces = eq.analyze(replace(machine, joints=(drag,)), ANGLES).forces
+    rows = [
+        *kinetic_power(forces),
+        *-gravity_power(forces),
+        *-load_power(forces),
+        forces.friction_loss,
+    ]
+    np.testing.assert_allclose(forces.power, np.sum(rows, axis=0),
+                               atol=1e-11 * np.max(np.abs(forces.power)))  # fmt: skip
 
 
 # -- keys ------------------------------------------------------------------------------------------
 
 
-def test_a_file_tells_friction_and_check_says_it(tmp_path: Any) -> None:
+def test_a_file_reports_friction_and_check_says_it(tmp_path: Any) -> None:
     text = survives(WORN)
     assert 'friction = 0.1\nguide_length = "60 mm"\ndamping = "2 N s/m"\n' in text
     file = tmp_path / "worn.toml"
@@ -326,12 +331,12 @@ def test_a_pin_in_a_straight_slot_rubs_as_a_block_on_a_guide(
     guided = replace(
         on_a_block(machine), joints=(JointProperties("joints.block on frame", **SLIDING),)
     )
-    one, other = (eq.analyze(item, ANGLES, speed, acceleration).forces
+    first, other = (eq.analyze(item, ANGLES, speed, acceleration).forces
                   for item in (slotted, guided))  # fmt: skip
     plain = eq.analyze(machine, ANGLES, speed, acceleration).forces
-    np.testing.assert_allclose(one.drive_torque, other.drive_torque, rtol=1e-9, atol=1e-10)
-    np.testing.assert_allclose(one.friction_loss, other.friction_loss, rtol=1e-9, atol=1e-10)
-    assert np.max(np.abs(one.drive_torque - plain.drive_torque)) > 0.1
+    np.testing.assert_allclose(first.drive_torque, other.drive_torque, rtol=1e-9, atol=1e-10)
+    np.testing.assert_allclose(first.friction_loss, other.friction_loss, rtol=1e-9, atol=1e-10)
+    assert np.max(np.abs(first.drive_torque - plain.drive_torque)) > 0.1
 
 
 @pytest.mark.parametrize("name", ["flap-folder", "baler-pickup"])
@@ -339,15 +344,15 @@ def test_power_of_pins_in_circular_and_curved_slots(name: str) -> None:
     """Power balance, with the friction and the sliding speed that the outputs say."""
     bare = replace(eq.load(name), balance=None)
     joints = [JointProperties(f"joints.{slot}", **SLIDING) for slot in bare.pins_in_slots]
-    found = eq.analyze(replace(bare, joints=tuple(joints)), ANGLES)
-    forces = found.forces
+    analysis = eq.analyze(replace(bare, joints=tuple(joints)), ANGLES)
+    forces = analysis.forces
     rows = [*kinetic_power(forces), *-gravity_power(forces), *-load_power(forces)]
     rows = [*rows, *-spring_power(forces), forces.friction_loss]
     size = np.max(np.sum(np.abs(rows), axis=0))
     np.testing.assert_allclose(forces.power, np.sum(rows, axis=0), atol=1e-11 * size)
     for slot in bare.pins_in_slots:
         table = "circular_slots" if bare.circular_slots else "curved_slots"
-        speed = found.motion.element_values(table, 0)["speed"]
+        speed = analysis.motion.element_values(table, 0)["speed"]
         pressing = np.abs(forces.joints[slot].normal)
         lost = (0.15 * pressing + 2.0 + 3.0 * np.abs(speed)) * np.abs(speed)
         np.testing.assert_allclose(forces.frictions[slot].loss, lost, atol=1e-9 * np.max(lost))
@@ -392,7 +397,7 @@ def test_keys_that_a_pin_in_a_slot_lacks(given: dict[str, float], expected: dict
 def test_balancing_says_what_friction_makes_nonlinear() -> None:
     weight = AddedMass("crank", "A", Weight("any", 0.05, at_most=0.2))
     plan = Balance(masses=(weight,), objectives=(Objective("joints.A"),))
-    worn, plain = (eq.balance(one, plan) for one in (WORN, ENGINE))
+    worn, plain = (eq.balance(item, plan) for item in (WORN, ENGINE))
     # friction differs less with the masses than by itself
     assert worn.machine.links["crank"].mass == pytest.approx(
         plain.machine.links["crank"].mass, rel=1e-2
@@ -422,7 +427,7 @@ def test_studies_compute_what_friction_changes_machine_by_machine() -> None:
 def test_formats_say_that_they_leave_friction_out(ending: str, tmp_path: Any) -> None:
     left_out = eq.export(WORN, tmp_path / f"worn.{ending}")
     assert any(sentence.startswith("friction in joints") for sentence in left_out)
-    assert not any("friction" in one for one in eq.export(ENGINE, tmp_path / f"p.{ending}"))
+    assert not any("friction" in item for item in eq.export(ENGINE, tmp_path / f"p.{ending}"))
 
 
 def test_the_pump_of_the_examples_loses_what_is_reckoned_by_hand() -> None:
@@ -448,7 +453,10 @@ def test_the_pump_of_the_examples_loses_what_is_reckoned_by_hand() -> None:
 
 def summary(machine: eq.Machine) -> np.ndarray[Any, Any]:
     """Mean, RMS and extremes of all outputs, each by the largest of them."""
-    rows = [(one.mean, one.rms, one.max, one.min) for one in eq.analyze(machine).summary.values()]
+    rows = [
+        (value.mean, value.rms, value.max, value.min)
+        for value in eq.analyze(machine).summary.values()
+    ]
     values = np.array(rows)
     return values / np.maximum(np.max(np.abs(values), axis=1, keepdims=True), 1e-30)
 

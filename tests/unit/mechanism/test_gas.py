@@ -50,11 +50,11 @@ def test_it_is_a_force_of_pressure_times_area(side: Any, sign: float, back: floa
     columns = tuple(forces * turn.real), tuple(forces * turn.imag)
     plain = Load("piston", "C", table=LoadTable(tuple(ANGLES), columns), reaction="frame")
     gas = replace(GAS, side=side, back_pressure=back)
-    found, wanted = (eq.analyze(engine(load), 90).forces for load in (gas, plain))
+    actual, wanted = (eq.analyze(engine(load), 90).forces for load in (gas, plain))
     size = np.max(np.abs(wanted.drive_torque))
-    np.testing.assert_allclose(found.drive_torque, wanted.drive_torque, atol=1e-13 * size)
+    np.testing.assert_allclose(actual.drive_torque, wanted.drive_torque, atol=1e-13 * size)
     for name, joint in wanted.joints.items():
-        ours = found.joints[name].value
+        ours = actual.joints[name].value
         np.testing.assert_allclose(ours, joint.value, atol=1e-13 * np.max(joint.size))
 
 
@@ -66,27 +66,27 @@ def test_its_work_is_that_of_the_indicator_diagram() -> None:
     displacement = AREA * 2 * CRANK
     assert work_in_cycle(machine, load).net == pytest.approx(3e5 * displacement, rel=1e-12)
     assert work_in_cycle(machine, load).largest == pytest.approx(3e5 * AREA, rel=1e-14)
-    found, bare = (eq.analyze(one, 720) for one in (machine, engine(direction=0.0)))
-    means = [one.summary["drive_torque"].mean for one in (bare, found)]
+    actual, bare = (eq.analyze(item, 720) for item in (machine, engine(direction=0.0)))
+    means = [item.summary["drive_torque"].mean for item in (bare, actual)]
     assert 2 * np.pi * (means[0] - means[1]) == pytest.approx(3e5 * displacement, rel=1e-9)
-    frame, wanted = (one.forces.frame_force.value for one in (found, bare))
-    size = np.max(found.forces.joints["C"].size)
+    frame, wanted = (item.forces.frame_force.value for item in (actual, bare))
+    size = np.max(actual.forces.joints["C"].size)
     np.testing.assert_allclose(frame, wanted, atol=1e-12 * size)
 
 
 def test_a_run_gets_its_work() -> None:
     """From pressure over the cylinder's volume, as an integral over the crank's way."""
     machine = engine(GAS)
-    found = eq.run(machine, "0.1 s", speed=40.0)
-    theta = np.linspace(found.crank_angle[0], found.crank_angle[-1], 200_001)
+    run = eq.run(machine, "0.1 s", speed=40.0)
+    theta = np.linspace(run.crank_angle[0], run.crank_angle[-1], 200_001)
     motion = eq.move(machine, theta)
     way = motion.point("C").place * np.exp(-0.3j)
     pressure = np.interp(np.mod(theta, 2 * np.pi), ANGLES, PRESSURES)
     middle = (pressure[1:] + pressure[:-1]) / 2
     work = -AREA * float(np.sum(middle * np.diff(way.real)))
     assert abs(work) > 1.0
-    assert found.work["loads"][-1] == pytest.approx(work, rel=1e-6)  # of trapezoids
-    assert found.energy_error < 1e-9
+    assert run.work["loads"][-1] == pytest.approx(work, rel=1e-6)  # of trapezoids
+    assert run.energy_error < 1e-9
 
 
 def test_states_of_duty_scale_what_acts() -> None:

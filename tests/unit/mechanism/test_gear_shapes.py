@@ -120,6 +120,6 @@ def test_a_series_and_a_table_of_the_same_curve() -> None:
     limacon = shaped(kind="limacon", eccentricity=0.2)
     assert limacon.rolling_law is not None
     x = np.linspace(-9, 9, 50)
-    for one, other in zip(waves.rolling_law(x), limacon.rolling_law(x), strict=True):
-        np.testing.assert_allclose(one - one[0], other - other[0], atol=1e-12)
+    for item, other in zip(waves.rolling_law(x), limacon.rolling_law(x), strict=True):
+        np.testing.assert_allclose(item - item[0], other - other[0], atol=1e-12)
     assert waves.ratios == pytest.approx(limacon.ratios, rel=1e-6)

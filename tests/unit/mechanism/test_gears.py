@@ -135,16 +135,16 @@ def test_force_between_teeth(gear: eq.Gear, radius: float, torque: float) -> Non
     away from it.
     """
     given = two_gears(gear, gravity=(0.0, 0.0), loads=(eq.Load("wheel", torque=torque),))
-    found = eq.analyze(given, 12, speed=0.0).forces
-    mesh = found.gears["crank to wheel"]
+    forces = eq.analyze(given, 12, speed=0.0).forces
+    mesh = forces.gears["crank to wheel"]
     assert (mesh.on, mesh.by) == ("wheel", "crank")
     np.testing.assert_allclose(mesh.tangential, -torque / radius)
     inwards = -1 if gear.speed_ratio > 0 and gear.speed_ratio < 1 else 1
     np.testing.assert_allclose(mesh.radial, inwards * abs(torque) / radius * tan(pi / 9))
-    np.testing.assert_allclose(found.drive_torque, -torque * gear.speed_ratio)
+    np.testing.assert_allclose(forces.drive_torque, -torque * gear.speed_ratio)
     np.testing.assert_allclose(mesh.size, abs(torque) / radius / np.cos(pi / 9))
-    np.testing.assert_allclose(found.joints["E"].value, -mesh.value)
-    np.testing.assert_allclose(found.frame_moment, torque, atol=1e-13)
+    np.testing.assert_allclose(forces.joints["E"].value, -mesh.value)
+    np.testing.assert_allclose(forces.frame_moment, torque, atol=1e-13)
 
 
 def test_a_gear_that_bears_nothing() -> None:

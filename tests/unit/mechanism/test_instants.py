@@ -37,44 +37,44 @@ def test_roots_of_many_brackets_at_once() -> None:
     """Zeros of the cosine, shifted from machine to machine."""
     shift = np.array([[0.0], [0.3], [-0.2]])
     low = np.array([[1.0, 4.0]] * 3)
-    found = roots(lambda theta: np.cos(theta - shift), low, low + 1.2)
-    np.testing.assert_allclose(found, np.array([[0.5, 1.5]]) * np.pi + shift, rtol=1e-15)
+    result = roots(lambda theta: np.cos(theta - shift), low, low + 1.2)
+    np.testing.assert_allclose(result, np.array([[0.5, 1.5]]) * np.pi + shift, rtol=1e-15)
 
 
 def test_a_root_of_high_order_is_found() -> None:
-    found = roots(lambda x: (x - 0.3) ** 3, np.array([[0.0]]), np.array([[1.0]]))
-    assert found[0, 0] == pytest.approx(0.3, abs=1e-4)
+    result = roots(lambda x: (x - 0.3) ** 3, np.array([[0.0]]), np.array([[1.0]]))
+    assert result[0, 0] == pytest.approx(0.3, abs=1e-4)
 
 
 @pytest.mark.parametrize("zero", [1.0, 2.0])
 def test_a_root_at_an_end(zero: float) -> None:
-    found = roots(lambda x: x - zero, np.array([[1.0]]), np.array([[2.0]]))
-    assert found[0, 0] == zero
+    result = roots(lambda x: x - zero, np.array([[1.0]]), np.array([[2.0]]))
+    assert result[0, 0] == zero
 
 
 def test_without_a_root_the_nearer_end_comes_back() -> None:
     """For a bracket without a change of sign, while another one beside it is solved."""
     low, high = np.array([[1.0, 0.0, 2.0]]), np.array([[2.0, 1.0, 1.0]])
-    found = roots(lambda x: x - 0.25, low, high)
-    np.testing.assert_allclose(found, [[1.0, 0.25, 1.0]], rtol=1e-15)
+    result = roots(lambda x: x - 0.25, low, high)
+    np.testing.assert_allclose(result, [[1.0, 0.25, 1.0]], rtol=1e-15)
 
 
 # -- crossings -------------------------------------------------------------------------------------
 
 
 def test_every_crossing_once_and_rising() -> None:
-    found = crossings(lambda theta: np.sin(5 * theta - 0.4), ENDS)
-    np.testing.assert_allclose(found, (np.arange(10) * np.pi + 0.4) / 5, atol=1e-15)
+    result = crossings(lambda theta: np.sin(5 * theta - 0.4), ENDS)
+    np.testing.assert_allclose(result, (np.arange(10) * np.pi + 0.4) / 5, atol=1e-15)
 
 
 def test_crossings_of_a_random_signal_by_brute_force() -> None:
     signal, _ = harmonics(3)
-    found = crossings(signal, ENDS)
+    result = crossings(signal, ENDS)
     values = signal(FINE[None])[0]
     k = np.flatnonzero(np.sign(values[1:]) != np.sign(values[:-1]))
-    assert len(found) == len(k) > 3
-    assert np.all((FINE[k] <= found) & (found <= FINE[k + 1]))
-    assert np.max(np.abs(signal(found[None]))) < 1e-13
+    assert len(result) == len(k) > 3
+    assert np.all((FINE[k] <= result) & (result <= FINE[k + 1]))
+    assert np.max(np.abs(signal(result[None]))) < 1e-13
 
 
 def test_a_signal_that_never_vanishes_has_no_crossing() -> None:
@@ -171,9 +171,9 @@ def test_a_range_may_run_backwards() -> None:
 
 def test_a_signal_may_be_infinite_in_part() -> None:
     """The lowest place lies where the signal ends."""
-    found = lowest_within(lambda x: np.where(x > 0.6, x, np.inf), np.zeros(1), np.ones(1))
-    assert found[0][0] == pytest.approx(0.6, abs=1e-8)
-    assert found[1][0] == found[0][0]
+    result = lowest_within(lambda x: np.where(x > 0.6, x, np.inf), np.zeros(1), np.ones(1))
+    assert result[0][0] == pytest.approx(0.6, abs=1e-8)
+    assert result[1][0] == result[0][0]
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -187,7 +187,7 @@ def test_lowest_within_a_part_of_a_random_signal(seed: int) -> None:
 
 
 @pytest.mark.parametrize("noise", range(4))
-def test_of_equal_tops_the_first_is_told(noise: int) -> None:
+def test_of_equal_tops_the_first_is_reported(noise: int) -> None:
     """Five equal tops, more than are followed, whose samples differ by rounding."""
     rng = np.random.default_rng(noise)
     theta = np.linspace(0.0, 2 * np.pi, 360, endpoint=False)

@@ -37,7 +37,7 @@ def test_every_joint_of_a_file_may_have_properties() -> None:
     text = survives(PLANTER)
     assert '[[joints]]\njoint = "joints.C"\nradius = "6 mm"\n' in text
     assert eq.mechanism.assemble(PLANTER).pin_radii == {"C": 0.006, "D": 0.012}
-    before, after = (eq.analyze(one, 60) for one in (eq.load("yamashita-1"), PLANTER))
+    before, after = (eq.analyze(item, 60) for item in (eq.load("yamashita-1"), PLANTER))
     assert before.summary == after.summary
 
 
@@ -85,7 +85,7 @@ def test_a_slide_has_no_radius_and_no_joint_two_tables() -> None:
         eq.mechanism.assemble(with_joints("quick-return", pin, pin))
 
 
-def test_bad_files_are_told_in_a_sentence(tmp_path: Any) -> None:
+def test_bad_files_are_reported_in_a_sentence(tmp_path: Any) -> None:
     file = tmp_path / "mine.toml"
     text = eq.dumps(PLANTER)
     file.write_text(text.replace('"joints.C"', '"joints.Q"'))
@@ -114,8 +114,8 @@ def test_room_for_counterweights_ends_at_pins_of_known_size() -> None:
 
 def test_pins_are_drawn_to_scale() -> None:
     scene = Scene.of(eq.analyze(PLANTER, 12).motion)
-    shapes = [one for one in placed(scene, pieces(scene), 0) if one.role == "pin"]
-    sizes = {complex(np.round(one.places[0], 9)): (one.radius, one.grown) for one in shapes}
+    shapes = [item for item in placed(scene, pieces(scene), 0) if item.role == "pin"]
+    sizes = {complex(np.round(shape.places[0], 9)): (shape.radius, shape.grown) for shape in shapes}
     at = {name: sizes[complex(np.round(scene.places[name][0], 9))] for name in "ABCD"}
     assert at["C"] == (0.006, 0.0) and at["D"] == (0.012, 0.0)
     assert at["A"] == at["B"] and at["A"][0] == 0.0 < at["A"][1]
@@ -130,13 +130,15 @@ def test_what_is_drawn_keeps_properties_and_names() -> None:
         state(ask(session, "entry", place=f"joints[{number + 1}]", values=values, seq=1)[0])
 
     def joints() -> list[tuple[str, float | None]]:
-        return [(one.joint, one.radius) for one in session.shown.design.machine.joints]
+        return [(joint.joint, joint.radius) for joint in session.shown.design.machine.joints]
 
     assert joints() == [("joints.A", 0.007), ("joints.E", 0.005)]
     state(ask(session, "make", do="rename", what="point", name="E", to="K", at=0)[0])
     assert joints() == [("joints.A", 0.007), ("joints.K", 0.005)]
     content = state(ask(session, "ready")[1]).content
-    assert {"joints[1].radius", "joints[2].radius"} <= {one["path"] for one in content["fields"]}
+    assert {"joints[1].radius", "joints[2].radius"} <= {
+        entry["path"] for entry in content["fields"]
+    }
 
 
 @pytest.mark.parametrize(

@@ -76,19 +76,19 @@ def test_a_swing_by_a_sine_is_the_same_in_digits():
     for angle in (0.3, 1.0, 4.0):
         of = mpmath.mpf(angle) - mpmath.mpf(0.3)
         wanted = [-mpmath.cos(of), mpmath.sin(of), mpmath.cos(of)]
-        found = [float(part) for part in motion.value(angle)]
-        assert found == pytest.approx([radians(30) * float(one) for one in wanted], abs=1e-15)
+        actual = [float(part) for part in motion.value(angle)]
+        assert actual == pytest.approx([radians(30) * float(item) for item in wanted], abs=1e-15)
     assert [motion.jumps(order).size for order in range(5)] == [0] * 5
 
 
 @pytest.mark.parametrize("law", [name for name in LAWS if name != "linear"])
-def test_it_tells_where_which_derivative_jumps(law):
+def test_it_reports_where_which_derivative_jumps(law):
     motion = swing(law)
     first = FIRST_JUMP.get(law, 3)
     assert all(motion.jumps(order).size == 0 for order in range(first))
     ends = motion.jumps(first)
-    found = np.min(np.abs(ends[:, None] - radian(0, 120, 180)), axis=0)
-    assert np.degrees(found[1:]) == pytest.approx([0, 0], abs=1e-9)
+    result = np.min(np.abs(ends[:, None] - radian(0, 120, 180)), axis=0)
+    assert np.degrees(result[1:]) == pytest.approx([0, 0], abs=1e-9)
 
 
 def test_a_dwell_stands_still_and_the_next_turn_is_the_same():
@@ -158,7 +158,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("told", WRONG)
-def test_what_is_wrong_is_told_in_one_sentence(told):
+def test_what_is_wrong_is_reported_in_one_sentence(told):
     (problem,) = wrong_law("drive.motion", WRONG[told])
     assert told in str(problem)
     assert str(problem).startswith("drive.motion")

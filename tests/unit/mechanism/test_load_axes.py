@@ -52,27 +52,27 @@ def test_a_force_that_turns_with_its_link_is_a_torque() -> None:
     bears what turns with the link.
     """
     machine = wheel(TANGENTIAL)
-    found = eq.analyze(machine, 36)
-    np.testing.assert_allclose(found.forces.drive_torque, -RADIUS * PUSH, rtol=1e-14)
+    analysis = eq.analyze(machine, 36)
+    np.testing.assert_allclose(analysis.forces.drive_torque, -RADIUS * PUSH, rtol=1e-14)
     work = work_in_cycle(machine, TANGENTIAL)
     assert work.net == pytest.approx(2 * np.pi * RADIUS * PUSH, rel=1e-14)
     assert work.both == pytest.approx(work.net, rel=1e-14) and work.largest == PUSH
-    turn = np.exp(1j * found.motion.crank_angle)
+    turn = np.exp(1j * analysis.motion.crank_angle)
     wanted = 1j * PUSH * turn  # the frame bears the force, and a wheel in balance adds nothing
-    np.testing.assert_allclose(found.forces.frame_force.value, wanted, atol=1e-12 * PUSH)
+    np.testing.assert_allclose(analysis.forces.frame_force.value, wanted, atol=1e-12 * PUSH)
 
 
 def test_a_run_gets_the_work_of_a_force_that_turns() -> None:
     """From rest by a constant torque: speed after a time is torque over inertia times the time."""
-    found = eq.run(wheel(TANGENTIAL), "0.4 s", speed=0.0)
-    assert found.crank_speed[-1] == pytest.approx(RADIUS * PUSH / 0.05 * 0.4, rel=1e-9)
-    assert found.energy_error < 1e-9
+    run = eq.run(wheel(TANGENTIAL), "0.4 s", speed=0.0)
+    assert run.crank_speed[-1] == pytest.approx(RADIUS * PUSH / 0.05 * 0.4, rel=1e-9)
+    assert run.energy_error < 1e-9
 
 
 def test_a_force_along_a_guide_that_swings_has_its_power() -> None:
     """In directions of the guide, by points of the lever, and with velocities by differences."""
-    found, bare = (eq.analyze(one, 720) for one in (shaper(IN_LEVER), shaper()))
-    motion = found.motion
+    actual, bare = (eq.analyze(item, 720) for item in (shaper(IN_LEVER), shaper()))
+    motion = actual.motion
     lever = motion.point("E").place - motion.point("D").place
     force = complex(*IN_LEVER.force) * lever / np.abs(lever)
     around = np.concatenate([motion.point("B").place[-3:], motion.point("B").place,
@@ -80,17 +80,17 @@ def test_a_force_along_a_guide_that_swings_has_its_power() -> None:
     weights = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60  # differences of sixth order
     rate = np.convolve(around, weights[::-1], "valid") / (2 * np.pi / 720) * motion.speed
     power = (np.conj(force) * rate).real
-    added = bare.forces.power - found.forces.power
+    added = bare.forces.power - actual.forces.power
     assert np.max(np.abs(power)) > 1.0
     np.testing.assert_allclose(added, power, atol=1e-9 * np.max(np.abs(power)))
-    borne = found.forces.frame_force.value - bare.forces.frame_force.value
+    borne = actual.forces.frame_force.value - bare.forces.frame_force.value
     np.testing.assert_allclose(borne, force, atol=1e-10 * PUSH)
 
 
 def test_the_sum_of_works_is_the_mean_torque_and_a_run_keeps_its_energy() -> None:
-    found, bare = eq.analyze(MACHINE, 720), eq.analyze(shaper(), 720)
+    actual, bare = eq.analyze(MACHINE, 720), eq.analyze(shaper(), 720)
     work = sum(work_in_cycle(MACHINE, load).net for load in MACHINE.loads)
-    mean = found.motion.mean(found.forces.drive_torque)
+    mean = actual.motion.mean(actual.forces.drive_torque)
     none = bare.motion.mean(bare.forces.drive_torque)
     assert abs(work) > 1.0
     # to what a sum over 720 angles makes of the bends of a table
@@ -102,10 +102,10 @@ def test_the_sum_of_works_is_the_mean_torque_and_a_run_keeps_its_energy() -> Non
 def test_the_frame_bears_the_opposite_where_it_is_the_reaction() -> None:
     """A cylinder's head: nothing of the load shakes the frame, whatever its axes."""
     inner = replace(IN_LEVER, reaction="frame")
-    found, bare, outer = (eq.analyze(shaper(*loads), 90) for loads in ((inner,), (), (IN_LEVER,)))
+    actual, bare, outer = (eq.analyze(shaper(*loads), 90) for loads in ((inner,), (), (IN_LEVER,)))
     frame = bare.forces.frame_force.value
-    np.testing.assert_allclose(found.forces.frame_force.value, frame, atol=1e-9)
-    np.testing.assert_allclose(found.forces.drive_torque, outer.forces.drive_torque, rtol=1e-12)
+    np.testing.assert_allclose(actual.forces.frame_force.value, frame, atol=1e-9)
+    np.testing.assert_allclose(actual.forces.drive_torque, outer.forces.drive_torque, rtol=1e-12)
 
 
 def test_gas_over_two_turns_drives_the_crank_and_does_not_shake_the_frame() -> None:
@@ -113,18 +113,18 @@ def test_gas_over_two_turns_drives_the_crank_and_does_not_shake_the_frame() -> N
     power is its work in two turns, the pins bear it, and the frame as a whole bears nothing of it.
     """
     machine = replace(eq.load("four-stroke-engine"), balance=None)
-    found = eq.analyze(machine)
-    assert found.motion.turns == 2
-    bare = eq.analyze(replace(machine, loads=()), found.motion.crank_angle)
+    analysis = eq.analyze(machine)
+    assert analysis.motion.turns == 2
+    bare = eq.analyze(replace(machine, loads=()), analysis.motion.crank_angle)
     work = work_in_cycle(machine, machine.loads[0]).net
-    mean = found.motion.mean(found.forces.drive_torque)
+    mean = analysis.motion.mean(analysis.forces.drive_torque)
     # to what a sum over 360 angles a turn makes of the bends of its table
     assert 4 * np.pi * mean == pytest.approx(-work, rel=1e-4)
     force, moment = bare.forces.frame_force.value, bare.forces.frame_moment
-    size = np.max(np.abs(found.forces.joints["A"].value))
+    size = np.max(np.abs(analysis.forces.joints["A"].value))
     assert size > 10 * np.max(np.abs(force))
-    np.testing.assert_allclose(found.forces.frame_force.value, force, atol=1e-12 * size)
-    np.testing.assert_allclose(found.forces.frame_moment, moment, atol=1e-12 * size)
+    np.testing.assert_allclose(analysis.forces.frame_force.value, force, atol=1e-12 * size)
+    np.testing.assert_allclose(analysis.forces.frame_moment, moment, atol=1e-12 * size)
 
 
 def test_loops_and_scripts_have_them(tmp_path: Path) -> None:

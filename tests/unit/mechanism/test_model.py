@@ -229,7 +229,7 @@ def test_a_link_may_have_no_masses_or_none_known() -> None:
 
 
 @pytest.mark.parametrize(("mesh", "ratio"), [("external", -0.4), ("internal", 0.4)])
-def test_teeth_tell_the_ratio(mesh: Any, ratio: float) -> None:
+def test_teeth_report_the_ratio(mesh: Any, ratio: float) -> None:
     gear = eq.Gear("crank", "wheel", teeth=(20, 50), mesh=mesh)
     assert gear.speed_ratio == pytest.approx(ratio)
     assert gear.exact_ratio is not None
@@ -238,9 +238,9 @@ def test_teeth_tell_the_ratio(mesh: Any, ratio: float) -> None:
 
 @pytest.mark.parametrize(("ratio", "exact"), [(-0.47, True), (1 / 3, True), (pi, False)])
 def test_ratios_of_whole_numbers_are_recognised(ratio: float, exact: bool) -> None:
-    found = eq.Gear("crank", "wheel", ratio=ratio).exact_ratio
-    assert (found is not None) == exact
-    assert found is None or float(found) == pytest.approx(ratio, rel=1e-13)
+    exact_ratio = eq.Gear("crank", "wheel", ratio=ratio).exact_ratio
+    assert (exact_ratio is not None) == exact
+    assert exact_ratio is None or float(exact_ratio) == pytest.approx(ratio, rel=1e-13)
 
 
 # -- changing and keeping --------------------------------------------------------------------------
@@ -351,8 +351,8 @@ def test_one_point_is_moved() -> None:
     moved = FOUR.with_point("crank", "B", (0.3, 0.1)).with_point(FRAME, "D", (1.1, 0.0))
     assert dict(moved.links["crank"].points) == {"A": ORIGIN, "B": (0.3, 0.1)}
     assert dict(moved.frame) == {"A": ORIGIN, "D": (1.1, 0.0)}
-    found = eq.move(moved, 12).points["B"].place
-    np.testing.assert_allclose(np.abs(found), np.hypot(0.3, 0.1))
+    place = eq.move(moved, 12).points["B"].place
+    np.testing.assert_allclose(np.abs(place), np.hypot(0.3, 0.1))
 
 
 @pytest.mark.parametrize(

@@ -96,13 +96,13 @@ def compare(by_loops: eq.mechanism.Forces, by_dyads: eq.mechanism.Forces) -> Non
         np.testing.assert_allclose(value, want[name], rtol=0, atol=1e-9 * scale, err_msg=name)
 
 
-def other_hub(name: str, one: eq.mechanism.Forces, other: eq.mechanism.Forces) -> bool:
+def other_hub(name: str, item: eq.mechanism.Forces, other: eq.mechanism.Forces) -> bool:
     """Tell whether a joint belongs to a pin of three bodies that another of them holds."""
     family, _, rest = name.partition("/")
     pin = rest.partition("/")[0]
     return family == "joints" and any(
         joint.by != other.joints[key].by
-        for key, joint in one.joints.items()
+        for key, joint in item.joints.items()
         if key.partition("/")[0] == pin
     )
 
@@ -182,9 +182,9 @@ def test_few_crank_angles_are_solved_by_themselves(monkeypatch: pytest.MonkeyPat
     solve = LoopGroup.solve
 
     def counted(self: LoopGroup, guess: np.ndarray, *given: object) -> np.ndarray:
-        found = solve(self, guess, *given)  # type: ignore[arg-type]
-        sizes.append(found.size)
-        return found
+        solution = solve(self, guess, *given)  # type: ignore[arg-type]
+        sizes.append(solution.size)
+        return solution
 
     monkeypatch.setattr(LoopGroup, "solve", counted)
     eq.move(eq.load("class-three"), 360)
@@ -198,7 +198,7 @@ def places_of(motion: eq.mechanism.Motion, names: str) -> dict[str, tuple[float,
 
 
 @pytest.mark.parametrize("angle", [0.3, -2.0, 3.0])
-def test_the_triad_may_be_told_at_another_angle(angle: float) -> None:
+def test_the_triad_may_be_given_at_another_angle(angle: float) -> None:
     points = places_of(eq.move(TRIAD, [angle]), "BCPQ")
     moved = replace(TRIAD, position=eq.mechanism.Position(angle, points))
     np.testing.assert_allclose(
@@ -206,13 +206,13 @@ def test_the_triad_may_be_told_at_another_angle(angle: float) -> None:
     )
 
 
-def test_the_position_may_be_told_by_angles() -> None:
+def test_the_position_may_be_given_by_angles() -> None:
     at_zero = eq.move(TRIAD, [0.0])
     points = places_of(at_zero, "PQ")
     angles = {name: float(at_zero.links[name].angle[0]) for name in TRIAD.links}
-    told = replace(TRIAD, position=eq.mechanism.Position(0.0, points, angles))
+    text = replace(TRIAD, position=eq.mechanism.Position(0.0, points, angles))
     np.testing.assert_allclose(
-        eq.move(told, 24).points["Q"].place, eq.move(TRIAD, 24).points["Q"].place, atol=1e-13
+        eq.move(text, 24).points["Q"].place, eq.move(TRIAD, 24).points["Q"].place, atol=1e-13
     )
 
 
@@ -234,9 +234,9 @@ def test_size_does_not_matter(size: float) -> None:
 
 def test_far_from_the_origin() -> None:
     moved = shifted(turned(TRIAD, 1.0), 50 - 80j)
-    found = eq.analyze(moved, np.array([1.0, 2.0])).forces
+    forces = eq.analyze(moved, np.array([1.0, 2.0])).forces
     plain = eq.analyze(TRIAD, np.array([0.0, 1.0])).forces
-    np.testing.assert_allclose(found.drive_torque, plain.drive_torque, rtol=1e-9)
+    np.testing.assert_allclose(forces.drive_torque, plain.drive_torque, rtol=1e-9)
 
 
 # -- what is refused -------------------------------------------------------------------------------
@@ -288,12 +288,12 @@ def test_angles_start_within_half_a_turn() -> None:
 
 # The angle: the test below.
 @pytest.mark.exhaustive
-def test_a_triad_that_cannot_turn_tells_the_angle() -> None:
+def test_a_triad_that_cannot_turn_reports_the_angle() -> None:
     with refusals.refused(MotionError, low="-140.91 deg", high="77.66 deg"):
         eq.move(stuck(), 36)
 
 
-def test_the_angle_told_is_where_it_ends() -> None:
+def test_the_angle_reported_is_where_it_ends() -> None:
     """A four-bar that only swings, as a loop group: its end is known in closed form."""
     limit = np.arccos((1 + 0.9**2 - 1.05**2) / 1.8)
     rough = with_position(four_bar(1.0, 0.9, 0.5, 0.55))
@@ -337,11 +337,11 @@ def test_the_driver_comes_first() -> None:
 
 
 def test_split_and_regressor_go_through_loops() -> None:
-    found = eq.analyze(TRIAD, ANGLES).forces
-    force, _ = sizes(found)
-    rows = dict(families_of(eq.mechanism.regressor(found.motion)))
-    values = eq.mechanism.regressor(found.motion).values
-    for name, joint in found.joints.items():
+    forces = eq.analyze(TRIAD, ANGLES).forces
+    force, _ = sizes(forces)
+    rows = dict(families_of(eq.mechanism.regressor(forces.motion)))
+    values = eq.mechanism.regressor(forces.motion).values
+    for name, joint in forces.joints.items():
         got = values @ rows[f"joints/{name}/value"]
         np.testing.assert_allclose(got, joint.value, rtol=0, atol=1e-12 * force)
 

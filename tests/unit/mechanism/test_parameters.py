@@ -26,41 +26,42 @@ def lone() -> eq.Machine:
 
 
 def test_parameters_are_those_of_each_link_about_its_origin() -> None:
-    found = eq.mechanism.regressor(eq.move(lone(), 4))
+    regressor = eq.mechanism.regressor(eq.move(lone(), 4))
     link = lone().links["crank"]
     assert link.mass is not None
     assert link.center_of_mass is not None
     assert link.inertia is not None
     x, y = link.center_of_mass
-    assert found.parameters == tuple(
+    assert regressor.parameters == tuple(
         ("crank", quantity) for quantity in ("mass", "moment_x", "moment_y", "inertia")
     )
     about_origin = link.inertia + link.mass * (x * x + y * y)
     np.testing.assert_allclose(
-        found.values, [link.mass, link.mass * x, link.mass * y, about_origin]
+        regressor.values, [link.mass, link.mass * x, link.mass * y, about_origin]
     )
 
 
 def test_shapes() -> None:
     machine_ = eq.load("geared-counterweight")
-    found = eq.mechanism.regressor(eq.move(machine_, 5))
+    regressor = eq.mechanism.regressor(eq.move(machine_, 5))
     for output in OUTPUTS:
-        assert getattr(found, output).shape == (16, 5)
-    assert {joint.value.shape for joint in found.joints.values()} == {(16, 5)}
-    assert {mesh.tangential.shape for mesh in found.gears.values()} == {(16, 5)}
+        assert getattr(regressor, output).shape == (16, 5)
+    assert {joint.value.shape for joint in regressor.joints.values()} == {(16, 5)}
+    assert {mesh.tangential.shape for mesh in regressor.gears.values()} == {(16, 5)}
 
 
 def test_regressor_of_one_crank() -> None:
     """What each parameter of a lone crank does, in closed form."""
     theta, speed, acceleration, g = np.array([0.4, 2.0]), 3.0, 5.0, 9.80665
-    found = eq.mechanism.regressor(eq.move(lone(), theta, speed, acceleration))
+    regressor = eq.mechanism.regressor(eq.move(lone(), theta, speed, acceleration))
     outwards = np.exp(1j * theta)
     inertial = (speed**2 - 1j * acceleration) * outwards
-    np.testing.assert_allclose(found.shaking_force, [0 * inertial, inertial, 1j * inertial, [0, 0]],
-                               atol=1e-13)  # fmt: skip
+    np.testing.assert_allclose(
+        regressor.shaking_force, [0 * inertial, inertial, 1j * inertial, [0, 0]], atol=1e-13
+    )
     weights = [0 * theta, g * np.cos(theta), -g * np.sin(theta), 0 * theta + acceleration]
-    np.testing.assert_allclose(found.drive_torque, weights, atol=1e-13)
-    np.testing.assert_allclose(found.shaking_moment[3], -acceleration)
+    np.testing.assert_allclose(regressor.drive_torque, weights, atol=1e-13)
+    np.testing.assert_allclose(regressor.shaking_moment[3], -acceleration)
 
 
 def test_about_another_point() -> None:
@@ -124,21 +125,21 @@ def with_values(given: eq.Machine, values: Any) -> eq.Machine:
 def test_base_parameters_decide_the_outputs(name: str) -> None:
     """Two mass distributions with the same base parameters cannot be told apart."""
     given = replace(eq.load(name), loads=())
-    found = eq.mechanism.base_parameters(given)
-    assert found.values is not None
+    parameters = eq.mechanism.base_parameters(given)
+    assert parameters.values is not None
     before = eq.analyze(given, 24, acceleration=30.0).forces
     values = eq.mechanism.regressor(before.motion).values
-    hidden = null_space(found.combinations)
+    hidden = null_space(parameters.combinations)
     change = hidden @ np.random.default_rng(6).normal(size=hidden.shape[1])
     moved = values + change * lightest(values, change)
     other = with_values(given, moved)
-    np.testing.assert_allclose(found.combinations @ moved, found.values, atol=1e-12)
+    np.testing.assert_allclose(parameters.combinations @ moved, parameters.values, atol=1e-12)
     after = eq.analyze(other, 24, acceleration=30.0).forces
     for output in ("shaking_force", "shaking_moment", "drive_torque"):
-        one, two = (getattr(forces, output) for forces in (before, after))
-        one, two = (getattr(signal, "value", signal) for signal in (one, two))
-        scale = float(np.max(np.abs(one)))
-        np.testing.assert_allclose(two, one, rtol=0, atol=1e-9 * scale, err_msg=output)
+        first, two = (getattr(forces, output) for forces in (before, after))
+        first, two = (getattr(signal, "value", signal) for signal in (first, two))
+        scale = float(np.max(np.abs(first)))
+        np.testing.assert_allclose(two, first, rtol=0, atol=1e-9 * scale, err_msg=output)
     assert max(abs(after.joints[key].size - joint.size).max()
                for key, joint in before.joints.items()) > 1e-6  # fmt: skip
 
@@ -164,16 +165,18 @@ def lightest(values: np.ndarray, change: np.ndarray) -> float:
 def test_outputs_follow_from_the_base_parameters(name: str) -> None:
     """Columns of the kept parameters times the base parameters give the outputs."""
     given = replace(eq.load(name), loads=())
-    found = eq.mechanism.base_parameters(given)
-    assert found.values is not None
-    kept = [int(np.flatnonzero(row)[0]) for row in found.combinations]
-    np.testing.assert_allclose(found.combinations[:, kept], np.eye(found.count), atol=1e-9)
+    parameters = eq.mechanism.base_parameters(given)
+    assert parameters.values is not None
+    kept = [int(np.flatnonzero(row)[0]) for row in parameters.combinations]
+    np.testing.assert_allclose(
+        parameters.combinations[:, kept], np.eye(parameters.count), atol=1e-9
+    )
     forces = eq.analyze(given, 30, acceleration=-11.0).forces
     rows = eq.mechanism.regressor(forces.motion)
-    got = found.values @ rows.drive_torque[kept]
+    got = parameters.values @ rows.drive_torque[kept]
     scale = float(np.max(np.abs(forces.drive_torque)))
     np.testing.assert_allclose(got, forces.drive_torque, rtol=0, atol=1e-8 * scale)
-    got = found.values @ rows.shaking_force[kept]
+    got = parameters.values @ rows.shaking_force[kept]
     scale = float(np.max(forces.shaking_force.size))
     np.testing.assert_allclose(got, forces.shaking_force.value, rtol=0, atol=1e-8 * scale)
 
@@ -181,9 +184,11 @@ def test_outputs_follow_from_the_base_parameters(name: str) -> None:
 def test_base_parameters_need_no_masses() -> None:
     given = crank_rocker()
     bare = replace(given, links={name: eq.Link(link.points) for name, link in given.links.items()})
-    found = eq.mechanism.base_parameters(bare)
-    assert found.values is None
-    np.testing.assert_allclose(found.combinations, eq.mechanism.base_parameters(given).combinations)
+    parameters = eq.mechanism.base_parameters(bare)
+    assert parameters.values is None
+    np.testing.assert_allclose(
+        parameters.combinations, eq.mechanism.base_parameters(given).combinations
+    )
 
 
 @pytest.mark.parametrize("size", [1e-3, 1e3])
@@ -197,9 +202,9 @@ def test_size_does_not_matter(size: float) -> None:
             for name, link in given.links.items()
         },
     )
-    found, plain = eq.mechanism.base_parameters(grown), eq.mechanism.base_parameters(given)
-    assert found.count == plain.count
-    assert np.array_equal(found.combinations != 0, plain.combinations != 0)
+    actual, plain = eq.mechanism.base_parameters(grown), eq.mechanism.base_parameters(given)
+    assert actual.count == plain.count
+    assert np.array_equal(actual.combinations != 0, plain.combinations != 0)
 
 
 def test_combinations_can_be_read() -> None:

@@ -32,9 +32,9 @@ def limits_of(given: eq.Machine) -> tuple[tuple[float, float], ...]:
     return caught.value.ranges
 
 
-def opposite(one: float, other: float, side: float) -> float:
+def opposite(item: float, other: float, side: float) -> float:
     """Angle of a triangle between two sides."""
-    return acos((one**2 + other**2 - side**2) / (2 * one * other))
+    return acos((item**2 + other**2 - side**2) / (2 * item * other))
 
 
 def leaning(given: eq.Machine, lean: float) -> eq.Machine:
@@ -60,8 +60,8 @@ def test_a_triple_rocker_stops_where_its_dyad_is_stretched() -> None:
 def test_a_double_rocker_has_two_ranges() -> None:
     """Between folded and stretched dyad, on either side of the frame's line."""
     near, far = opposite(1.0, 0.8, 0.9 - 0.3), opposite(1.0, 0.8, 0.9 + 0.3)
-    found = limits_of(four_bar(1.0, 0.8, 0.3, 0.9))
-    same_angles(sorted(found), [(near, far), (2 * pi - far, 2 * pi - near)])
+    limits = limits_of(four_bar(1.0, 0.8, 0.3, 0.9))
+    same_angles(sorted(limits), [(near, far), (2 * pi - far, 2 * pi - near)])
 
 
 def test_of_hundreds_of_ranges_the_first_are_listed() -> None:
@@ -100,9 +100,9 @@ def test_a_range_that_ends_beside_crank_angle_0(end: int, beside: float) -> None
     """The end lies between the last point of the grid and its first."""
     limit = opposite(1.0, 0.9, 0.5 + 0.55)
     lean = float(np.radians(beside)) - end * limit
-    (found,) = limits_of(leaning(four_bar(1.0, 0.9, 0.5, 0.55), lean))
-    turns = round((found[0] - lean + limit) / (2 * pi))
-    same_angles(np.array(found) - 2 * pi * turns, (lean - limit, lean + limit))
+    (actual,) = limits_of(leaning(four_bar(1.0, 0.9, 0.5, 0.55), lean))
+    turns = round((actual[0] - lean + limit) / (2 * pi))
+    same_angles(np.array(actual) - 2 * pi * turns, (lean - limit, lean + limit))
 
 
 def test_a_slider_crank_with_a_short_rod() -> None:
@@ -139,7 +139,7 @@ def test_the_swing_that_is_suggested_keeps_away_from_dead_positions(seed: int) -
     assert count > 2
 
 
-def test_the_message_tells_links_and_angles() -> None:
+def test_the_message_reports_links_and_angles() -> None:
     limit = degrees(opposite(1.0, 0.9, 0.5 + 0.55))
     message = (
         f"the crank cannot turn fully: it stops at {-limit:.2f} deg and at {limit:.2f} deg, where "
@@ -166,7 +166,7 @@ def test_a_crank_that_stops_turns_fully_within_the_lengths_that_are_said() -> No
             eq.move(four_bar(crank, frame, 0.33, 0.09))
 
 
-def test_of_two_ranges_it_is_told_that_there_is_another() -> None:
+def test_of_two_ranges_it_reports_that_there_is_another() -> None:
     with refused(RangeError, first="B", second="D"):
         eq.move(four_bar(1.0, 0.8, 0.3, 0.9))
 
@@ -181,7 +181,7 @@ def test_a_linkage_that_never_closes() -> None:
     assert "they have to be" in said
 
 
-def test_what_a_linkage_that_never_closes_is_told_lets_it_be_mended() -> None:
+def test_the_refusal_of_a_linkage_that_never_closes_lets_it_be_mended() -> None:
     """The distance of the pins that is said to be right is that from which on it can be joined."""
     with pytest.raises(RangeError) as caught:
         eq.move(four_bar(0.1, 2.0, 0.5, 0.7))
@@ -204,10 +204,10 @@ def test_a_narrow_gap(gap: float, lean: float) -> None:
     """Stretched, the dyad falls short only within a small angle, wherever the frame points."""
     a, b, c = 1.0, 0.3, 0.7
     d = a + b - c - gap
-    found = limits_of(leaning(four_bar(a, b, c, d), float(np.radians(lean))))
+    limits = limits_of(leaning(four_bar(a, b, c, d), float(np.radians(lean))))
     limit = opposite(a, b, c + d)
-    same_angles(np.diff(found[0]), 2 * limit)
-    assert len(found) == 1
+    same_angles(np.diff(limits[0]), 2 * limit)
+    assert len(limits) == 1
 
 
 @pytest.mark.parametrize("lean", [0.0, 0.4, 2.09])
@@ -250,12 +250,12 @@ LIMIT = opposite(1.0, 0.9, 0.5 + 0.55)
 
 def test_angles_inside_the_range() -> None:
     theta = np.linspace(-0.99, 0.99, 15) * LIMIT
-    found = eq.analyze(ROCKING, theta).forces
-    b, c, d = (found.motion.points[name].place for name in "BCD")
+    forces = eq.analyze(ROCKING, theta).forces
+    b, c, d = (forces.motion.points[name].place for name in "BCD")
     np.testing.assert_allclose(abs(c - b), 0.5)
     np.testing.assert_allclose(abs(c - d), 0.55)
-    assert np.all(np.isfinite(found.drive_torque))
-    assert not found.motion.whole_cycle
+    assert np.all(np.isfinite(forces.drive_torque))
+    assert not forces.motion.whole_cycle
 
 
 @pytest.mark.parametrize("beyond", [1e-4, 0.5, pi - LIMIT])
@@ -317,8 +317,8 @@ def test_change_points(lengths: tuple[float, ...], angle: float, lean: float) ->
     apart = (caught.value.crank_angle - angle - lean + pi) % (2 * pi) - pi
     wanted = [0.0, pi] if lengths[0] == lengths[2] else [0.0]
     assert min(abs(abs(apart) - w) for w in wanted) < 1e-4
-    told = f"change point at crank angle {degrees(caught.value.crank_angle):.2f} deg"
-    assert told in str(caught.value)
+    text = f"change point at crank angle {degrees(caught.value.crank_angle):.2f} deg"
+    assert text in str(caught.value)
     assert "'coupler' and 'rocker' lie in line there" in str(caught.value)
 
 
@@ -469,7 +469,7 @@ def test_angles_do_not_depend_on_which_others_are_asked_for() -> None:
         np.testing.assert_allclose(link.angle, many.links[name].angle[[0, -1]], atol=1e-9)
 
 
-def test_a_change_point_asked_for_is_told_in_radians() -> None:
+def test_a_change_point_asked_for_is_reported_in_radians() -> None:
     given = four_bar(1.0, 0.3, 1.0, 0.3)
     with pytest.raises(ChangePointError) as whole:
         eq.move(given)

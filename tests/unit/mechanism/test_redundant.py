@@ -62,7 +62,7 @@ def guided(offset: float = 0.0, turn: float = 0.0) -> eq.Machine:
     )
 
 
-def told(given: eq.Machine) -> str:
+def refusal_of(given: eq.Machine) -> str:
     with pytest.raises(EquipoiseError) as caught:
         eq.analyze(given)
     return str(caught.value)
@@ -94,14 +94,14 @@ def test_further_cranks_wait_for_the_body_that_a_rod_pushes() -> None:
     angles = {"body": 0.0, "hanger0": np.pi / 2, "hanger1": np.pi / 2}
     at = eq.mechanism.Position(0.0, places, angles)
     given = machine({**three.frame, "O": (-0.72, 0.2)}, links, position=at)
-    found = eq.analyze(given)
-    np.testing.assert_allclose(found.motion.links["body"].angle, 0.0, atol=1e-10)
-    assert [g.kind for g in found.motion.linkage.groups] == ["loops", "pointed"]
-    assert np.all(np.isfinite(found.forces.drive_torque))
+    analysis = eq.analyze(given)
+    np.testing.assert_allclose(analysis.motion.links["body"].angle, 0.0, atol=1e-10)
+    assert [g.kind for g in analysis.motion.linkage.groups] == ["loops", "pointed"]
+    assert np.all(np.isfinite(analysis.forces.drive_torque))
 
 
-def test_lengths_that_do_not_agree_are_told_with_what_would_fit() -> None:
-    sentence = told(cranks(last=0.1012))
+def test_lengths_that_do_not_agree_are_reported_with_what_would_fit() -> None:
+    sentence = refusal_of(cranks(last=0.1012))
     assert sentence.startswith(
         "the linkage cannot move (mobility by count 0: 4 moving links, 6 pins "
     )
@@ -109,9 +109,9 @@ def test_lengths_that_do_not_agree_are_told_with_what_would_fit() -> None:
     assert sentence.endswith("A2 and B2 are 101.2 mm apart, and 100 mm would fit")
 
 
-def test_a_pivot_in_the_wrong_place_is_told_as_it_varies() -> None:
+def test_a_pivot_in_the_wrong_place_is_reported_as_it_varies() -> None:
     given = cranks()
-    sentence = told(replace(given, frame={**given.frame, "A2": (0.41, 0.3)}))
+    sentence = refusal_of(replace(given, frame={**given.frame, "A2": (0.41, 0.3)}))
     assert (
         "A2 and B2 are 100 mm apart, and the others bring the pins 90 to 110 mm apart" in sentence
     )
@@ -119,15 +119,15 @@ def test_a_pivot_in_the_wrong_place_is_told_as_it_varies() -> None:
 
 @pytest.mark.parametrize(("offset", "turn", "misfit"), [(0.002, 0.0, "2"), (0.0, 0.01, "12")])
 def test_guides_that_do_not_agree(offset: float, turn: float, misfit: str) -> None:
-    sentence = told(guided(offset, turn))
+    sentence = refusal_of(guided(offset, turn))
     assert "'upper' of 'block' is " + misfit in sentence
     assert "mm beside where it should be at crank angle" in sentence
 
 
 def test_two_guides_move_as_one_does() -> None:
-    one = guided()
-    alone = eq.analyze(replace(one, sliders=one.sliders[:1]))
-    both = eq.analyze(one)
+    first = guided()
+    alone = eq.analyze(replace(first, sliders=first.sliders[:1]))
+    both = eq.analyze(first)
     np.testing.assert_allclose(both.motion.points["C"].x, alone.motion.points["C"].x, atol=1e-15)
     np.testing.assert_allclose(both.forces.drive_torque, alone.forces.drive_torque, atol=1e-11)
     names = {"block on frame", "upper"}
@@ -154,10 +154,10 @@ def test_points_at_which_nothing_is_joined_leave_forces_as_they_are() -> None:
     along = replace(block, frame={**block.frame, "G": (5.0, -0.1)})
     wanted = eq.analyze(block, 90).forces.joints
     for changed in (beside, along):
-        found = eq.analyze(changed, 90).forces.joints
+        joints = eq.analyze(changed, 90).forces.joints
         for name, force in wanted.items():
-            assert found[name].x == pytest.approx(force.x, abs=1e-9), name
-            assert found[name].y == pytest.approx(force.y, abs=1e-9), name
+            assert joints[name].x == pytest.approx(force.x, abs=1e-9), name
+            assert joints[name].y == pytest.approx(force.y, abs=1e-9), name
     assert indeterminate_reactions(assemble(block)).reach == pytest.approx(
         1.0
     )  # the rod, between its pins
@@ -166,7 +166,7 @@ def test_points_at_which_nothing_is_joined_leave_forces_as_they_are() -> None:
 def test_two_guides_need_two_names() -> None:
     given = guided()
     same = replace(given, sliders=(given.sliders[0], replace(given.sliders[1], label="")))
-    assert "two joints would be called 'block on frame'" in told(same)
+    assert "two joints would be called 'block on frame'" in refusal_of(same)
 
 
 def planets(last: int = 40, start: float = 0.0, count: int = 3) -> eq.Machine:
@@ -185,8 +185,8 @@ def planets(last: int = 40, start: float = 0.0, count: int = 3) -> eq.Machine:
 
 def test_several_planets_turn_one_sun() -> None:
     """Willis: the sun of a fixed ring turns 1 + z_ring / z_sun times as fast as the arm."""
-    found = eq.analyze(planets())
-    np.testing.assert_allclose(found.motion.links["sun"].angle_1, 3.0, rtol=1e-14)
+    analysis = eq.analyze(planets())
+    np.testing.assert_allclose(analysis.motion.links["sun"].angle_1, 3.0, rtol=1e-14)
 
 
 def test_planets_alike_push_alike() -> None:
@@ -209,7 +209,7 @@ def test_planets_alike_push_alike() -> None:
     ],
 )
 def test_planets_that_do_not_agree(last: int, start: float, words: str) -> None:
-    assert words in told(planets(last, start))
+    assert words in refusal_of(planets(last, start))
 
 
 def yokes(lean: float = 0.0) -> eq.Machine:
@@ -238,7 +238,7 @@ def test_two_yokes_on_one_pin_show_sine_and_cosine() -> None:
     theta = motion.crank_angle
     np.testing.assert_allclose(motion.points["X"].x, CRANK * np.cos(theta), atol=1e-15)
     np.testing.assert_allclose(motion.points["U"].y, CRANK * np.sin(theta), atol=1e-15)
-    assert "count 0: 4 moving links" in told(yokes(0.01))
+    assert "count 0: 4 moving links" in refusal_of(yokes(0.01))
 
 
 def test_what_hangs_on_shared_links_is_left_to_its_own_steps() -> None:
@@ -269,20 +269,25 @@ def test_a_crossed_parallelogram_turns_as_elliptic_gears_do() -> None:
     np.testing.assert_allclose(rocker.angle_2, second, atol=1e-12)
 
 
-def test_forces_without_bound_are_not_told() -> None:
-    found = eq.analyze(parallel())
-    assert set(indeterminate_reactions(found.motion.linkage).unbounded) == {"A0", "B0", "A1", "B1"}
-    assert not found.forces.joints
-    assert found.to_dict()["unbounded"]["joints"] == ["A0", "A1", "B0", "B1"]
-    kinetic = found.forces.frame_force.value - found.forces.weight.value
-    np.testing.assert_allclose(kinetic, found.forces.shaking_force.value, atol=1e-10)
-    assert np.all(np.isfinite(found.forces.drive_torque))
+def test_forces_without_bound_are_not_reported() -> None:
+    analysis = eq.analyze(parallel())
+    assert set(indeterminate_reactions(analysis.motion.linkage).unbounded) == {
+        "A0",
+        "B0",
+        "A1",
+        "B1",
+    }
+    assert not analysis.forces.joints
+    assert analysis.to_dict()["unbounded"]["joints"] == ["A0", "A1", "B0", "B1"]
+    kinetic = analysis.forces.frame_force.value - analysis.forces.weight.value
+    np.testing.assert_allclose(kinetic, analysis.forces.shaking_force.value, atol=1e-10)
+    assert np.all(np.isfinite(analysis.forces.drive_torque))
 
 
 def test_a_force_without_bound_is_not_asked_for() -> None:
-    found = eq.analyze(parallel())
+    analysis = eq.analyze(parallel())
     with refused(UsageError, angle=0.0, last="'body'", first="'crank1'"):
-        found.outputs["joints.B0.x"]
+        analysis.outputs["joints.B0.x"]
 
 
 def test_formats_whose_equations_state_the_same_twice() -> None:
@@ -310,13 +315,13 @@ def test_three_cranks_in_line_do_not_hold_the_change_point() -> None:
 
 
 def test_a_mode_has_to_be_given() -> None:
-    sentence = told(parallel(None))
+    sentence = refusal_of(parallel(None))
     assert sentence.startswith('assembly.B1: missing; give "parallel" or "antiparallel"')
 
 
-def test_sides_that_are_nearly_equal_are_told_with_the_misfit() -> None:
+def test_sides_that_are_nearly_equal_are_reported_with_the_misfit() -> None:
     given = cranks(PIVOTS[:2], last=0.1005, assembly={"mode": "parallel"})
-    assert told(given).startswith(
+    assert refusal_of(given).startswith(
         "assembly.mode: opposite sides of a parallel linkage are equal, and A0-B0 is 100 mm, "
         "A1-B1 100.5 mm, 0.5 mm apart"
     )
@@ -324,15 +329,17 @@ def test_sides_that_are_nearly_equal_are_told_with_the_misfit() -> None:
 
 def test_a_mode_that_is_a_side() -> None:
     given = replace(cranks(), assembly={"mode": "left"})
-    assert told(given) == "assembly.mode: got 'left'; give 'parallel' or 'antiparallel'"
+    assert refusal_of(given) == "assembly.mode: got 'left'; give 'parallel' or 'antiparallel'"
     given = replace(cranks(), assembly={"B0": "left"})
-    assert told(given).endswith("the dyads of this linkage meet at B1")
+    assert refusal_of(given).endswith("the dyads of this linkage meet at B1")
 
 
 def test_a_mode_without_change_points() -> None:
     given = four_bar(1.0, 0.3, 0.9, 0.8)
     mode = replace(given, assembly={**given.assembly, "mode": "parallel"})
-    assert told(mode).startswith("assembly.mode: no two links of this linkage close a four-bar")
+    assert refusal_of(mode).startswith(
+        "assembly.mode: no two links of this linkage close a four-bar"
+    )
 
 
 # -- forces ----------------------------------------------------------------------------------------
@@ -341,40 +348,40 @@ def test_a_mode_without_change_points() -> None:
 def test_what_statics_decides_does_not_depend_on_the_rule() -> None:
     """Forces that hold each other are added by other stiffness: nothing else may change."""
     given = with_rocker(cranks())
-    found = eq.analyze(given)
-    assert set(indeterminate_reactions(found.motion.linkage).open) == {
+    analysis = eq.analyze(given)
+    assert set(indeterminate_reactions(analysis.motion.linkage).open) == {
         f"{p}{k}" for p in "AB" for k in range(3)
     }
-    assert found.to_dict()["open"]["rule"] == "least squares"
+    assert analysis.to_dict()["open"]["rule"] == "least squares"
     stiff = (
         JointProperties("joints.B0", stiffness=1e6),
         JointProperties("joints.A2", stiffness=3e5),
     )
     other = eq.analyze(replace(given, joints=stiff))
     assert other.to_dict()["open"]["rule"] == "stiffness"
-    one, two = found.forces, other.forces
-    assert np.max(np.abs(one.joints["B0"].value - two.joints["B0"].value)) > 1.0
+    first, two = analysis.forces, other.forces
+    assert np.max(np.abs(first.joints["B0"].value - two.joints["B0"].value)) > 1.0
     for name in ("drive_torque", "frame_moment", "shaking_moment"):
-        np.testing.assert_allclose(getattr(one, name), getattr(two, name), atol=1e-9)
-    np.testing.assert_allclose(one.frame_force.value, two.frame_force.value, atol=1e-9)
+        np.testing.assert_allclose(getattr(first, name), getattr(two, name), atol=1e-9)
+    np.testing.assert_allclose(first.frame_force.value, two.frame_force.value, atol=1e-9)
     for name in ("P", "Q", "R"):
-        np.testing.assert_allclose(one.joints[name].value, two.joints[name].value, atol=1e-9)
+        np.testing.assert_allclose(first.joints[name].value, two.joints[name].value, atol=1e-9)
 
 
 @pytest.mark.parametrize("kind", few(REDUNDANT, {*REDUNDANT} - {"planet_differential"}))
-def test_of_all_kinds_both_rules_tell_alike_what_statics_decides(kind: str) -> None:
+def test_of_all_kinds_both_rules_report_alike_what_statics_decides(kind: str) -> None:
     given = make(kind, 1).machine
     linkage = eq.mechanism.assemble(given)
     rng, names = np.random.default_rng(1), linkage.shared.names
     stiff = tuple(JointProperties(name, stiffness=float(rng.uniform(1e5, 1e6))) for name in names)
-    one, two = (eq.analyze(each, 24).forces for each in (given, replace(given, joints=stiff)))
-    told, scale = (
+    first, two = (eq.analyze(each, 24).forces for each in (given, replace(given, joints=stiff)))
+    text, scale = (
         indeterminate_reactions(linkage).open,
-        max(np.max(joint.size) for joint in one.joints.values()),
+        max(np.max(joint.size) for joint in first.joints.values()),
     )
-    assert told
+    assert text
     size = scale * linkage.shared.group.size
-    both = exerted_in(one.solved), exerted_in(two.solved)
+    both = exerted_in(first.solved), exerted_in(two.solved)
     off = {
         name: max(
             np.max(np.abs(both[0][name].value - both[1][name].value)) / scale,
@@ -386,11 +393,11 @@ def test_of_all_kinds_both_rules_tell_alike_what_statics_decides(kind: str) -> N
         for name in both[0]
     }
     assert max(off.values()) > 1e-6
-    assert all(apart < 1e-9 for name, apart in off.items() if name not in told)
-    for name, torque in one.drives.items():
+    assert all(apart < 1e-9 for name, apart in off.items() if name not in text)
+    for name, torque in first.drives.items():
         np.testing.assert_allclose(two.drives[name], torque, atol=1e-9 * size)
-    np.testing.assert_allclose(two.frame_force.value, one.frame_force.value, atol=1e-9 * scale)
-    np.testing.assert_allclose(two.frame_moment, one.frame_moment, atol=1e-9 * size)
+    np.testing.assert_allclose(two.frame_force.value, first.frame_force.value, atol=1e-9 * scale)
+    np.testing.assert_allclose(two.frame_moment, first.frame_moment, atol=1e-9 * size)
 
 
 @pytest.mark.exhaustive(but=["planet_train"])
@@ -412,21 +419,21 @@ def test_teeth_push_as_their_flanks_lie(kind: str) -> None:
         idle = state[IDLE.format(name)]
         assert np.all(state[f"T({name})"][idle] == 0)
         idle_ones += [name] * bool(np.any(idle))
-        loop = [one.name for one in shared.loops].index(name)
+        loop = [item.name for item in shared.loops].index(name)
         for sense in (1.0, -1.0):
             tried = {**state, f"flank({name})": sense, IDLE.format(name): np.zeros_like(idle)}
-            senses = [tried.get(f"flank({one.name})", 0.0) for one in shared.loops]
+            senses = [tried.get(f"flank({item.name})", 0.0) for item in shared.loops]
             push = shared.solve(tried, poses, senses)[loop][0]
             assert np.all(sense * push[idle] < -least)
-    (told,) = idle_teeth_notes(linkage, state)
-    assert idle_ones and all(name in str(told) for name in idle_ones)
+    (text,) = idle_teeth_notes(linkage, state)
+    assert idle_ones and all(name in str(text) for name in idle_ones)
 
 
-def test_drives_that_share_a_torque_are_told() -> None:
+def test_drives_that_share_a_torque_are_reported() -> None:
     """Both crankshafts of coupling rods are driven alike: nothing tells who bears what."""
     with refused(ModelError, "drives", first="'crank0'", last="'crank1'"):
         eq.analyze(cranks(drives=(FurtherDrive("crank1"),)))
-    off = told(cranks(drives=(FurtherDrive("crank1", start=0.1),)))
+    off = refusal_of(cranks(drives=(FurtherDrive("crank1", start=0.1),)))
     assert "and the others bring the pins 990.0042 to 1009.996 mm apart" in off
 
 
@@ -446,14 +453,14 @@ def test_stiff_supports_share_a_weight_as_springs_do() -> None:
     beam = replace(given.links["body"], mass=3.0, center_of_mass=(1.2, 0.0), inertia=0.0)
     soft = tuple(JointProperties(f"joints.B{k}", stiffness=1e6) for k in range(3))
     still = replace(given, links={**links, "body": beam}, joints=soft, gravity=(0.0, -10.0))
-    found = eq.analyze(still, [np.pi / 2], speed=0.0).forces
-    got = [found.joints[f"B{k}"].y[0] for k in range(3)]
+    forces = eq.analyze(still, [np.pi / 2], speed=0.0).forces
+    got = [forces.joints[f"B{k}"].y[0] for k in range(3)]
     np.testing.assert_allclose(got, [30 * (1 / 3 + 0.2 * x / 2) for x in (-1, 0, 1)], rtol=1e-9)
 
 
 def test_stiffness_that_leaves_forces_open() -> None:
     stiff = (JointProperties("joints.C", stiffness=1e6),)
-    sentence = told(replace(guided(), joints=stiff))
+    sentence = refusal_of(replace(guided(), joints=stiff))
     assert sentence.startswith(
         "joints: with the given stiffness the forces in joints.block on frame and joints.upper "
         "remain"

@@ -43,18 +43,20 @@ MACHINE = resisted(ANY_WAY, ON_LINK)
 
 def test_its_law_by_places_and_their_differences() -> None:
     """Places in the axes of the other body, velocities by differences of these."""
-    found = eq.analyze(MACHINE, 360)
-    theta, step = found.motion.crank_angle, 1e-6
+    analysis = eq.analyze(MACHINE, 360)
+    theta, step = analysis.motion.crank_angle, 1e-6
 
-    def place(at: Any, one: Resistance) -> Any:
+    def place(at: Any, item: Resistance) -> Any:
         motion = eq.move(MACHINE, at)
-        turned = 0.0 if one.on == "frame" else motion.links[one.on].angle
-        apart = motion.point(one.point).place - motion.point(one.to).place
-        return apart * np.exp(-1j * (turned + (one.direction or 0.0)))
+        turned = 0.0 if item.on == "frame" else motion.links[item.on].angle
+        apart = motion.point(item.point).place - motion.point(item.to).place
+        return apart * np.exp(-1j * (turned + (item.direction or 0.0)))
 
     speeds = [
-        (place(theta + step, one) - place(theta - step, one)) / (2 * step) * found.motion.speed
-        for one in MACHINE.resistances
+        (place(theta + step, resistance) - place(theta - step, resistance))
+        / (2 * step)
+        * analysis.motion.speed
+        for resistance in MACHINE.resistances
     ]
     free = np.abs(speeds[0])
     sizes = [25.0 * free / np.hypot(free, 0.05) + 8.0 * free]
@@ -63,7 +65,7 @@ def test_its_law_by_places_and_their_differences() -> None:
     sizes.append(rows * forward / np.hypot(forward, 0.03) + 3.0 * forward)
     assert 0 < np.sum(forward > 0) < 360
     for number, wanted in enumerate(sizes):
-        values = found.motion.element_values("resistances", number)
+        values = analysis.motion.element_values("resistances", number)
         size = np.max(wanted)
         np.testing.assert_allclose(values["force"], wanted, atol=1e-6 * size)
         way = free if number == 0 else speeds[1].real
@@ -74,12 +76,12 @@ def test_its_law_by_places_and_their_differences() -> None:
 
 def test_the_drive_gives_what_they_take_and_the_frame_bears_nothing_more() -> None:
     """Moments on a turning body included: power is balanced at every instant."""
-    found, bare = (eq.analyze(one, 360) for one in (MACHINE, resisted()))
-    loss = sum(found.motion.element_values("resistances", number)["loss"] for number in range(2))
-    power = found.forces.power - bare.forces.power
+    actual, bare = (eq.analyze(item, 360) for item in (MACHINE, resisted()))
+    loss = sum(actual.motion.element_values("resistances", number)["loss"] for number in range(2))
+    power = actual.forces.power - bare.forces.power
     assert np.max(loss) > 1.0 and np.min(loss) >= 0.0
     np.testing.assert_allclose(power, loss, atol=1e-11 * np.max(loss))
-    frame, wanted = (one.forces.frame_force.value for one in (found, bare))
+    frame, wanted = (item.forces.frame_force.value for item in (actual, bare))
     np.testing.assert_allclose(frame, wanted, atol=1e-8)
 
 
@@ -105,8 +107,8 @@ def test_a_cut_takes_the_area_below_its_force_and_dry_friction_twice_the_stroke(
     """Known answers as the speed at which the sense changes vanishes beside that of the blade."""
     works = []
     for machine in (shear(), shear(CUT), shear(RUBBED)):
-        found = eq.analyze(machine, 7200)
-        works.append(2 * np.pi * found.motion.mean(found.forces.drive_torque))
+        analysis = eq.analyze(machine, 7200)
+        works.append(2 * np.pi * analysis.motion.mean(analysis.forces.drive_torque))
     # rows are kinks and turning back is steep: to some 1e-5 by a sum over 7200 angles
     assert works[1] - works[0] == pytest.approx(0.5 * 3000.0 * 0.02, rel=1e-4)
     assert works[2] - works[0] == pytest.approx(2 * 0.12 * 40.0, rel=1e-4)
@@ -123,8 +125,8 @@ def test_a_table_is_the_same_as_its_lists(tmp_path: Path) -> None:
     rows = tmp_path / "cut.csv"
     rows.write_text("position [cm],force [kN]\n0,0\n0.4,3\n2,0\n", encoding="utf-8")
     machine = eq.load(file)
-    found, wanted = (eq.analyze(one, 90).forces for one in (machine, shear(listed)))
-    np.testing.assert_allclose(found.drive_torque, wanted.drive_torque, rtol=1e-13, atol=1e-13)
+    actual, wanted = (eq.analyze(item, 90).forces for item in (machine, shear(listed)))
+    np.testing.assert_allclose(actual.drive_torque, wanted.drive_torque, rtol=1e-13, atol=1e-13)
     eq.save(machine, tmp_path / "again.toml")
     assert eq.load(tmp_path / "again.toml").resistances == machine.resistances
     rows.write_text("position [cm],force [kN]\n0,0\n0.4,-3\n", encoding="utf-8")
@@ -134,11 +136,11 @@ def test_a_table_is_the_same_as_its_lists(tmp_path: Path) -> None:
 
 def test_a_run_loses_the_work_of_cuts() -> None:
     """A crank that coasts through one cut: its energy falls by the area below the force."""
-    found = eq.run(shear(replace(CUT, speed=1e-3)), "0.6 s", speed=12.0)
-    turns = (found.crank_angle[-1] - found.crank_angle[0]) / (2 * np.pi)
+    run = eq.run(shear(replace(CUT, speed=1e-3)), "0.6 s", speed=12.0)
+    turns = (run.crank_angle[-1] - run.crank_angle[0]) / (2 * np.pi)
     assert 0.9 < turns < 1.5  # it cuts in the last quarter of a turn
-    assert found.work["resistances"][-1] == pytest.approx(-30.0, rel=1e-4)
-    assert found.energy_error < 1e-9
+    assert run.work["resistances"][-1] == pytest.approx(-30.0, rel=1e-4)
+    assert run.energy_error < 1e-9
 
 
 def wheel(**parts: Any) -> eq.Machine:
@@ -151,23 +153,23 @@ def wheel(**parts: Any) -> eq.Machine:
 
 def test_a_run_against_a_dry_force_alone_slows_as_by_constant_torque_and_stands_still() -> None:
     """Speed falls by force times radius over inertia, however near to rest."""
-    found = eq.run(wheel(), speed=20.0)
+    run = eq.run(wheel(), speed=20.0)
     slows = 4.0 * 0.3 / 0.05
-    np.testing.assert_allclose(found.crank_speed, 20.0 - slows * found.time, atol=1e-9)
-    assert found.end.kind == "standstill" and found.energy_error < 1e-9
-    assert found.end.time == pytest.approx(20.0 / slows, rel=1e-9)
-    assert found.end.crank_angle == pytest.approx(20.0**2 / (2 * slows), rel=1e-9)
+    np.testing.assert_allclose(run.crank_speed, 20.0 - slows * run.time, atol=1e-9)
+    assert run.end.kind == "standstill" and run.energy_error < 1e-9
+    assert run.end.time == pytest.approx(20.0 / slows, rel=1e-9)
+    assert run.end.crank_angle == pytest.approx(20.0**2 / (2 * slows), rel=1e-9)
 
 
 @pytest.mark.parametrize(("share", "moves"), [(0.999, False), (1.001, True), (-0.999, False)])
 def test_a_dry_force_holds_a_crank_up_to_its_size(share: float, moves: bool) -> None:
     load = eq.Load("wheel", torque=share * 4.0 * 0.3)
-    found = eq.run(wheel(loads=(load,)), "1 s", speed=0.0)
-    assert (found.end.kind == "time") == moves
+    run = eq.run(wheel(loads=(load,)), "1 s", speed=0.0)
+    assert (run.end.kind == "time") == moves
     if moves:
-        assert found.end.crank_angle == pytest.approx(0.001 * 4.0 * 0.3 / 0.05 / 2, rel=1e-6)
+        assert run.end.crank_angle == pytest.approx(0.001 * 4.0 * 0.3 / 0.05 / 2, rel=1e-6)
     else:
-        assert (found.end.kind, found.turned) == ("standstill", 0.0)
+        assert (run.end.kind, run.turned) == ("standstill", 0.0)
 
 
 def test_what_cuts_one_way_holds_one_way() -> None:
@@ -188,12 +190,12 @@ def test_what_cuts_one_way_holds_one_way() -> None:
 
 def test_a_coasting_machine_loses_force_times_way_until_it_stands_still() -> None:
     """The way of the blade, by sums of its places at crank angles between start and end."""
-    found = eq.run(shear(replace(RUBBED, speed=0.1)), speed=12.0, angle=0.3)
-    assert found.end.kind == "standstill" and found.energy_error < 1e-9
-    angles = np.linspace(0.3, found.end.crank_angle, 200_001)
+    run = eq.run(shear(replace(RUBBED, speed=0.1)), speed=12.0, angle=0.3)
+    assert run.end.kind == "standstill" and run.energy_error < 1e-9
+    angles = np.linspace(0.3, run.end.crank_angle, 200_001)
     way = np.sum(np.abs(np.diff(eq.move(shear(), angles).points["C"].x)))
-    assert found.work["resistances"][-1] == pytest.approx(-40.0 * way, rel=1e-8)
-    assert 2.0 < found.turned < 200.0
+    assert run.work["resistances"][-1] == pytest.approx(-40.0 * way, rel=1e-8)
+    assert 2.0 < run.turned < 200.0
 
 
 # Resistances in a turn: the other tests of this file.
@@ -208,9 +210,9 @@ def test_the_cutter_bar_of_the_examples() -> None:
     assert cycle is not None
     wanted = 2 * 620.0 * (0.016 + 0.014) + 2 * 70.0 * stroke
     assert cycle.energy_per_turn == pytest.approx(wanted, rel=1e-5)
-    found = eq.run(machine)
-    acting, holding = found.equation.at_rest(found.end.crank_angle)
-    assert found.end.kind == "standstill" and found.stopping is not None
+    run = eq.run(machine)
+    acting, holding = run.equation.at_rest(run.end.crank_angle)
+    assert run.end.kind == "standstill" and run.stopping is not None
     assert abs(acting) < holding[np.copysign(1.0, acting)]
 
 
@@ -238,10 +240,10 @@ def test_loops_and_scripts_have_them(tmp_path: Path) -> None:
 
 def test_drawings_and_the_page_have_them() -> None:
     assert len(drawn(MACHINE, "resistance")[1]) == 5
-    one = replace(ON_LINK, on="frame", to="S")
+    first = replace(ON_LINK, on="frame", to="S")
     keys = ["link", "point", "to", "on", "direction", "one_way", "force", "damping", "positions",
             "forces", "table", "speed"]  # fmt: skip
-    on_the_page(resisted(replace(one, force=3.0)), "resistances", keys, ["force", "direction"])
+    on_the_page(resisted(replace(first, force=3.0)), "resistances", keys, ["force", "direction"])
 
 
 def test_formats_without_them_leave_them_out(tmp_path: Path) -> None:

@@ -66,38 +66,38 @@ def test_pull_follows_the_length() -> None:
 def test_a_preload_is_another_free_length() -> None:
     """F0 + k (l - l0) is k (l - (l0 - F0 / k))."""
     shifted = Spring("rocker", "F", "S", 3300.0, 0.076 - 25.0 / 3300.0)
-    torques = [eq.analyze(sprung(one), 72).forces.drive_torque for one in (PRELOADED, shifted)]
+    torques = [eq.analyze(sprung(item), 72).forces.drive_torque for item in (PRELOADED, shifted)]
     np.testing.assert_allclose(torques[0], torques[1], atol=1e-12 * np.max(np.abs(torques[1])))
 
 
 def test_the_drive_gives_what_springs_store() -> None:
     """Energy between two crank angles by integrals of the law over the length; frame unmoved."""
-    found, bare = (eq.analyze(one, 72) for one in (MACHINE, sprung()))
-    motion = found.motion
-    rates = found.forces.power - bare.forces.power
+    actual, bare = (eq.analyze(item, 72) for item in (MACHINE, sprung()))
+    motion = actual.motion
+    rates = actual.forces.power - bare.forces.power
     for number, spring in enumerate(MACHINE.springs):
         step = 1e-6
         ends = [distance(eq.move(MACHINE, motion.crank_angle + way), spring)
                 for way in (step, -step)]  # fmt: skip
         speed = (ends[0] - ends[1]) / (2 * step) * motion.speed
         rates = rates - motion.element_values("springs", number)["pull"] * speed
-    assert np.max(np.abs(rates)) < 1e-7 * np.max(np.abs(found.forces.power))
-    scale = np.max(np.abs(found.forces.frame_force.value))
-    change = found.forces.frame_force.value - bare.forces.frame_force.value
+    assert np.max(np.abs(rates)) < 1e-7 * np.max(np.abs(actual.forces.power))
+    scale = np.max(np.abs(actual.forces.frame_force.value))
+    change = actual.forces.frame_force.value - bare.forces.frame_force.value
     assert np.max(np.abs(change)) < 1e-12 * scale + 1e-12
 
 
 def test_forces_are_those_of_free_bodies() -> None:
     """Every link cut free, and all equilibria solved at once, with the law written anew."""
-    found = eq.analyze(MACHINE, ANGLES)
-    free = free_bodies.solve(MACHINE, from_motion(MACHINE, found.motion))
-    for name, joint in found.forces.joints.items():
+    analysis = eq.analyze(MACHINE, ANGLES)
+    free = free_bodies.solve(MACHINE, from_motion(MACHINE, analysis.motion))
+    for name, joint in analysis.forces.joints.items():
         reaction = free.joints[name]
         force = reaction.force[:, 0] + 1j * reaction.force[:, 1]
         np.testing.assert_allclose(joint.value, force, atol=1e-10 * np.max(joint.size))
     torque = free.drives[MACHINE.drive.link]
     scale = np.max(np.abs(torque))
-    np.testing.assert_allclose(found.forces.drive_torque, torque, atol=1e-11 * scale)
+    np.testing.assert_allclose(analysis.forces.drive_torque, torque, atol=1e-11 * scale)
 
 
 def test_a_file_has_all_that_they_are(tmp_path: Path) -> None:
@@ -113,7 +113,7 @@ def test_a_file_has_all_that_they_are(tmp_path: Path) -> None:
     assert "spring: from F of rocker to S, 4 rows from 100.0 mm to 150.0 mm" in lines
     assert ", 25.00 N at 76.00 mm" in lines
     both = (again, sprung(PRELOADED, TABLED))
-    peaks = [eq.analyze(one, 60).summary["drive_torque"].peak for one in both]
+    peaks = [eq.analyze(item, 60).summary["drive_torque"].peak for item in both]
     assert peaks[0] == peaks[1]
 
 
@@ -158,8 +158,8 @@ def test_a_run_keeps_the_energy(numbers: tuple[int, ...], tolerance: float) -> N
     """
     springs = tuple(MACHINE.springs[number] for number in numbers)
     machine = replace(MACHINE, gravity=(0.0, 0.0), springs=springs)
-    found = eq.run(machine, "0.05 s", speed=30.0)
-    ends = [eq.move(machine, [found.crank_angle[end]], found.crank_speed[end]) for end in (0, -1)]
+    run = eq.run(machine, "0.05 s", speed=30.0)
+    ends = [eq.move(machine, [run.crank_angle[end]], run.crank_speed[end]) for end in (0, -1)]
     given = 0.0
     for spring in machine.springs:
         first, last = (float(distance(motion, spring)[0]) for motion in ends)
@@ -168,8 +168,8 @@ def test_a_run_keeps_the_energy(numbers: tuple[int, ...], tolerance: float) -> N
                       points=rows or None, epsabs=1e-13, epsrel=1e-13)[0]  # fmt: skip
     energies = [_kinetic(machine, motion) for motion in ends]
     assert energies[1] - energies[0] == pytest.approx(given, rel=tolerance)
-    assert found.work["springs"][-1] == pytest.approx(given, rel=tolerance)
-    assert found.energy_error < 1e-12
+    assert run.work["springs"][-1] == pytest.approx(given, rel=tolerance)
+    assert run.energy_error < 1e-12
     assert abs(given) > 0.01
 
 
@@ -206,7 +206,9 @@ def test_modelica_has_their_pull() -> None:
     for number in range(3):
         values = eq.move(MACHINE, [0.3]).element_values("springs", number)
         name = f"L_{number + 1}"
-        (line,) = (one for one in text.splitlines() if one.strip().startswith(f"S_{number + 1} *"))
+        (line,) = (
+            item for item in text.splitlines() if item.strip().startswith(f"S_{number + 1} *")
+        )
         law = line.partition(" = ")[2].rstrip(";")
         pull = eval(law, {name: float(values["length"][0]), "abs": abs})
         assert pull == pytest.approx(float(values["pull"][0]), rel=1e-12)

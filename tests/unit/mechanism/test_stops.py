@@ -39,7 +39,7 @@ MACHINE = stopped(ON_FRAME, ON_LINK)
 
 def test_force_by_penetration_and_its_rate() -> None:
     """Depth in the axes of the stop's body, its rate by differences of it: good to 1e-6."""
-    found = eq.analyze(MACHINE, 360)
+    analysis = eq.analyze(MACHINE, 360)
     step = 1e-6
 
     def gaps(theta: Any, stop: Stop) -> Any:
@@ -48,9 +48,9 @@ def test_force_by_penetration_and_its_rate() -> None:
         apart = motion.point(stop.point).place - motion.point(stop.to).place
         return (apart * np.exp(-1j * (turned + stop.direction))).real
 
-    theta = found.motion.crank_angle
+    theta = analysis.motion.crank_angle
     for number, stop in enumerate(MACHINE.stops):
-        values = found.motion.element_values("stops", number)
+        values = analysis.motion.element_values("stops", number)
         gap = gaps(theta, stop)
         rate = (gaps(theta + step, stop) - gaps(theta - step, stop)) / (2 * step)
         np.testing.assert_allclose(values["gap"], gap, atol=1e-12)
@@ -60,7 +60,9 @@ def test_force_by_penetration_and_its_rate() -> None:
         assert np.all(values["force"] >= 0.0) and np.all(values["loss"] >= -1e-9)
         e = stop.restitution
         a = brentq_free(e)
-        law = stop.stiffness * -gap * np.maximum(1 - a * rate * found.motion.speed / stop.speed, 0)
+        law = (
+            stop.stiffness * -gap * np.maximum(1 - a * rate * analysis.motion.speed / stop.speed, 0)
+        )
         np.testing.assert_allclose(
             values["force"][touching], law[touching], atol=1e-6 * np.max(law[touching])
         )
@@ -76,9 +78,9 @@ def brentq_free(e: float) -> float:
 
 def test_the_drive_gives_what_stops_store_and_lose() -> None:
     """At the frame nothing changes, moments on a turning body included."""
-    found, bare = (eq.analyze(one, 720) for one in (MACHINE, stopped()))
-    motion = found.motion
-    power = found.forces.power - bare.forces.power
+    actual, bare = (eq.analyze(item, 720) for item in (MACHINE, stopped()))
+    motion = actual.motion
+    power = actual.forces.power - bare.forces.power
     wanted = 0.0
     for number in range(2):
         values = motion.element_values("stops", number)
@@ -88,9 +90,9 @@ def test_the_drive_gives_what_stops_store_and_lose() -> None:
     assert np.max(np.abs(power)) > 0.1
     np.testing.assert_allclose(power, wanted, atol=2e-3 * np.max(np.abs(power)))
     np.testing.assert_allclose(
-        found.forces.frame_force.value, bare.forces.frame_force.value, atol=1e-8
+        actual.forces.frame_force.value, bare.forces.frame_force.value, atol=1e-8
     )
-    np.testing.assert_allclose(found.forces.frame_moment, bare.forces.frame_moment, atol=1e-8)
+    np.testing.assert_allclose(actual.forces.frame_moment, bare.forces.frame_moment, atol=1e-8)
 
 
 @pytest.mark.exhaustive(but=["1.0-0.5"])
@@ -106,11 +108,11 @@ def test_a_body_leaves_with_the_restitution(restitution: float, speed: float) ->
     frame = {"A": (0.0, 0.0), "S": (0.2, 0.0)}
     machine = eq.Machine("swing", eq.Drive("crank", -speed / 0.2), frame, {"crank": link},
                          gravity=(0.0, 0.0), stops=(stop,))  # fmt: skip
-    found = eq.run(machine, "0.1 s", speed=-speed / 0.2, angle=0.1)
-    left = found.crank_speed[-1] * 0.2
+    run = eq.run(machine, "0.1 s", speed=-speed / 0.2, angle=0.1)
+    left = run.crank_speed[-1] * 0.2
     assert left == pytest.approx(restitution * speed, rel=1e-3)  # the line turns by 1e-3 rad in it
-    lost = 0.5 * (0.01 + 1.5 * 0.1**2) * (found.crank_speed[-1] ** 2 - (speed / 0.2) ** 2)
-    assert found.work["stops"][-1] == pytest.approx(lost, rel=1e-6, abs=1e-7)
+    lost = 0.5 * (0.01 + 1.5 * 0.1**2) * (run.crank_speed[-1] ** 2 - (speed / 0.2) ** 2)
+    assert run.work["stops"][-1] == pytest.approx(lost, rel=1e-6, abs=1e-7)
 
 
 def test_it_is_read_written_and_refused() -> None:

@@ -56,6 +56,6 @@ def test_columns() -> None:
     radii = np.array([[0.05], [0.12]])
     belts = Strands(np.full((2, 1), APART), radii, np.full((2, 1), 0.05))
     for k, radius in enumerate(radii[:, 0]):
-        one = Strands(APART, radius, 0.05)
-        assert belts.way(LEFT)[k, 0] == one.way(LEFT)
-        assert belts.length[k, 0] == one.length
+        first = Strands(APART, radius, 0.05)
+        assert belts.way(LEFT)[k, 0] == first.way(LEFT)
+        assert belts.length[k, 0] == first.length

@@ -41,37 +41,37 @@ def offset_slider_crank(offset: float, speed: float = 10.0) -> eq.Machine:
 @pytest.mark.parametrize("speed", [10.0, -10.0])
 def test_an_offset_slider_crank(offset: float, speed: float) -> None:
     """Stroke and time ratio (180 + a) / (180 - a) by the triangles at both dead positions."""
-    found = eq.analyze(offset_slider_crank(offset, speed), 8).strokes["piston on frame"]
+    strokes = eq.analyze(offset_slider_crank(offset, speed), 8).strokes["piston on frame"]
     crank, rod = 0.3, 1.0
     near, far = sqrt((rod - crank) ** 2 - offset**2), sqrt((rod + crank) ** 2 - offset**2)
-    assert (found.lowest, found.highest) == pytest.approx((near, far), abs=1e-13)
-    assert found.stroke == pytest.approx(far - near, abs=1e-13)
+    assert (strokes.lowest, strokes.highest) == pytest.approx((near, far), abs=1e-13)
+    assert strokes.stroke == pytest.approx(far - near, abs=1e-13)
     between = abs(asin(offset / (rod - crank)) - asin(offset / (rod + crank)))
-    assert found.time_ratio == pytest.approx((pi + between) / (pi - between), rel=1e-12)
-    assert found.rise + found.fall == pytest.approx(2 * pi)
-    forwards = (found.highest_at - found.lowest_at) % (2 * pi)
-    assert found.rise == pytest.approx(forwards if speed > 0 else 2 * pi - forwards)
-    assert found.highest_at == pytest.approx(asin(offset / (rod + crank)) % (2 * pi), abs=1e-12)
+    assert strokes.time_ratio == pytest.approx((pi + between) / (pi - between), rel=1e-12)
+    assert strokes.rise + strokes.fall == pytest.approx(2 * pi)
+    forwards = (strokes.highest_at - strokes.lowest_at) % (2 * pi)
+    assert strokes.rise == pytest.approx(forwards if speed > 0 else 2 * pi - forwards)
+    assert strokes.highest_at == pytest.approx(asin(offset / (rod + crank)) % (2 * pi), abs=1e-12)
 
 
 @pytest.mark.parametrize("speed", [10.0, -10.0])
 @pytest.mark.parametrize("phase", [0.0, 5.5])
-def test_rests_are_told_apart_from_strokes(speed: float, phase: float) -> None:
+def test_rests_are_distinguished_from_strokes(speed: float, phase: float) -> None:
     """A lever swung by segments: 120 deg ahead, a rest of 50, 150 back, a rest of 40."""
     parts = ((120, 140), (50, 140), (150, 100), (40, 100))
     segments = tuple(AngleSegment(radians(over), radians(to)) for over, to in parts)
     law = AngleLaw(start=radians(100), segments=segments, phase=phase)
     moved = crank_rocker().with_drive(speed=speed, motion=law)
-    found = eq.analyze(moved, 8).strokes["rocker"]
-    ways = (found.rise, found.highest_rest, found.fall, found.lowest_rest)
+    strokes = eq.analyze(moved, 8).strokes["rocker"]
+    ways = (strokes.rise, strokes.highest_rest, strokes.fall, strokes.lowest_rest)
     forth, back = (120.0, 150.0) if speed > 0 else (150.0, 120.0)
     # a law that begins smoothly stands still to rounding a little before and after its rest
     assert np.degrees(ways) == pytest.approx((forth, 50, back, 40), abs=1e-3)
-    assert found.time_ratio == pytest.approx(150 / 120, rel=1e-5)
+    assert strokes.time_ratio == pytest.approx(150 / 120, rel=1e-5)
     assert sum(ways) == pytest.approx(2 * pi, abs=1e-12)
-    begin = degrees(found.highest_at - phase) % 360
+    begin = degrees(strokes.highest_at - phase) % 360
     assert begin == pytest.approx(120, abs=1e-3)
-    assert max(one.rest for one in found.dead_positions) == found.highest_rest
+    assert max(position.rest for position in strokes.dead_positions) == strokes.highest_rest
 
 
 @compared(CLOSED_FORMS, "strokes and time ratio by triangles", 1e-12, "quick-return")
@@ -92,11 +92,11 @@ def test_the_quick_return_of_a_shaper() -> None:
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_rockers_of_four_bars_against_their_triangles(name: str) -> None:
-    found = eq.analyze(eq.load(name), 4)
-    bar = found.four_bar
+    analysis = eq.analyze(eq.load(name), 4)
+    bar = analysis.four_bar
     if bar is None or bar.swing is None:
         return
-    rocker = found.strokes[bar.rocker]
+    rocker = analysis.strokes[bar.rocker]
     assert rocker.stroke == pytest.approx(bar.swing, rel=1e-11)
     assert rocker.time_ratio == pytest.approx(bar.time_ratio, rel=1e-10)
     assert len(rocker.dead_positions) == 2
@@ -104,20 +104,20 @@ def test_rockers_of_four_bars_against_their_triangles(name: str) -> None:
 
 @pytest.mark.parametrize("name", few(MACHINES, DISTINCT))
 def test_figures_of_every_example_against_dense_sampling(name: str) -> None:
-    found = eq.analyze(eq.load(name), 36_000 if name != "class-three" else 3600)
-    motion = found.motion
-    for item, one in found.strokes.items():
-        slides = one.kind == "slider"
+    analysis = eq.analyze(eq.load(name), 36_000 if name != "class-three" else 3600)
+    motion = analysis.motion
+    for item, value in analysis.strokes.items():
+        slides = value.kind == "slider"
         values = motion.sliders[item].travel if slides else motion.links[item].angle
         rate = motion.sliders[item].travel_1 if slides else motion.links[item].angle_1
-        assert one.stroke == pytest.approx(np.ptp(values), rel=1e-5)
-        assert one.stroke >= np.ptp(values) - 1e-12
+        assert value.stroke == pytest.approx(np.ptp(values), rel=1e-5)
+        assert value.stroke >= np.ptp(values) - 1e-12
         turns = np.count_nonzero(np.diff(np.sign(np.append(rate, rate[0]))) != 0)
-        assert len(one.dead_positions) == turns or np.any(rate == 0)
-        if one.least_advantage is not None:
-            assert one.least_advantage == pytest.approx(1 / np.max(np.abs(rate)), rel=1e-6)
-        angles = [dead.crank_angle for dead in one.dead_positions]
-        there = eq.move(found.machine, angles)
+        assert len(value.dead_positions) == turns or np.any(rate == 0)
+        if value.least_advantage is not None:
+            assert value.least_advantage == pytest.approx(1 / np.max(np.abs(rate)), rel=1e-6)
+        angles = [dead.crank_angle for dead in value.dead_positions]
+        there = eq.move(analysis.machine, angles)
         speeds = there.sliders[item].travel_1 if slides else there.links[item].angle_1
         np.testing.assert_allclose(speeds, 0, atol=1e-9 * np.max(np.abs(rate)))
         assert angles == sorted(angles)
@@ -129,26 +129,26 @@ def test_links_that_turn_fully_and_the_crank_have_no_stroke() -> None:
 
 
 def test_there_are_none_where_the_crank_cannot_turn() -> None:
-    found = eq.analyze(four_bar(1.0, 0.9, 0.5, 0.55), [0.3])
-    assert dict(found.strokes) == {}
-    assert found.to_dict()["strokes"] == {}
-    assert not [one for one in found.blocks() if "stroke" in getattr(one, "title", "")]
+    analysis = eq.analyze(four_bar(1.0, 0.9, 0.5, 0.55), [0.3])
+    assert dict(analysis.strokes) == {}
+    assert analysis.to_dict()["strokes"] == {}
+    assert not [block for block in analysis.blocks() if "stroke" in getattr(block, "title", "")]
 
 
 def test_turning_back_by_rounding_is_no_dead_position() -> None:
     angles = np.array([0.1, 2.0, 2.5, 4.0])
-    found = _turning(angles, np.array([0.0, 1.0, 1.0 - 1e-14, 1.0]))
-    assert [one.crank_angle for one in found] == [0.1, 4.0]
+    result = _turning(angles, np.array([0.0, 1.0, 1.0 - 1e-14, 1.0]))
+    assert [item.crank_angle for item in result] == [0.1, 4.0]
     kept = _turning(angles[::-1], np.array([1.0, 0.5, 0.9, 0.0]))
     assert kept[0] == DeadPosition(0.1, 0.0)
     assert len(kept) == 4
 
 
-def test_of_equal_extremes_the_first_is_told() -> None:
+def test_of_equal_extremes_the_first_is_reported() -> None:
     """A slider on a wheel that turns twice as fast as the crank is twice at each end."""
     links = {"crank": heavy(A=ORIGIN), "wheel": heavy(E=ORIGIN, B=(0.1, 0.0))}
     links |= {"rod": heavy(B=ORIGIN, C=(0.4, 0.0)), "piston": heavy(C=ORIGIN)}
-    found = eq.analyze(
+    strokes = eq.analyze(
         machine(
             {"A": ORIGIN, "E": (0.5, 0.0)},
             links,
@@ -158,12 +158,12 @@ def test_of_equal_extremes_the_first_is_told() -> None:
         ),
         8,
     ).strokes["piston on frame"]
-    assert len(found.dead_positions) == 4
-    assert degrees(found.highest_at) == pytest.approx(0.0, abs=1e-9)
-    assert degrees(found.lowest_at) == pytest.approx(90.0)
-    assert found.stroke == pytest.approx(0.2)
-    assert (found.rise, found.fall) == pytest.approx((pi / 2, pi / 2))
-    assert found.time_ratio == pytest.approx(1.0)
+    assert len(strokes.dead_positions) == 4
+    assert degrees(strokes.highest_at) == pytest.approx(0.0, abs=1e-9)
+    assert degrees(strokes.lowest_at) == pytest.approx(90.0)
+    assert strokes.stroke == pytest.approx(0.2)
+    assert (strokes.rise, strokes.fall) == pytest.approx((pi / 2, pi / 2))
+    assert strokes.time_ratio == pytest.approx(1.0)
 
 
 def test_over_many_turns_neighbouring_strokes_are_compared() -> None:
@@ -174,15 +174,17 @@ def test_over_many_turns_neighbouring_strokes_are_compared() -> None:
     links["crank"] = heavy(E=ORIGIN)
     frame = {**given.frame, "E": (0.0, -1.0)}
     gears = (eq.Gear("crank", "wheel", teeth=(13, 20)),)
-    found = eq.analyze(replace(given, frame=frame, links=links, gears=gears), 8)
-    assert found.motion.turns == 20
-    one, more = found.strokes["rocker"], 20 / 13
-    assert len(one.dead_positions) == 26
-    assert one.stroke == pytest.approx(plain.stroke, rel=1e-9)
-    assert one.time_ratio == pytest.approx(plain.time_ratio, rel=1e-9)
-    assert (one.rise, one.fall) == pytest.approx((more * plain.fall, more * plain.rise), rel=1e-9)
-    assert one.dwell == pytest.approx(more * plain.dwell, rel=1e-5)
-    assert one.least_advantage == pytest.approx(more * plain.least_advantage, rel=1e-9)
+    analysis = eq.analyze(replace(given, frame=frame, links=links, gears=gears), 8)
+    assert analysis.motion.turns == 20
+    first, more = analysis.strokes["rocker"], 20 / 13
+    assert len(first.dead_positions) == 26
+    assert first.stroke == pytest.approx(plain.stroke, rel=1e-9)
+    assert first.time_ratio == pytest.approx(plain.time_ratio, rel=1e-9)
+    assert (first.rise, first.fall) == pytest.approx(
+        (more * plain.fall, more * plain.rise), rel=1e-9
+    )
+    assert first.dwell == pytest.approx(more * plain.dwell, rel=1e-5)
+    assert first.least_advantage == pytest.approx(more * plain.least_advantage, rel=1e-9)
 
 
 # -- dwells ----------------------------------------------------------------------------------------
@@ -221,9 +223,9 @@ def test_between_samples_a_path_is_exact() -> None:
 @pytest.mark.parametrize("share", [1e-4, 0.01, 0.3])
 def test_the_dwell_of_a_cosine(share: float) -> None:
     """About an end: 2 acos(1 - 2 share); of both ends the first in the cycle is told."""
-    found = longest_dwell(of_function(np.array([0.5, 0, 0.5])), 2 * share)
-    assert found.angle == pytest.approx(2 * acos(1 - 2 * share), abs=2e-6)
-    assert (found.begin + found.angle / 2) % (2 * pi) == pytest.approx(pi, abs=2e-6)
+    result = longest_dwell(of_function(np.array([0.5, 0, 0.5])), 2 * share)
+    assert result.angle == pytest.approx(2 * acos(1 - 2 * share), abs=2e-6)
+    assert (result.begin + result.angle / 2) % (2 * pi) == pytest.approx(pi, abs=2e-6)
 
 
 def test_the_dwell_of_a_circle_is_a_chord() -> None:
@@ -242,34 +244,36 @@ def test_dwells_of_random_paths_against_dense_sampling(seed: int) -> None:
     path, theta = of_function(amplitudes), np.arange(7200) * (2 * pi / 7200)
     size = hypot(np.ptp(path.place.real), np.ptp(path.place.imag))
     for share in (0.01, 0.1):
-        found = longest_dwell(path, share * size).angle
-        assert found == pytest.approx(brute(theta, path.at(theta), share * size), abs=2e-3)
+        angle = longest_dwell(path, share * size).angle
+        assert angle == pytest.approx(brute(theta, path.at(theta), share * size), abs=2e-3)
 
 
 @pytest.mark.parametrize("tolerance", [radians(0.2), radians(0.5), radians(2.0)])
 def test_the_dwell_of_a_six_bar_against_dense_sampling(tolerance: float) -> None:
     """It is built to dwell: its output hardly moves over a third of a turn."""
-    found = eq.analyze(eq.load("stephenson-six-bar"), 7200)
-    angle = found.motion.links["output"].angle
+    analysis = eq.analyze(eq.load("stephenson-six-bar"), 7200)
+    angle = analysis.motion.links["output"].angle
     step = 2 * pi / 7200
-    dwell = found.dwell("output", tolerance)
-    assert dwell.angle == pytest.approx(brute(found.crank_angle, angle, tolerance), abs=2 * step)
+    dwell = analysis.dwell("output", tolerance)
+    assert dwell.angle == pytest.approx(brute(analysis.crank_angle, angle, tolerance), abs=2 * step)
     assert dwell.angle > radians(100)
-    inside = (found.crank_angle - dwell.begin) % (2 * pi) < dwell.angle
+    inside = (analysis.crank_angle - dwell.begin) % (2 * pi) < dwell.angle
     assert np.ptp(angle[inside]) <= tolerance * (1 + 1e-6)
 
 
 def test_dwells_of_sliders_and_points() -> None:
-    found = eq.analyze(eq.load("quick-return"), 8)
-    ram = found.dwell("ram on frame", 0.5e-3)
-    assert ram.angle == pytest.approx(found.dwell("F", 0.5e-3).angle, rel=1e-9)
-    usual = found.dwell("ram on frame")
-    assert usual.angle == pytest.approx(found.strokes["ram on frame"].dwell, rel=1e-12)
-    assert usual.tolerance == pytest.approx(0.01 * found.strokes["ram on frame"].stroke, rel=1e-3)
-    lever = found.dwell("lever")
-    assert lever.angle == pytest.approx(found.strokes["lever"].dwell, abs=1e-4)
-    assert list(found.dwells(1e-3)) == ["block on lever", "ram on frame", "E", "F"]
-    assert "crank" not in found.dwells(0.01, "angle")
+    analysis = eq.analyze(eq.load("quick-return"), 8)
+    ram = analysis.dwell("ram on frame", 0.5e-3)
+    assert ram.angle == pytest.approx(analysis.dwell("F", 0.5e-3).angle, rel=1e-9)
+    usual = analysis.dwell("ram on frame")
+    assert usual.angle == pytest.approx(analysis.strokes["ram on frame"].dwell, rel=1e-12)
+    assert usual.tolerance == pytest.approx(
+        0.01 * analysis.strokes["ram on frame"].stroke, rel=1e-3
+    )
+    lever = analysis.dwell("lever")
+    assert lever.angle == pytest.approx(analysis.strokes["lever"].dwell, abs=1e-4)
+    assert list(analysis.dwells(1e-3)) == ["block on lever", "ram on frame", "E", "F"]
+    assert "crank" not in analysis.dwells(0.01, "angle")
 
 
 @pytest.mark.parametrize(
@@ -294,9 +298,9 @@ def test_what_rests_on_its_guide_has_no_stroke() -> None:
 
 def test_driven_links_that_swing_have_a_stroke_and_one_torque() -> None:
     """Of several drives the first too; a drive torque of the only one is told once."""
-    found = eq.analyze(eq.load("pick-and-place"), 72)
-    assert {"left crank", "right crank"} <= {*found.strokes}
-    assert found.strokes["left crank"].stroke == pytest.approx(radians(50))
+    analysis = eq.analyze(eq.load("pick-and-place"), 72)
+    assert {"left crank", "right crank"} <= {*analysis.strokes}
+    assert analysis.strokes["left crank"].stroke == pytest.approx(radians(50))
     alone = eq.analyze(eq.load("hydraulic-loader"), 72)
     assert alone.strokes["boom"].stroke == pytest.approx(alone.strokes["bar"].stroke)
     crank = eq.load("yamashita-1")

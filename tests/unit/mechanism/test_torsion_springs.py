@@ -53,16 +53,16 @@ def test_a_file_has_all_that_they_are(tmp_path: Path) -> None:
     assert table.read_text().startswith("angle [rad],torque [N m]\n")
     again = eq.load(tmp_path / "mine.toml")
     assert again.torsion_springs == (listed,)
-    told = equipoise("check", tmp_path / "mine.toml").out
-    assert "torsion spring: coupler on rocker, 4 rows from -120.3 deg to 57.30 deg" in told
-    values = [eq.analyze(one, 60).summary["drive_torque"].peak for one in (again, sprung(TABLED))]
+    printed = equipoise("check", tmp_path / "mine.toml").out
+    assert "torsion spring: coupler on rocker, 4 rows from -120.3 deg to 57.30 deg" in printed
+    values = [eq.analyze(item, 60).summary["drive_torque"].peak for item in (again, sprung(TABLED))]
     assert values[0] == values[1]
 
 
 def test_torque_angle_and_energy() -> None:
     """By straight lines between rows; power is what the energy loses, and none over the cycle."""
-    found = eq.analyze(MACHINE, 720)
-    motion = found.motion
+    analysis = eq.analyze(MACHINE, 720)
+    motion = analysis.motion
     for number, spring in enumerate(MACHINE.torsion_springs):
         values = motion.element_values("torsion_springs", number)
         turned = motion.links[spring.link].angle
@@ -76,22 +76,22 @@ def test_torque_angle_and_energy() -> None:
         assert np.max(np.abs(motion.mean(power))) < 1e-4 * np.max(np.abs(power))
         middle = (np.roll(values["energy"], -1) - np.roll(values["energy"], 1)) * 720 / (4 * np.pi)
         assert np.max(np.abs(middle + power)) < 2e-3 * np.max(np.abs(power))
-    assert found.summary["torsion_springs.1.torque"].peak > 0.1
+    assert analysis.summary["torsion_springs.1.torque"].peak > 0.1
 
 
 def test_drive_torque_is_virtual_work() -> None:
     """Of springs alone: links without masses, no gravity."""
     bare = {name: replace(link, mass=0.0, inertia=0.0) for name, link in MACHINE.links.items()}
-    found = eq.analyze(replace(MACHINE, links=bare, gravity=(0.0, 0.0)), 90)
-    motion, needed = found.motion, 0.0
+    analysis = eq.analyze(replace(MACHINE, links=bare, gravity=(0.0, 0.0)), 90)
+    motion, needed = analysis.motion, 0.0
     for number, spring in enumerate(MACHINE.torsion_springs):
-        rates = [motion.links[one].angle_1 for one in spring.bodies if one != "frame"]
+        rates = [motion.links[body].angle_1 for body in spring.bodies if body != "frame"]
         rate = rates[0] - sum(rates[1:])
         needed = needed - motion.element_values("torsion_springs", number)["torque"] * rate
-    np.testing.assert_allclose(found.forces.drive_torque, needed, atol=1e-12)
-    np.testing.assert_allclose(found.forces.frame_force.value, 0.0, atol=1e-12)
-    np.testing.assert_allclose(found.forces.frame_moment, 0.0, atol=1e-12)
-    by_cause = found.forces.split.by_cause("drive_torque")
+    np.testing.assert_allclose(analysis.forces.drive_torque, needed, atol=1e-12)
+    np.testing.assert_allclose(analysis.forces.frame_force.value, 0.0, atol=1e-12)
+    np.testing.assert_allclose(analysis.forces.frame_moment, 0.0, atol=1e-12)
+    by_cause = analysis.forces.split.by_cause("drive_torque")
     np.testing.assert_allclose(by_cause["spring"], needed, atol=1e-12)
 
 
@@ -125,10 +125,10 @@ def test_scripts_have_them(tmp_path: Path) -> None:
     names = ["drive_torque", "torsion_springs.1.torque", "torsion_springs.2.energy"]
     linkage = eq.mechanism.assemble(MACHINE)
     script = javascript(linkage, names)
-    found = eq.analyze(MACHINE, 24)
-    got = run(script, script.numbers(linkage), found.motion.crank_angle, tmp_path)
+    analysis = eq.analyze(MACHINE, 24)
+    got = run(script, script.numbers(linkage), analysis.motion.crank_angle, tmp_path)
     for name, values in zip(names, got, strict=True):
-        wanted = found.outputs[name].values
+        wanted = analysis.outputs[name].values
         np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
 
 
@@ -139,9 +139,9 @@ def test_scripts_take_their_numbers(tmp_path: Path) -> None:
     script = javascript(eq.mechanism.assemble(MACHINE), ["drive_torque"], given)
     torques = (*TABLED.torques[:2], 1.5, TABLED.torques[3])
     changed = sprung(replace(LINEAR, stiffness=6.0), replace(TABLED, torques=torques))
-    found = eq.analyze(changed, 24)
-    got = run(script, np.array([6.0, 1.5]), found.motion.crank_angle, tmp_path)[0]
-    np.testing.assert_allclose(got, found.forces.drive_torque, atol=1e-12)
+    analysis = eq.analyze(changed, 24)
+    got = run(script, np.array([6.0, 1.5]), analysis.motion.crank_angle, tmp_path)[0]
+    np.testing.assert_allclose(got, analysis.forces.drive_torque, atol=1e-12)
 
 
 WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
@@ -175,7 +175,7 @@ WRONG: list[tuple[dict[str, Any], dict[str, Any]]] = [
 
 
 @pytest.mark.parametrize(("changes", "expected"), WRONG)
-def test_what_is_wrong_is_told(changes: dict[str, Any], expected: dict[str, Any]) -> None:
+def test_what_is_wrong_is_reported(changes: dict[str, Any], expected: dict[str, Any]) -> None:
     with refused(ModelError, **expected):
         sprung(replace(LINEAR, **changes))
 
@@ -215,24 +215,27 @@ def test_a_link_that_turns_on_and_on_is_refused() -> None:
 def test_the_page_has_forms_and_numbers_of_them() -> None:
     session, _ = opened("spring-balanced-crank")
     values = {"link": "rocker", "stiffness": "2 N m/rad", "angle": "80 deg"}
-    told = ask(session, "entry", place="torsion_springs[1]", values=values, seq=1)
-    content = state(told[0]).content
-    assert "torsion_springs[1].stiffness" in {one["path"] for one in content["fields"]}
+    reply = ask(session, "entry", place="torsion_springs[1]", values=values, seq=1)
+    content = state(reply[0]).content
+    assert "torsion_springs[1].stiffness" in {entry["path"] for entry in content["fields"]}
     assert session.shown.design.machine.torsion_springs[0].stiffness == 2.0
     wrong = {"link": "rocker"}
-    told = ask(session, "entry", place="torsion_springs[2]", values=wrong, seq=2)
-    assert "give exactly one of stiffness" in refusal(told)
+    reply = ask(session, "entry", place="torsion_springs[2]", values=wrong, seq=2)
+    assert "give exactly one of stiffness" in refusal(reply)
     state(ask(session, "make", do="rename", what="link", name="rocker", to="lever", at=0)[0])
     assert session.shown.design.machine.torsion_springs[0].link == "lever"
-    told = ask(session, "make", do="delete", what="link", name="lever", at=0)
-    assert "[[torsion_springs]]" in str(state(told[0]).content)
+    reply = ask(session, "make", do="delete", what="link", name="lever", at=0)
+    assert "[[torsion_springs]]" in str(state(reply[0]).content)
 
 
 def test_its_sign_turns_with_its_link() -> None:
     scene = Scene.of(eq.analyze(MACHINE, 12).motion)
     spirals = [mark for mark in scene.marks if mark.shape.role == "spiral"]
-    assert [(one.body, one.point) for one in spirals] == [("rocker", "D"), ("coupler", "C")]
-    drawn = [one for one in pieces(scene) for shape in one.shapes if shape.role == "spiral"]
+    assert [(spiral.body, spiral.point) for spiral in spirals] == [
+        ("rocker", "D"),
+        ("coupler", "C"),
+    ]
+    drawn = [piece for piece in pieces(scene) for shape in piece.shapes if shape.role == "spiral"]
     assert len(drawn) == 2
 
 
@@ -250,7 +253,7 @@ def test_modelica_has_their_torque() -> None:
     job = Job(MACHINE, 0.3)
     text = modelica.export_bytes(job)
     values = eq.move(MACHINE, [0.3]).element_values("torsion_springs", 1)
-    line = next(one for one in text.splitlines() if one.strip().startswith("T_2 = "))
+    line = next(item for item in text.splitlines() if item.strip().startswith("T_2 = "))
     law = line.partition("=")[2].rstrip(";")
     torque = eval(law, {"A_2": float(values["angle"][0]), "abs": abs})
     assert torque == pytest.approx(float(values["torque"][0]), rel=1e-12)

@@ -25,14 +25,14 @@ SOIL = Soil(resistance=3.0, per_depth=200.0)
 
 
 @cache
-def found(ahead: float = np.pi) -> PlantingFigures:
+def figures_with_arms(ahead: float = np.pi) -> PlantingFigures:
     return plant(two_arms(ahead))
 
 
 @pytest.mark.parametrize("ahead", [np.pi, 2.0])
 def test_the_second_arm_does_the_same_later(ahead: float) -> None:
     """At crank angles that are less by the angle that it is ahead on the carrier."""
-    first, second = found(ahead).arms
+    first, second = figures_with_arms(ahead).arms
     groups = ("curve", "soil", "entry", "lowest", "exit")
     names = [name for name in second.figures if name.startswith(groups)]
     names.remove("curve.smallest_radius.crank_angle")  # an ellipse has two such places
@@ -44,7 +44,7 @@ def test_the_second_arm_does_the_same_later(ahead: float) -> None:
             assert apart(first[name], second[name]) < 1e-9, name
         else:
             assert second[name] == pytest.approx(first[name], rel=1e-9, abs=1e-12), name
-        assert found(ahead)[f"arms.Q.{name}"] == second[name]
+        assert figures_with_arms(ahead)[f"arms.Q.{name}"] == second[name]
 
 
 def test_the_first_arm_is_as_it_is_alone() -> None:
@@ -52,9 +52,11 @@ def test_the_first_arm_is_as_it_is_alone() -> None:
     alone = plant(planetary(teeth=20))
     for name, value in alone.figures.items():
         if name not in ("hill_spacing", "planting_frequency") and ".carrier." not in name:
-            assert found()[name] == value, name
-    assert found()["hill_spacing"] == pytest.approx(alone["hill_spacing"] / 2)
-    assert found()["planting_frequency"] == pytest.approx(alone["planting_frequency"] * 2)
+            assert figures_with_arms()[name] == value, name
+    assert figures_with_arms()["hill_spacing"] == pytest.approx(alone["hill_spacing"] / 2)
+    assert figures_with_arms()["planting_frequency"] == pytest.approx(
+        alone["planting_frequency"] * 2
+    )
 
 
 @pytest.mark.parametrize("speed", [20.0, -20.0])
@@ -69,7 +71,7 @@ def test_hills_are_as_far_apart_as_the_arms(speed: float) -> None:
 
 def test_hills_follow_the_instants_at_which_seedlings_are_let_go() -> None:
     """Where these differ by half a turn and the places relative to the machine by nothing."""
-    lowest = found()["lowest.crank_angle"]
+    lowest = figures_with_arms()["lowest.crank_angle"]
     arms = (PlantingArm("Q", release=lowest - np.pi + 0.3),)
     figures = plant(two_arms(release=lowest, arms=arms))
     later = figures["arms.Q.release.x"] - figures["release.x"]
@@ -78,7 +80,7 @@ def test_hills_follow_the_instants_at_which_seedlings_are_let_go() -> None:
     assert figures["hills.smallest_distance"] == pytest.approx(min(other, row - other))
 
 
-def test_hills_of_other_units_are_not_told() -> None:
+def test_hills_of_other_units_are_not_reported() -> None:
     assert "hills.smallest_distance" not in plant(two_arms(units_per_turn=2)).figures
     still = plant(two_arms(forward_speed=0.0))
     assert "hills.smallest_distance" not in still.figures
@@ -95,9 +97,11 @@ def test_soil_acts_on_every_tip() -> None:
     machine = two_arms(soil=SOIL)
     both = eq.analyze(machine, 360).forces.frame_force.value
     dry = eq.analyze(machine.with_planting(soil=None), 360).forces.frame_force.value
-    one = eq.analyze(machine.with_planting(arms=()), 360).forces.frame_force.value - dry
-    assert np.any(one)
-    np.testing.assert_allclose(both - dry, one + np.roll(one, 180), atol=1e-12 * np.max(abs(both)))
+    first = eq.analyze(machine.with_planting(arms=()), 360).forces.frame_force.value - dry
+    assert np.any(first)
+    np.testing.assert_allclose(
+        both - dry, first + np.roll(first, 180), atol=1e-12 * np.max(abs(both))
+    )
 
 
 NOT_ALIKE = "arm 2 does not do what arm 1 does: for that gears[4] would start at "
@@ -114,20 +118,20 @@ def with_start(machine: eq.Machine, start: float, **shape: float) -> eq.Machine:
 # Arms are told their starts by the other tests of this file.
 @pytest.mark.exhaustive
 @pytest.mark.parametrize("begun", few([-45.0, 10.0], {-45.0}))
-def test_an_arm_that_only_starts_elsewhere_is_told_its_start(begun: float) -> None:
+def test_an_arm_that_only_starts_elsewhere_gets_its_start(begun: float) -> None:
     rotary = eq.load("rotary-transplanter")
     shapes = [replace(gear.shape, eccentricity=0.15) for gear in rotary.gears if gear.shape]
     gears = tuple(replace(g, shape=s) for g, s in zip(rotary.gears, shapes, strict=True))
     machine = with_start(replace(rotary, gears=gears), begun)
     deep = machine.with_planting(depth=0.15)
-    (told,) = (str(note) for note in plant(deep).notes if "does not do" in str(note))
-    start = told.removeprefix(NOT_ALIKE).removesuffix(" deg")
+    (text,) = (str(note) for note in plant(deep).notes if "does not do" in str(note))
+    start = text.removeprefix(NOT_ALIKE).removesuffix(" deg")
     alike = plant(with_start(machine, float(start)))
     assert not any("does not do" in str(note) for note in alike.notes)
     assert alike["arms.Q.curve.height"] == pytest.approx(alike["curve.height"], abs=1e-7)
 
 
-def test_an_arm_that_turns_otherwise_is_told_no_start() -> None:
+def test_an_arm_that_turns_otherwise_gets_no_start() -> None:
     machine = with_start(eq.load("rotary-transplanter"), -44.0, eccentricity=0.1)
     assert not any("does not do" in str(note) for note in plant(machine).notes)
 
@@ -140,7 +144,7 @@ def test_a_depth_that_one_arm_misses_is_refused_with_the_start_that_is_wrong() -
         plant(machine)
 
 
-def test_the_deepest_tip_tells_where_the_surface_is() -> None:
+def test_the_deepest_tip_reports_where_the_surface_is() -> None:
     machine = two_arms()
     longer = machine.with_point("planet 2", "Q", (0.06, 0.0))
     figures = plant(longer)
@@ -151,12 +155,12 @@ def test_the_deepest_tip_tells_where_the_surface_is() -> None:
 
 
 def test_as_plain_data() -> None:
-    content = found().to_dict()
+    content = figures_with_arms().to_dict()
     assert json.loads(json.dumps(content, allow_nan=False)) == content
     second = content["arms"]["Q"]
     assert (content["tip"], second["tip"], second["finger_from"]) == ("P", "Q", "E")
-    assert second["entry"]["crank_angle"] == found()["arms.Q.entry.crank_angle"]
-    assert [len(one["visits"]) for one in (content, second)] == [1, 1]
+    assert second["entry"]["crank_angle"] == figures_with_arms()["arms.Q.entry.crank_angle"]
+    assert [len(item["visits"]) for item in (content, second)] == [1, 1]
     assert "hill_spacing" in content
     assert "hill_spacing" not in second
 
@@ -165,7 +169,9 @@ def test_figures_of_many_designs_are_those_of_one() -> None:
     curve = TipCurve([two_arms(), two_arms(2.0)])
     many = machine_figures(curve)
     for name in ("hills.smallest_distance", "arms.Q.entry.crank_angle", "arms.Q.soil.time"):
-        assert many[name] == pytest.approx([found()[name], found(2.0)[name]], rel=1e-9)
+        assert many[name] == pytest.approx(
+            [figures_with_arms()[name], figures_with_arms(2.0)[name]], rel=1e-9
+        )
 
 
 def test_what_they_are_called() -> None:
@@ -175,9 +181,9 @@ def test_what_they_are_called() -> None:
 
 
 def test_it_shows_both() -> None:
-    texts = [block.text for block in found().blocks() if block.kind == "text"]
+    texts = [block.text for block in figures_with_arms().blocks() if block.kind == "text"]
     assert any(text.startswith("tip Q on planet 2, finger from E") for text in texts)
-    tables = {block.title: block for block in found().blocks() if block.kind == "table"}
+    tables = {block.title: block for block in figures_with_arms().blocks() if block.kind == "table"}
     assert sum(title.startswith("Tip Q. ") for title in tables) >= 2
     path = tables["Path of the tip"]
     assert [column.label for column in path.columns] == ["", "tip P", "tip Q"]
@@ -186,7 +192,7 @@ def test_it_shows_both() -> None:
 
 
 def test_its_table_has_columns_of_each() -> None:
-    columns = {name: values for name, _, values in table(found(), 36)}
+    columns = {name: values for name, _, values in table(figures_with_arms(), 36)}
     np.testing.assert_allclose(columns["tip Q.y"], np.roll(columns["tip.y"], -18), atol=1e-12)
 
 

@@ -67,10 +67,10 @@ def stack(name: str, wanted: Any = None) -> dict[str, Any]:
 @pytest.mark.exhaustive(but=["kim-chung-a"])
 @pytest.mark.parametrize("name", NAMES)
 def test_a_stack_of_designs_has_the_figures_of_each(name: str) -> None:
-    found = stack(name)
+    result = stack(name)
     own = {"speed", "forward_speed", "hill_spacing", "planting_frequency"}
-    assert set(found) == set(alone(name)[0].figures) - own
-    for key, values in found.items():
+    assert set(result) == set(alone(name)[0].figures) - own
+    for key, values in result.items():
         assert values.shape == (4,)
         for value, single in zip(values, alone(name), strict=True):
             if key.split(".")[-1] in TURNING:
@@ -107,10 +107,10 @@ def test_designs_that_do_not_enter_or_leave_have_no_crossings() -> None:
     assert np.isnan(entry[:2]).all()
     assert np.isnan(leave[:2]).all()
     assert apart(entry[2], plant(good)["entry.crank_angle"]) < 1e-13
-    found = tip_figures(curve, entry, leave)
-    assert np.isfinite(found["curve.height"]).all()
-    assert np.isnan(found["entry.x"][:2]).all()
-    assert found["soil.crank_travel"][2] == pytest.approx(plant(good)["soil.crank_travel"])
+    figures = tip_figures(curve, entry, leave)
+    assert np.isfinite(figures["curve.height"]).all()
+    assert np.isnan(figures["entry.x"][:2]).all()
+    assert figures["soil.crank_travel"][2] == pytest.approx(plant(good)["soil.crank_travel"])
 
 
 BOTH = ("curve", "curve.smallest_radius")
@@ -120,7 +120,7 @@ BOTH = ("curve", "curve.smallest_radius")
 @pytest.mark.parametrize("wanted", [BOTH, ("entry", "limits"), ("ratio", "soil"), ()])
 def test_only_what_is_wanted(wanted: tuple[str, ...]) -> None:
     everything, some = stack("kim-chung-a"), stack("kim-chung-a", wanted)
-    assert {name.split(".")[0] for name in some} == {one.split(".")[0] for one in wanted}
+    assert {name.split(".")[0] for name in some} == {item.split(".")[0] for item in wanted}
     assert some.keys() == {name for name in everything if name.split(".")[0] in wanted}
     for name, values in some.items():
         np.testing.assert_array_equal(values, everything[name])
@@ -163,7 +163,7 @@ KINDS = {
 
 
 @pytest.mark.parametrize(("name", "kind"), [*KINDS.items()])
-def test_a_name_tells_the_kind_of_quantity(name: str, kind: str | None) -> None:
+def test_a_name_reports_the_kind_of_quantity(name: str, kind: str | None) -> None:
     assert dimension_of(name) == kind
     assert name in alone("kim-chung-a")[0].figures
 
@@ -182,7 +182,7 @@ every_machine = pytest.mark.parametrize("name", MACHINES)
 
 
 @cache
-def found(name: str) -> PlantingFigures:
+def figures_of(name: str) -> PlantingFigures:
     return plant(MACHINES[name]())
 
 
@@ -196,7 +196,7 @@ def stay(figures: PlantingFigures) -> Array:
 @pytest.mark.exhaustive(but=["three turns", "backward", "kim-chung-a", "spinner"])
 @every_machine
 def test_travel_time_and_depth(name: str) -> None:
-    figures, theta = found(name), stay(found(name))
+    figures, theta = figures_of(name), stay(figures_of(name))
     travel = abs(theta[-1] - theta[0])
     assert figures["soil.crank_travel"] == pytest.approx(travel, abs=1e-12)
     assert figures["soil.time"] == pytest.approx(travel / abs(figures["speed"]), rel=1e-12)
@@ -206,7 +206,7 @@ def test_travel_time_and_depth(name: str) -> None:
 
 @every_machine
 def test_lengths_by_chords(name: str) -> None:
-    figures, theta = found(name), stay(found(name))
+    figures, theta = figures_of(name), stay(figures_of(name))
     machine = np.sum(np.abs(np.diff(tip_at(figures.machine, theta).place)))
     ground = over_ground(figures, theta)
     assert figures["soil.path_length_machine"] == pytest.approx(machine, rel=1e-7)
@@ -220,7 +220,7 @@ def test_lengths_by_chords(name: str) -> None:
 
 @every_machine
 def test_largest_acceleration_by_sampling(name: str) -> None:
-    figures, theta = found(name), stay(found(name))
+    figures, theta = figures_of(name), stay(figures_of(name))
     sizes = np.abs(tip_at(figures.machine, theta).acceleration_vector)
     assert sizes.max() * (1 - 1e-12) <= figures["soil.max_acceleration.value"]
     assert figures["soil.max_acceleration.value"] == pytest.approx(sizes.max(), rel=1e-7)
@@ -231,7 +231,7 @@ def test_largest_acceleration_by_sampling(name: str) -> None:
 
 
 def test_the_largest_acceleration_may_lie_where_the_tip_leaves() -> None:
-    figures = found("twice")
+    figures = figures_of("twice")
     leaving = figures["exit.acceleration.size"]
     assert figures["soil.max_acceleration.value"] == pytest.approx(leaving, rel=1e-12)
     assert leaving < figures["max_acceleration.value"] / 1.5
@@ -276,7 +276,7 @@ def test_hole_of_a_finger_that_goes_all_below() -> None:
 
 
 def test_a_machine_at_rest_has_no_ground_figures_of_the_stay() -> None:
-    moving, resting = found("kim-chung-a"), plant(MACHINES["kim-chung-a"]().with_planting(
+    moving, resting = figures_of("kim-chung-a"), plant(MACHINES["kim-chung-a"]().with_planting(
         forward_speed=0.0))  # fmt: skip
     missing = set(moving.figures) - set(resting.figures)
     assert {f"soil.{key}" for key in ("path_length_ground", "ground_advance", "ground_distance",
@@ -314,7 +314,7 @@ def test_limits_leave_the_acceleration_of_the_drive_aside() -> None:
 
 
 def test_without_limits_there_are_none() -> None:
-    assert not any(name.startswith("limits") for name in found("kim-chung-a").figures)
+    assert not any(name.startswith("limits") for name in figures_of("kim-chung-a").figures)
     only = plant(eq.load("kim-chung-a").with_planting(soil_acceleration_limit=30.0))
     assert {name for name in only.figures if name.startswith("limits")} == {
         "limits.soil_acceleration.limit",
@@ -354,15 +354,15 @@ class Clearance(NamedTuple):
 
 def clearances_from(ground: str, curve: TipCurve) -> dict[str, Clearance]:
     """Body -> its clearance from the soil or the tray."""
-    found = clearances(curve, soil_crossings(curve)[0])
+    result = clearances(curve, soil_crossings(curve)[0])
     begin, end = f"clearance.{ground}.", ".value"
     bodies = [
         name[len(begin) : -len(end)]
-        for name in found
+        for name in result
         if name.startswith(begin) and name.endswith(end)
     ]
     return {
-        body: Clearance(*(float(found[f"{begin}{body}.{key}"][0]) for key in Clearance._fields))
+        body: Clearance(*(float(result[f"{begin}{body}.{key}"][0]) for key in Clearance._fields))
         for body in bodies
     }
 
@@ -381,20 +381,20 @@ def outline(machine: eq.Machine, link: str) -> list[str]:
     return [point for point in machine.links[link].points if point != machine.planting.tip]
 
 
-def near(found: Clearance, samples: Array, value_at: Any) -> None:
+def near(result: Clearance, samples: Array, value_at: Any) -> None:
     """Compare with samples: none is smaller, and the crank angle told has the value told."""
     step = np.max(np.abs(np.diff(samples)))
-    assert found.value - 1e-13 <= samples.min() <= found.value + step
-    assert value_at(np.array([found.crank_angle]))[0] == pytest.approx(found.value, abs=1e-13)
+    assert result.value - 1e-13 <= samples.min() <= result.value + step
+    assert value_at(np.array([result.crank_angle]))[0] == pytest.approx(result.value, abs=1e-13)
 
 
 @every_field
 def test_clearance_above_the_soil(name: str) -> None:
     machine = FIELDS[name]()
     theta = np.sort(np.abs(cycle(machine)))
-    found = soil_clearances(curve_of(name))
-    assert list(found) == [link for link in machine.links if outline(machine, link)]
-    for link, clearance in found.items():
+    result = soil_clearances(curve_of(name))
+    assert list(result) == [link for link in machine.links if outline(machine, link)]
+    for link, clearance in result.items():
 
         def height(angles: Array, link: str = link) -> Any:
             points = eq.move(machine, angles).points
@@ -411,11 +411,11 @@ def test_clearance_from_the_tray(name: str) -> None:
     assert machine.planting.tray is not None
     start, stop = (complex(*end) for end in machine.planting.tray)
     theta = np.sort(np.abs(cycle(machine)))
-    found = tray_clearances(curve_of(name))
+    result = tray_clearances(curve_of(name))
     bodies = {link: outline(machine, link) for link in machine.links}
     bodies["tip P"] = ["P"]
-    assert list(found) == [body for body, points in bodies.items() if points]
-    for body, clearance in found.items():
+    assert list(result) == [body for body, points in bodies.items() if points]
+    for body, clearance in result.items():
 
         def gap(angles: Array, body: str = body) -> Any:
             motion = eq.move(machine, angles).points
@@ -451,10 +451,14 @@ def clipped(point: Any, along: Any) -> Any:
 
 
 def test_trays_are_met_and_missed() -> None:
-    values = [found.value for name in FIELDS for found in tray_clearances(curve_of(name)).values()]
+    values = [
+        result.value for name in FIELDS for result in tray_clearances(curve_of(name)).values()
+    ]
     assert min(values) == 0.0
     assert max(values) > 0.05
-    depths = [found.value for name in FIELDS for found in soil_clearances(curve_of(name)).values()]
+    depths = [
+        result.value for name in FIELDS for result in soil_clearances(curve_of(name)).values()
+    ]
     assert min(depths) < 0 < max(depths)
 
 
@@ -480,9 +484,9 @@ def test_a_link_of_which_only_the_tip_is_known_is_left_out() -> None:
 )
 def test_distance_of_two_lines(line: tuple[complex, complex], wanted: float) -> None:
     """From the line from -1 to 1."""
-    one, other = (np.array([end]) for end in line)
-    assert distance(one, other, -1 + 0j, 1 + 0j)[0] == pytest.approx(wanted, abs=1e-15)
-    assert distance(other, one, 1 + 0j, -1 + 0j)[0] == pytest.approx(wanted, abs=1e-15)
+    first, other = (np.array([end]) for end in line)
+    assert distance(first, other, -1 + 0j, 1 + 0j)[0] == pytest.approx(wanted, abs=1e-15)
+    assert distance(other, first, 1 + 0j, -1 + 0j)[0] == pytest.approx(wanted, abs=1e-15)
 
 
 CURVES: dict[str, Any] = {

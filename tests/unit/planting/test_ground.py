@@ -59,17 +59,17 @@ def test_every_crossing_by_lines_between_samples(name: str) -> None:
     count = 700 * path_of(name).curve.turns
     way, place = passes(name, count)
     a, b = place[:-1], place[1:]
-    found = []
+    actual = []
     for i in range(count):
         c, d = a[i + 2 : i + count], b[i + 2 : i + count]
         sides = [(np.conj(b[i] - a[i]) * (p - a[i])).imag > 0 for p in (c, d)]
         other = [(np.conj(d - c) * (p - c)).imag > 0 for p in (a[i], b[i])]
         hit = np.flatnonzero((sides[0] != sides[1]) & (other[0] != other[1]))
-        found += [(way[i], way[i + 2 + k]) for k in hit]
+        actual += [(way[i], way[i + 2 + k]) for k in hit]
     loops = loops_of(name)
-    assert len(loops) == len(found)
+    assert len(loops) == len(actual)
     sense, period = path_of(name).sense, path_of(name).curve.period
-    for loop, (first, second) in zip(loops, sorted(found), strict=True):
+    for loop, (first, second) in zip(loops, sorted(actual), strict=True):
         assert apart_in(period, loop.first, sense * first) < 0.02
         assert apart_in(period, loop.second, sense * second) < 0.02
         assert loop.way == pytest.approx(second - first, abs=0.03)

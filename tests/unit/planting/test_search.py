@@ -54,13 +54,13 @@ def test_mechanism_a_is_recovered_from_its_figures(
     """
     goals = [Requirement(name, target=figures_of_a[name]) for name in FIGURES_OF_A]
     fit = fit_planting(eq.load("kim-chung-b"), goals, sense="either", seed=2, population=30)
-    wanted, found = eq.load("kim-chung-a"), fit.machine
+    wanted, actual = eq.load("kim-chung-a"), fit.machine
     assert all(fit.met.values())
-    assert found.drive.speed == pytest.approx(wanted.drive.speed)
-    assert found.assembly == wanted.assembly
-    places = [(found.frame[p], wanted.frame[p]) for p in wanted.frame]
+    assert actual.drive.speed == pytest.approx(wanted.drive.speed)
+    assert actual.assembly == wanted.assembly
+    places = [(actual.frame[p], wanted.frame[p]) for p in wanted.frame]
     for link in wanted.links:
-        there, here = wanted.links[link].points, found.links[link].points
+        there, here = wanted.links[link].points, actual.links[link].points
         places += [(here[p], there[p]) for p in there]
     for got, want in places:
         assert got == pytest.approx(want, abs=1e-8)  # hundredths of a micrometre
@@ -119,26 +119,26 @@ def test_the_same_seed_gives_the_same_result() -> None:
     machine = eq.load("kim-chung-c")
     goals = [Requirement("curve.width", target=0.1), Requirement("soil.depth", at_least=0.01)]
     few = {"generations": 1, "population": 5, "vary": {"tip.x": (-0.3, -0.1), "tip.y": (-0.2, 0)}}
-    one, two, other = (fit_planting(machine, goals, seed=seed, **few) for seed in (3, 3, 4))
-    assert one.machine == two.machine
-    assert one.judged == two.judged
-    assert one.machine != other.machine
+    first, two, other = (fit_planting(machine, goals, seed=seed, **few) for seed in (3, 3, 4))
+    assert first.machine == two.machine
+    assert first.judged == two.judged
+    assert first.machine != other.machine
 
 
-def told_of(fit: Fit) -> str:
+def notes_of(fit: Fit) -> str:
     """Its notes."""
-    found = [one.notes for one in fit_blocks(fit) if isinstance(one, Notes)]
-    return " ".join(str(note) for notes in found for note in notes)
+    actual = [block.notes for block in fit_blocks(fit) if isinstance(block, Notes)]
+    return " ".join(str(note) for notes in actual for note in notes)
 
 
-def test_what_is_as_small_as_was_found_is_not_called_proved() -> None:
+def test_what_is_as_small_as_resulted_is_not_called_proved() -> None:
     goals, vary = [Requirement("curve.height", make="smallest")], {"tip.x": (-0.2, -0.1)}
     fit = fit_planting(eq.load("kim-chung-a"), goals, vary, generations=2, population=6)
     assert (fit.to_dict()["solver"], fit.to_dict()["proved"]) == ("differential evolution", False)
-    assert "the optimum is not proved" in told_of(fit)
+    assert "the optimum is not proved" in notes_of(fit)
 
 
-# What is called proved: `test_what_is_as_small_as_was_found_is_not_called_proved`.
+# What is called proved: `test_what_is_as_small_as_resulted_is_not_called_proved`.
 @pytest.mark.exhaustive
 def test_a_design_that_meets_every_target_is_proved() -> None:
     """By the figures of the new machine itself; a target out of reach is not met."""
@@ -150,7 +150,7 @@ def test_a_design_that_meets_every_target_is_proved() -> None:
     for name, value in wanted.items():
         assert figures[name] == pytest.approx(value, rel=1e-8)
     assert fit.to_dict()["proved"] is True
-    assert "the optimum is not proved" not in told_of(fit)
+    assert "the optimum is not proved" not in notes_of(fit)
     few = {"generations": 2, "population": 6}
     far = fit_planting(machine, [Requirement("curve.width", target=9.0)], **few)
     assert far.to_dict()["proved"] is False
@@ -158,8 +158,8 @@ def test_a_design_that_meets_every_target_is_proved() -> None:
 
 # Progress of searches: tests/unit/studies and tests/unit/handheld.
 @pytest.mark.exhaustive
-def test_progress_is_told() -> None:
-    told: list[tuple[int, int, float]] = []
+def test_progress_is_reported() -> None:
+    texts: list[tuple[int, int, float]] = []
     goals = [Requirement("curve.width", target=0.1, tolerance=1e-9)]
     fit_planting(
         eq.load("kim-chung-c"),
@@ -167,11 +167,11 @@ def test_progress_is_told() -> None:
         vary={"tip.x": (-0.5, 0.5)},
         generations=6,
         population=8,
-        progress=lambda *values: told.append(values),
+        progress=lambda *values: texts.append(values),
     )
-    assert [generation for generation, _, _ in told] == list(range(1, len(told) + 1))
-    assert {most for _, most, _ in told} == {6}
-    costs = [cost for _, _, cost in told]
+    assert [generation for generation, _, _ in texts] == list(range(1, len(texts) + 1))
+    assert {most for _, most, _ in texts} == {6}
+    costs = [cost for _, _, cost in texts]
     assert costs == sorted(costs, reverse=True)
 
 
@@ -189,13 +189,13 @@ def test_only_what_may_vary_varies() -> None:
     vary = {"crank": (0.03, 0.04), "tip.y": (-0.2, 0.0)}
     goals = [Requirement("curve.height", target=0.26)]
     fit = fit_planting(eq.load("kim-chung-a"), goals, vary, generations=20, population=20)
-    start, found = eq.load("kim-chung-a"), fit.machine
+    start, actual = eq.load("kim-chung-a"), fit.machine
     assert fit.met == {"curve.height": True}
-    assert found.frame == start.frame
-    assert found.links["rocker"] == start.links["rocker"]
-    assert found.links["coupler"].points["C"] == start.links["coupler"].points["C"]
-    assert found.links["coupler"].points["P"][0] == start.links["coupler"].points["P"][0]
-    assert 0.03 <= found.links["crank"].points["B"][0] <= 0.04
+    assert actual.frame == start.frame
+    assert actual.links["rocker"] == start.links["rocker"]
+    assert actual.links["coupler"].points["C"] == start.links["coupler"].points["C"]
+    assert actual.links["coupler"].points["P"][0] == start.links["coupler"].points["P"][0]
+    assert 0.03 <= actual.links["crank"].points["B"][0] <= 0.04
     assert set(fit.values) == set(vary)
 
 
@@ -235,7 +235,7 @@ def test_gears_on_other_links_are_refused() -> None:
 
 # Arms on every change: `test_arms_stay_alike_whatever_the_shape_of_their_gears`.
 @EXHAUSTIVE
-def test_arms_on_gears_are_found_again() -> None:
+def test_arms_on_gears_are_recovered() -> None:
     """Of two arms that are alike the tips move together, and phases of gears turn together."""
     wanted = two_arms()
     figures = eq.plant(wanted)
@@ -283,8 +283,8 @@ def test_shaking_is_kept_small() -> None:
     assert fit.after.get("shaking_moment.rms") == pytest.approx(np.sqrt(np.mean(moment**2)))
     assert fit.after.get("drive_torque.rms") == pytest.approx(np.sqrt(np.mean(torque**2)))
     assert fit.before.get("shaking_force.rms") > 2 * fit.after.get("shaking_force.rms")
-    told = fit.to_dict()["goals"][0]
-    assert told["after"] == fit.after.get("shaking_force.rms") < told["before"]
+    content = fit.to_dict()["goals"][0]
+    assert content["after"] == fit.after.get("shaking_force.rms") < content["before"]
 
 
 def test_no_design_that_plants() -> None:
@@ -379,12 +379,12 @@ def test_an_arm_that_is_varied_alone_goes_its_own_way() -> None:
     vary = {ECCENTRICITY: (0.0, 0.4), "gears[4].start": (-1.0, 0.0)}
     designs = Designs(eq.load("rotary-transplanter"), vary)
     assert designs.build([0.2, -0.5]).gears[3].start == -0.5
-    names = [one.path for one in Designs(designs.machine).variables]
+    names = [variable.path for variable in Designs(designs.machine).variables]
     assert names == ["tip.x", "tip.y", ECCENTRICITY]
 
 
 @EXHAUSTIVE
-def test_the_eccentricity_of_gears_is_found_again() -> None:
+def test_the_eccentricity_of_gears_is_recovered() -> None:
     wanted = eq.load("rotary-transplanter")
     start = Designs(wanted, {ECCENTRICITY: (0.0, 0.4)}).build([0.1])
     goals = [Requirement("curve.height", target=eq.plant(wanted)["curve.height"])]
@@ -415,7 +415,7 @@ def test_gears_of_any_shape_can_be_judged(kind: str) -> None:
     """A table is scaled so that its curves close, whatever a number of it becomes."""
     given, name, limits = FREE[kind]
     rotary = eq.load("rotary-transplanter")
-    bodies = {FRAME: rotary.frame, **{one: link.points for one, link in rotary.links.items()}}
+    bodies = {FRAME: rotary.frame, **{key: link.points for key, link in rotary.links.items()}}
     gears = [
         closed(replace(gear, shape=GearShape(kind, phase=gear.shape.phase, **given)), bodies)
         for gear in rotary.gears

@@ -42,7 +42,7 @@ MACHINES = {
 STAYS = [1, 1, 1, 1, 1, 2, 2, 1, 2, 3, 3, 2]
 
 
-def found(machine: eq.Machine) -> tuple[Visit, ...]:
+def visits_of(machine: eq.Machine) -> tuple[Visit, ...]:
     return visits(TipCurve([machine]))
 
 
@@ -63,7 +63,7 @@ def by_sampling(machine: eq.Machine) -> tuple[float, list[tuple[float, float]]]:
 def test_every_stay_by_sampling(name: str, count: int) -> None:
     machine = MACHINES[name]
     period, wanted = by_sampling(machine)
-    got = found(machine)
+    got = visits_of(machine)
     assert len(got) == len(wanted) == count
     step = TURN / 20_000
     for visit in got:
@@ -79,7 +79,7 @@ def test_ends_lie_on_the_surface_and_the_deepest_point_between(name: str) -> Non
     sense = np.sign(machine.drive.speed)
     level = TipCurve([machine]).surface[0]
     depths = []
-    for visit in found(machine):
+    for visit in visits_of(machine):
         ends = tip_at(machine, [visit.entry, visit.exit])
         np.testing.assert_allclose(ends.y, level, atol=1e-14)
         assert ends.vy[0] < 0 < ends.vy[1]
@@ -105,7 +105,7 @@ def period_of(machine: eq.Machine, inside: Array, visit: Visit) -> Any:
 def test_a_shallow_stay_is_not_missed(name: str, depth: float) -> None:
     """About its bottom the path is a parabola: half the travel is the root of twice the depth."""
     machine = eq.load(name).with_planting(depth=depth)
-    (visit,) = found(machine)
+    (visit,) = visits_of(machine)
     half = np.sqrt(2 * depth / tip_at(machine, visit.deepest).place_2.imag[0])
     assert visit.depth == pytest.approx(depth, rel=1e-6)
     assert abs(visit.exit - visit.entry) == pytest.approx(2 * half, rel=0.02)
@@ -114,7 +114,7 @@ def test_a_shallow_stay_is_not_missed(name: str, depth: float) -> None:
 def test_a_stay_may_pass_crank_angle_0() -> None:
     """The tip on the crank lies lowest at crank angle 0."""
     for speed, side in ((10.0, -1), (-10.0, 1)):
-        (visit,) = found(spinner(speed, at=-np.pi / 2))
+        (visit,) = visits_of(spinner(speed, at=-np.pi / 2))
         half = np.arccos(0.6)
         assert apart(visit.entry, side * half) < 1e-14
         assert apart(visit.exit, -side * half) < 1e-14
@@ -128,7 +128,7 @@ def test_an_end_of_a_stay_at_crank_angle_0(surface: float, speed: float) -> None
     half = np.arccos(-surface / 0.1)
     for side in (half, -half):
         machine = spinner(speed, at=-np.pi / 2 - side, depth=None, surface=surface)
-        (visit,) = found(machine)
+        (visit,) = visits_of(machine)
         assert abs(visit.exit - visit.entry) == pytest.approx(2 * half, abs=1e-12)
         assert min(apart(visit.entry, 0.0), apart(visit.exit, 0.0)) < 1e-12
 

@@ -42,7 +42,7 @@ PROMISED = {
 
 
 @cache
-def found(name: str) -> PlantingFigures:
+def figures_of(name: str) -> PlantingFigures:
     return plant(eq.load(name))
 
 
@@ -57,7 +57,7 @@ def at(content: dict[str, Any], name: str) -> Any:
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_promised_fields(name: str) -> None:
-    content = found(name).to_dict()
+    content = figures_of(name).to_dict()
     for field in PROMISED:
         assert isinstance(at(content, field), float), field
 
@@ -65,7 +65,7 @@ def test_promised_fields(name: str) -> None:
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_every_figure_stands_in_the_output(name: str) -> None:
     """And all of it is JSON: numbers, text, lists."""
-    figures = found(name)
+    figures = figures_of(name)
     content = figures.to_dict()
     assert json.loads(json.dumps(content, allow_nan=False)) == content
     for field, value in figures.figures.items():
@@ -82,7 +82,7 @@ def test_every_figure_stands_in_the_output(name: str) -> None:
 
 def test_a_name_that_is_none_is_met_with_one_that_is() -> None:
     with pytest.raises(KeyError, match=r"no figure is called 'curve.hight'; did you mean"):
-        found("kim-chung-a")["curve.hight"]
+        figures_of("kim-chung-a")["curve.hight"]
 
 
 def test_links_may_be_called_anything() -> None:
@@ -91,7 +91,7 @@ def test_links_may_be_called_anything() -> None:
     names = {"crank": "crank", "coupler": "rocker.min", "rocker": "rocker"}
     links = {names[name]: link for name, link in machine.links.items()}
     content = plant(replace(machine, links=links)).to_dict()
-    wanted = found("kim-chung-a")
+    wanted = figures_of("kim-chung-a")
     assert content["ratio"]["rocker.min"]["min"] == wanted["ratio.coupler.min"]
     assert content["ratio"]["rocker"]["min"] == wanted["ratio.rocker.min"]
     assert content["clearance"]["soil"]["rocker.min"]["value"] > 0
@@ -108,7 +108,7 @@ def test_lists_of_crank_angles_in_the_output() -> None:
 
 
 def test_figures_of_the_drive() -> None:
-    figures = found("kim-chung-b")
+    figures = figures_of("kim-chung-b")
     assert figures["speed"] == pytest.approx(-8 * np.pi)
     assert figures["forward_speed"] == 0.6
     assert figures["hill_spacing"] == pytest.approx(0.15)
@@ -136,12 +136,12 @@ def test_another_speed_is_that_of_another_machine() -> None:
 ASSUMED = "the finger is taken from B to P; finger_from can name another"
 
 
-def test_a_finger_that_is_assumed_is_told() -> None:
-    assert tuple(map(str, found("kim-chung-a").notes)) == (ASSUMED,)
+def test_a_finger_that_is_assumed_is_reported() -> None:
+    assert tuple(map(str, figures_of("kim-chung-a").notes)) == (ASSUMED,)
     assert plant(eq.load("kim-chung-a").with_planting(finger_from="B")).notes == ()
 
 
-def test_several_stays_are_told() -> None:
+def test_several_stays_are_reported() -> None:
     figures = plant(twice(finger_from="B"))
     assert tuple(map(str, figures.notes)) == (
         "the tip is in the soil 2 times a cycle; entry, exit and lowest point are those of the "
@@ -154,7 +154,7 @@ def test_several_stays_are_told() -> None:
     assert figures["lowest.crank_angle"] == pytest.approx(deepest.deepest)
 
 
-def test_a_machine_at_rest_is_told_and_has_no_figures_over_ground() -> None:
+def test_a_machine_at_rest_is_reported_and_has_no_figures_over_ground() -> None:
     figures = plant(eq.load("kim-chung-a").with_planting(forward_speed=0.0))
     assert tuple(map(str, figures.notes)) == (
         "forward_speed is 0: there is no path over ground, and the figures of that path are "
@@ -163,7 +163,7 @@ def test_a_machine_at_rest_is_told_and_has_no_figures_over_ground() -> None:
     )
     assert figures.loops == ()
     assert figures.cusps == ()
-    left = set(found("kim-chung-a").figures) - set(figures.figures)
+    left = set(figures_of("kim-chung-a").figures) - set(figures.figures)
     assert {"soil.path_length_ground", "soil.ground_distance", "soil.hole_length"} < left
     json.dumps(figures.to_dict(), allow_nan=False)
 
@@ -224,32 +224,32 @@ SOIL = Soil(resistance=5.0, per_depth=400.0)
 @pytest.mark.parametrize("name", [*EXAMPLES, "three turns"])
 def test_both_are_what_an_analysis_finds(name: str) -> None:
     machine = planetary(depth=0.05) if name == "three turns" else eq.load(name)
-    found = soil_forces(machine.with_planting(soil=SOIL))
-    assert found is not None
+    forces = soil_forces(machine.with_planting(soil=SOIL))
+    assert forces is not None
     wet = eq.analyze(machine.with_planting(soil=SOIL), 720).resolved.forces
-    dry = eq.analyze(machine, found.motion.crank_angle).forces
-    for got, want in ((found.in_soil, wet), (found.in_air, dry)):
+    dry = eq.analyze(machine, forces.motion.crank_angle).forces
+    for got, want in ((forces.in_soil, wet), (forces.in_air, dry)):
         np.testing.assert_allclose(got.drive_torque, want.drive_torque, rtol=1e-12, atol=1e-12)
         for joint in want.joints:
             np.testing.assert_allclose(got.joints[joint].value, want.joints[joint].value,
                                        rtol=1e-12, atol=1e-10)  # fmt: skip
     assert np.max(np.abs(wet.drive_torque - dry.drive_torque)) > 0.1
-    np.testing.assert_array_equal(found.motion.crank_angle, wet.motion.crank_angle)
+    np.testing.assert_array_equal(forces.motion.crank_angle, wet.motion.crank_angle)
 
 
 def test_figures_of_torque_and_joints() -> None:
     machine = eq.load("kim-chung-b").with_planting(soil=SOIL)
-    found = soil_forces(machine)
-    assert found is not None
-    compared = found.compared()
+    result = soil_forces(machine)
+    assert result is not None
+    compared = result.compared()
     assert list(compared) == ["drive_torque", "joints.A", "joints.B", "joints.D", "joints.C"]
     for name, (air, soil) in compared.items():
-        for figures, forces in ((air, found.in_air), (soil, found.in_soil)):
+        for figures, forces in ((air, result.in_air), (soil, result.in_soil)):
             values = forces.drive_torque if name == "drive_torque" else (
                 forces.joints[name.removeprefix("joints.")].size
             )  # fmt: skip
-            mean = np.sum(values * found.motion.shares)
-            theta, values = found.motion.shown(values)
+            mean = np.sum(values * result.motion.shares)
+            theta, values = result.motion.shown(values)
             k = int(np.argmax(np.abs(values)))
             assert abs(values[k]) <= figures.peak <= abs(values[k]) * (1 + 1e-4)  # between samples
             assert figures.peak_at == pytest.approx(theta[k], abs=2 * np.pi / len(theta))
@@ -259,12 +259,12 @@ def test_figures_of_torque_and_joints() -> None:
 def test_loads_of_the_machine_act_in_air_and_in_soil() -> None:
     machine = eq.load("kim-chung-a").with_planting(soil=SOIL)
     loaded = replace(machine, loads=(eq.Load("crank", torque=-1.0),))
-    found = soil_forces(loaded)
+    forces = soil_forces(loaded)
     bare = soil_forces(machine)
-    assert found is not None
+    assert forces is not None
     assert bare is not None
-    np.testing.assert_allclose(found.in_air.drive_torque, bare.in_air.drive_torque + 1)
-    np.testing.assert_allclose(found.in_soil.drive_torque, bare.in_soil.drive_torque + 1)
+    np.testing.assert_allclose(forces.in_air.drive_torque, bare.in_air.drive_torque + 1)
+    np.testing.assert_allclose(forces.in_soil.drive_torque, bare.in_soil.drive_torque + 1)
 
 
 def test_no_soil_or_masses_no_forces() -> None:

@@ -58,8 +58,8 @@ def document(name: str, language: str = "en", speed: float | None = None) -> Rep
     return report_of(name, language) if speed is None else build(find(name, speed=speed), language)
 
 
-def drawn_of(told: ReportDocument) -> dict[str, SvgPicture]:
-    both = (*told.sections, *told.appendix)
+def drawn_of(text: ReportDocument) -> dict[str, SvgPicture]:
+    both = (*text.sections, *text.appendix)
     blocks = [block for section in both for block in section.blocks]
     return {block.name: block for block in blocks if isinstance(block, SvgPicture)}
 
@@ -67,7 +67,7 @@ def drawn_of(told: ReportDocument) -> dict[str, SvgPicture]:
 def test_the_share_of_an_order_is_that_of_the_force() -> None:
     analysis = eq.analyze(eq.load("yamashita-1"), 720)
     parts = (analysis.by_order[f"shaking_force.{axis}"] for axis in "xy")
-    squares = np.sum([one.sizes**2 for one in parts], axis=0)
+    squares = np.sum([part.sizes**2 for part in parts], axis=0)
     share = squares[1] / np.sum(squares[1:])
     seen = drawn_of(document("yamashita-1"))["spectrum"].headline
     assert seen == f"{100 * share:.0f} % of the shaking force is order 1"
@@ -87,22 +87,27 @@ def test_lines_are_of_this_machine_at_this_speed() -> None:
     assert slow["forces"] != fast["forces"] and slow["motion"] == fast["motion"]
     assert "70.9 N" in slow["joints"]
     assert slow["balance"] == "Shaking force, RMS: -41.0 %"
-    (still,) = (one.headline for one in document("class-three").sections if one.name == "balance")
+    (still,) = (
+        item.headline for item in document("class-three").sections if item.name == "balance"
+    )
     assert still == "Shaking force, RMS: leave the masses as they are"
 
 
 @pytest.mark.parametrize(
     ("name", "length"), [("hydraulic-loader", "in a cycle"), ("four-stroke-engine", "in a turn")]
 )
-def test_a_turn_is_told_only_where_a_crank_turns(name: str, length: str) -> None:
+def test_a_turn_is_reported_only_where_a_crank_turns(name: str, length: str) -> None:
     """Of a cylinder's stroke the way of a whole cycle is told, there and back."""
     analysis = eq.analyze(eq.load(name), 72)
-    told, places = longest(analysis), [one.place for one in analysis.motion.points.values()]
+    text, places = longest(analysis), [point.place for point in analysis.motion.points.values()]
     way = max(float(np.sum(np.abs(place - np.roll(place, 1)))) for place in places)
     turns = analysis.motion.turns if length == "in a turn" else 1
-    (size,) = re.findall(rf"([\d.]+) mm {length}", told)
+    (size,) = re.findall(rf"([\d.]+) mm {length}", text)
     assert float(size) == pytest.approx(way / turns * 1e3, rel=5e-3)
-    lines = [crank_angles_text(analysis), *(str(one) for one in machine_blocks(analysis.machine))]
+    lines = [
+        crank_angles_text(analysis),
+        *(str(block) for block in machine_blocks(analysis.machine)),
+    ]
     assert any(" turn" in line for line in lines) == (length == "in a turn")
 
 
@@ -115,8 +120,8 @@ def test_what_is_alike_everywhere_has_no_place_of_its_own() -> None:
     assert fastest(analysis) == "No point moves faster than 1.05 m/s"
     assert longest(analysis).startswith("No point goes farther than 314 mm")
     assert heaviest(analysis) == ""
-    told = str([*analysis.blocks()])
-    assert "carry it through" in told and "may flip" not in told and "rocker is" not in told
+    text = str([*analysis.blocks()])
+    assert "carry it through" in text and "may flip" not in text and "rocker is" not in text
 
 
 @pytest.mark.parametrize(
@@ -132,7 +137,9 @@ def test_titles_name_no_column_that_is_not_there() -> None:
     """A cylinder's rockers have a dwell and no advantage over a crank's torque."""
     for name, there in (("hydraulic-loader", False), ("quick-return", True)):
         blocks = eq.analyze(eq.load(name), 72).blocks()
-        (title,) = (one.title for one in blocks if isinstance(one, Table) and "dwell" in one.title)
+        (title,) = (
+            block.title for block in blocks if isinstance(block, Table) and "dwell" in block.title
+        )
         assert ("mechanical advantage" in title) is there
 
 
@@ -143,8 +150,11 @@ def test_a_gauge_without_motion_brings_no_orders_of_its_own() -> None:
         replace(row, phase=phase)
         for row, phase in zip(machine.rows, (0, np.pi, np.pi, 0), strict=True)
     ]
-    (table,) = (one for one in eq.respond(replace(machine, rows=tuple(rows))).blocks()
-                if isinstance(one, Table) and one.title.startswith("Gauges by order"))  # fmt: skip
+    (table,) = (
+        block
+        for block in eq.respond(replace(machine, rows=tuple(rows))).blocks()
+        if isinstance(block, Table) and block.title.startswith("Gauges by order")
+    )
     shown = grid(table)
     for place in range(1, len(shown.heads)):
         assert {row[place].text for row in shown.rows} > {"0"}, shown.heads[place].label
@@ -152,11 +162,11 @@ def test_a_gauge_without_motion_brings_no_orders_of_its_own() -> None:
 
 def test_drives_that_only_swing_have_no_speed_in_rpm() -> None:
     """Their cranks go to and fro so many times a minute, in sentences and on all pictures."""
-    told = findings_of("pick-and-place")
-    assert isinstance(told, Findings)
-    with in_own_words(told.owner):
-        texts = [picture.chart.what for picture in each(told)]
-        blocks = told.analysis.headline(alone=True)
+    findings = findings_of("pick-and-place")
+    assert isinstance(findings, Findings)
+    with in_own_words(findings.owner):
+        texts = [picture.chart.what for picture in each(findings)]
+        blocks = findings.analysis.headline(alone=True)
         texts += [block.text for block in blocks if isinstance(block, Text)]
     assert not [text for text in texts if "rpm" in text or "rad/s" in text]
     assert len([text for text in texts if "60 cycles a minute" in text]) > 5
@@ -173,22 +183,22 @@ def test_drives_that_only_swing_have_no_speed_in_rpm() -> None:
     ],
 )
 def test_a_caption_does_not_repeat_its_title(name: str, language: str) -> None:
-    told = document(name, language)
-    drawn = drawn_of(told)
+    reported = document(name, language)
+    drawn = drawn_of(reported)
     assert drawn
     for block in drawn.values():
         assert block.caption and not (block.headline and block.headline in block.caption)
         assert not block.headline.endswith((".", "。", ":", "："))
     seen = [block.headline for block in drawn.values() if block.headline]
-    seen += [section.headline for section in told.sections if section.headline]
+    seen += [section.headline for section in reported.sections if section.headline]
     assert len(seen) > len(drawn) / 2
 
 
 def test_the_name_of_the_machine_stands_above_the_report_and_on_no_picture() -> None:
-    told = document("yamashita-rig")
-    assert all(told.title not in block.svg for block in drawn_of(told).values())
-    html = page(replace(told, animation="", appendix=()))
-    assert html.count(told.title) == 2  # of the page, and above it
+    reported = document("yamashita-rig")
+    assert all(reported.title not in block.svg for block in drawn_of(reported).values())
+    html = page(replace(reported, animation="", appendix=()))
+    assert html.count(reported.title) == 2  # of the page, and above it
 
 
 def shape(name: str, wide: bool) -> SvgPicture:
@@ -197,7 +207,7 @@ def shape(name: str, wide: bool) -> SvgPicture:
 
 def test_pictures_stand_in_pairs() -> None:
     drawn = [shape(name, name.isupper()) for name in "aBcDefg"]
-    rows = ["".join(one.name for one in row) for row in paired(drawn)]
+    rows = ["".join(item.name for item in row) for row in paired(drawn)]
     assert rows == ["B", "ac", "D", "ef", "g"]
     assert paired([]) == []
 
@@ -206,34 +216,34 @@ def test_pictures_stand_in_pairs() -> None:
     "name", few(["yamashita-1", "brush-cutter", "cam-pusher"], {"yamashita-1", "brush-cutter"})
 )
 def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
-    found, told = findings_of(name), document(name)
-    in_sections = [b for s in told.sections for b in s.blocks if isinstance(b, Table)]
-    behind = [b for s in told.appendix for b in s.blocks if isinstance(b, Table)]
+    actual, text = findings_of(name), document(name)
+    in_sections = [b for s in text.sections for b in s.blocks if isinstance(b, Table)]
+    behind = [b for s in text.appendix for b in s.blocks if isinstance(b, Table)]
     assert all(len(table.rows) <= SHORT for table in in_sections)
     assert behind and all(len(table.rows) > SHORT or table.detail for table in behind)
-    html = page(told)
-    assert html.count("<details>") == len(told.appendix)
+    html = page(text)
+    assert html.count("<details>") == len(text.appendix)
     assert html.count("<table") >= len([*in_sections, *behind])
-    if isinstance(found, Findings):
+    if isinstance(actual, Findings):
         titles = {table.title for table in (*in_sections, *behind)}
-        results = (found.analysis, *([found.balanced] if found.helped else []))
-        wanted = [b.title for one in results for b in one.blocks() if isinstance(b, Table)]
+        results = (actual.analysis, *([actual.balanced] if actual.helped else []))
+        wanted = [b.title for result in results for b in result.blocks() if isinstance(b, Table)]
         assert wanted and set(wanted) <= titles
 
 
 @pytest.mark.exhaustive(but=["yamashita-rig", "brush-cutter"])
 @pytest.mark.parametrize("name", ["yamashita-rig", "brush-cutter", "straw-walker"])
 def test_details_stand_in_the_appendix_and_no_picture_is_lost(name: str) -> None:
-    told = document(name)
+    reported = document(name)
     first, behind = (
         [b.name for s in part for b in s.blocks if isinstance(b, SvgPicture)]
-        for part in (told.sections, told.appendix)
+        for part in (reported.sections, reported.appendix)
     )
     assert len(first) <= len(behind) + 1
-    assert sorted([*first, *behind]) == sorted(one.name for one in each(findings_of(name)))
+    assert sorted([*first, *behind]) == sorted(item.name for item in each(findings_of(name)))
     later = ("mode", "balanced", "hodograph", "joint", "resonance-map")
-    assert not [one for one in first if one.startswith(later)]
-    tried = [b.title for s in told.sections for b in s.blocks if isinstance(b, Table)]
+    assert not [item for item in first if item.startswith(later)]
+    tried = [b.title for s in reported.sections for b in s.blocks if isinstance(b, Table)]
     assert not [title for title in tried if title.startswith("Candidates for reducing")]
 
 
@@ -243,14 +253,14 @@ def test_details_stand_in_the_appendix_and_no_picture_is_lost(name: str) -> None
 )
 def test_a_report_is_read_on_a_few_pictures(name: str, most: int) -> None:
     """Of each part those that show what its line says; a part without one has its line alone."""
-    told = document(name)
-    shown = [b for s in told.sections for b in s.blocks if isinstance(b, SvgPicture)]
-    assert len(told.without_drawing(shown)) <= most
-    assert [*dict.fromkeys(s.name for s in told.sections)][:4] == [
+    reported = document(name)
+    shown = [b for s in reported.sections for b in s.blocks if isinstance(b, SvgPicture)]
+    assert len(reported.without_drawing(shown)) <= most
+    assert [*dict.fromkeys(s.name for s in reported.sections)][:4] == [
         *("model", "motion", "forces", "joints"),
     ]
-    (joints,) = (s for s in told.sections if s.name == "joints")
-    assert joints.headline and told.appendix_contents("joints").startswith(
+    (joints,) = (s for s in reported.sections if s.name == "joints")
+    assert joints.headline and reported.appendix_contents("joints").startswith(
         "Pictures in the appendix: "
     )
 
@@ -316,9 +326,9 @@ def pages_of(labels: dict[str, int], *source: str) -> dict[str, list[int]]:
 #context [#metadata(({every}).map(what => query(what).map(page_of))) <pages>]"""
     text = "\n".join((style, *source, where))
     asked = typst.query(text.encode(), "<pages>", field="value", one=True)
-    found = dict(zip(labels, json.loads(asked), strict=True))
-    assert {label: len(pages) for label, pages in found.items()} == labels
-    return found
+    values = dict(zip(labels, json.loads(asked), strict=True))
+    assert {label: len(pages) for label, pages in values.items()} == labels
+    return values
 
 
 @pytest.mark.parametrize("heading", ['#topic("Part")\n= Name', "= Name", "== Name"])
@@ -440,10 +450,10 @@ def test_pictures_of_half_the_width_fill_both_columns_of_a_page() -> None:
 
 def test_no_part_of_the_appendix_is_a_heading_alone() -> None:
     """Its only picture may be the drawing that the first page has."""
-    told = document("hydraulic-loader")
-    bare = [part for part in told.appendix if not told.without_drawing(part.blocks)]
+    reported = document("hydraulic-loader")
+    bare = [part for part in reported.appendix if not reported.without_drawing(part.blocks)]
     assert [part.name for part in bare] == ["model"]
-    appendix = composed._source(told).rpartition("\n= #")[2]
+    appendix = composed._source(reported).rpartition("\n= #")[2]
     titles = re.findall(r"== #(.*)\]\),\n", appendix)
     assert composed._text("Model") not in titles and composed._text("Motion") in titles
 
@@ -459,14 +469,16 @@ def test_letters_of_pictures_can_be_read_on_paper(name: str) -> None:
 
 
 def test_whether_a_limit_is_met_after_the_change_is_said() -> None:
-    found = findings_of("brush-cutter")
-    assert isinstance(found, ToolFindings) and found.exposure_after is not None
-    later = found.exposure_after.a8
-    told = " ".join(one for answer in document("brush-cutter").summary for one in answer.sentences)
-    assert f"A(8) then amounts to {brief(later)} m/s² at " in told
-    verdict = told.partition("A(8) then amounts to ")[2]
+    findings = findings_of("brush-cutter")
+    assert isinstance(findings, ToolFindings) and findings.exposure_after is not None
+    later = findings.exposure_after.a8
+    text = " ".join(
+        sentence for answer in document("brush-cutter").summary for sentence in answer.sentences
+    )
+    assert f"A(8) then amounts to {brief(later)} m/s² at " in text
+    verdict = text.partition("A(8) then amounts to ")[2]
     assert ("above the limit value" in verdict) == (later > 5)
-    tile = next(one for one in document("brush-cutter").tiles if one.label.endswith("A(8)"))
+    tile = next(item for item in document("brush-cutter").tiles if item.label.endswith("A(8)"))
     assert tile.after == brief(later)
 
 
@@ -474,9 +486,9 @@ def test_a_time_is_the_same_wherever_it_stands() -> None:
     """A time until a limit is rounded down to minutes everywhere."""
     html = page(document("brush-cutter"))
     assert {*re.findall(r"after ([\d.]+)\s*min", html.replace("\xa0", " "))} == {"31"}
-    found = findings_of("brush-cutter")
-    assert isinstance(found, ToolFindings) and found.exposure is not None
-    printed = [str(block) for block in found.exposure.headline(False)]
+    findings = findings_of("brush-cutter")
+    assert isinstance(findings, ToolFindings) and findings.exposure is not None
+    printed = [str(block) for block in findings.exposure.headline(False)]
     assert not [text for text in printed if re.search(r"\d\.\d+ h", text)]
     assert any("action value after 31 min, the limit value after 2 h 7 min" in t for t in printed)
 
@@ -484,23 +496,23 @@ def test_a_time_is_the_same_wherever_it_stands() -> None:
 @pytest.mark.exhaustive(but=["yamashita-1"])
 @pytest.mark.parametrize("name", ["yamashita-1", "stephenson-six-bar"])
 def test_what_the_summary_says_is_not_said_again(name: str) -> None:
-    told = document(name)
-    summary = {sentence for answer in told.summary for sentence in answer.sentences}
-    texts = [b.text for s in told.sections for b in s.blocks if isinstance(b, Text)]
-    assert any(one.startswith("Large here: ") for one in summary)
+    reported = document(name)
+    summary = {sentence for answer in reported.summary for sentence in answer.sentences}
+    texts = [b.text for s in reported.sections for b in s.blocks if isinstance(b, Text)]
+    assert any(item.startswith("Large here: ") for item in summary)
     assert summary.isdisjoint(texts)
-    assert told.verdict is not None  # nor is what stands above the summary
-    assert not [one for one in (*summary, *texts) if told.verdict.text in one]
+    assert reported.verdict is not None  # nor is what stands above the summary
+    assert not [item for item in (*summary, *texts) if reported.verdict.text in item]
 
 
 # Pictures before and after: tests/unit/figures/test_balance_charts.py.
 @pytest.mark.exhaustive
-def test_what_helps_is_told_before_and_after_at_once() -> None:
-    found = findings_of("kim-chung-c")
-    assert isinstance(found, Findings) and found.after is not None
+def test_what_helps_is_reported_before_and_after_at_once() -> None:
+    findings = findings_of("kim-chung-c")
+    assert isinstance(findings, Findings) and findings.after is not None
     shown = {tile.label: tile for tile in document("kim-chung-c").tiles}
     peak = shown["shaking force, peak"]
-    later = found.after.analysis.summary["shaking_force"].peak
+    later = findings.after.analysis.summary["shaking_force"].peak
     assert (peak.value, peak.after) == ("11.5", f"{later:.2f}")
     assert shown["shaking moment, peak"].after == ""  # is the same about the crank's pivot
 
@@ -551,17 +563,17 @@ def test_eastern_letters_are_of_a_font_that_has_them(language: str) -> None:
 
 @pytest.mark.exhaustive(but=["ko", "en"])
 @pytest.mark.parametrize("language", COMPLETE)
-def test_names_of_the_file_are_told_from_words(language: str) -> None:
+def test_names_of_the_file_are_distinguished_from_words(language: str) -> None:
     seen = drawn_of(document("yamashita-rig", language))["gauge-gauge"].headline
     assert {"en": "“gauge”", "de": "„gauge“", "ja": "「gauge」", "ko": "‘gauge’"}[language] in seen
 
 
 def test_what_the_hands_get_is_called_by_words() -> None:
-    told = document("brush-cutter", "ja")
-    assert "合成値" in drawn_of(told)["exposure"].svg
+    reported = document("brush-cutter", "ja")
+    assert "合成値" in drawn_of(reported)["exposure"].svg
     summary = document("yamashita-rig").summary
-    sentences = [one for answer in summary for one in answer.sentences]
-    assert any(one.startswith("“gauge”: the support moves by") for one in sentences)
+    sentences = [sentence for answer in summary for sentence in answer.sentences]
+    assert any(sentence.startswith("“gauge”: the support moves by") for sentence in sentences)
 
 
 def test_a_force_that_cancels_but_for_rounding_is_none(tmp_path: Path) -> None:
@@ -582,16 +594,16 @@ def test_a_force_that_cancels_but_for_rounding_is_none(tmp_path: Path) -> None:
     frame = 'schema = 1\ntitle = "reel"\ndrive = { link = "spider", speed = "40 rpm" }\n'
     frame += '[frame]\npoints.A = ["0 mm", "0 mm"]\npoints.E = ["80 mm", "30 mm"]\n'
     (tmp_path / "reel.toml").write_text("".join([frame, *turns, *bars]))
-    found = find(tmp_path / "reel.toml")
-    assert isinstance(found, Findings)
-    for _, _, x, *_ in orders_table(found.analysis).rows:
+    place = find(tmp_path / "reel.toml")
+    assert isinstance(place, Findings)
+    for _, _, x, *_ in orders_table(place.analysis).rows:
         assert isinstance(x, Value) and brief(x.value, x.scale) == "0"
-    assert not np.any(Shaking.of(found).force)
-    told = [sentence for answer in answers(found) for sentence in answer.sentences]
-    assert any("does not shake its frame by any force" in one for one in told)
-    assert not any("comes from" in one for one in told)
-    assert (pushed(found), ordered(found), caused(found.analysis)) == ("", "", "")
-    tile = next(one for one in tiles(found) if one.label == "shaking force, peak")
+    assert not np.any(Shaking.of(place).force)
+    texts = [sentence for answer in answers(place) for sentence in answer.sentences]
+    assert any("does not shake its frame by any force" in item for item in texts)
+    assert not any("comes from" in item for item in texts)
+    assert (pushed(place), ordered(place), caused(place.analysis)) == ("", "", "")
+    tile = next(item for item in tiles(place) if item.label == "shaking force, peak")
     assert (tile.value, tile.note) == ("0", "")
 
 
@@ -601,16 +613,21 @@ def test_every_picture_is_listed_in_the_documentation(name: str) -> None:
     """By its name, or by what such names begin with, as `gauge-NAME`."""
     text = (Path(eq.__file__).parents[2] / "docs" / "figures.md").read_text(encoding="utf-8")
     listed = re.findall(r"`([\w-]+)`", text.partition("## Which pictures")[2].partition("## ")[0])
-    begins = tuple(re.sub("(NAME|LINK|1)$", "", one) for one in listed if re.search("[A-Z1]$", one))
+    begins = tuple(
+        re.sub("(NAME|LINK|1)$", "", item) for item in listed if re.search("[A-Z1]$", item)
+    )
     for picture in each(findings_of(name)):
         own = re.sub(r"-(lateral|\d+)$", "", picture.name)
         assert own in listed or picture.name.startswith(begins), picture.name
 
 
 def test_a_transmission_angle_is_the_same_number_wherever_the_first_page_has_it() -> None:
-    told = document("jansen-leg")
-    assert told.verdict is not None
-    first = [told.verdict.text, *(one for answer in told.summary for one in answer.sentences)]
+    reported = document("jansen-leg")
+    assert reported.verdict is not None
+    first = [
+        reported.verdict.text,
+        *(sentence for answer in reported.summary for sentence in answer.sentences),
+    ]
     values = [re.findall(r"Transmission angle at E[^:]*: ([\d.]+)°", line) for line in first]
     assert len([*filter(None, values)]) > 1
     assert len({value for each in values for value in each}) == 1
@@ -618,9 +635,9 @@ def test_a_transmission_angle_is_the_same_number_wherever_the_first_page_has_it(
 
 def test_a_transmission_angle_reaches_its_ends_between_the_samples() -> None:
     """A parallelogram goes through 0 and 180 deg; the picture and the table say so alike."""
-    told = findings_of("straw-walker")
-    assert isinstance(told, Findings)
-    line = kinematic(told.analysis, "kinematics-transmission")
+    findings = findings_of("straw-walker")
+    assert isinstance(findings, Findings)
+    line = kinematic(findings.analysis, "kinematics-transmission")
     assert line == "The transmission angle stays between 0.0° and 180.0°"
 
 

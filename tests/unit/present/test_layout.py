@@ -32,8 +32,8 @@ def test_signs_take_the_places_that_a_terminal_gives_them(text: str) -> None:
 
 
 def test_units_stay_with_their_numbers_and_names_whole() -> None:
-    told = wrapped("driven at 193.0 rpm, 1.200 N m, by /a/very/long/path", 12)
-    assert told == ["driven at", "193.0 rpm,", "1.200 N m,", "by", "/a/very/long/path"]
+    reported = wrapped("driven at 193.0 rpm, 1.200 N m, by /a/very/long/path", 12)
+    assert reported == ["driven at", "193.0 rpm,", "1.200 N m,", "by", "/a/very/long/path"]
     assert wrapped("links.crank.mass", 8, inner=True) == ["links.", "crank.", "mass"]
     assert wrapped("0.25 balance-shaft-1", 9, inner=True) == ["0.25", "balance-", "shaft-1"]
     assert wrapped("one two three", 7, indent=2) == ["one two", "three"]
@@ -42,10 +42,10 @@ def test_units_stay_with_their_numbers_and_names_whole() -> None:
 def test_japanese_breaks_anywhere_but_before_what_closes() -> None:
     text = "起振力（x方向）は、クランクを釣り合わせると小さくなる。"
     for width in range(6, 40):
-        told = wrapped(text, width)
-        assert "".join(told) == text
-        assert max(map(size, told)) <= width
-        assert not any(line[0] in "、。）ー" or line[-1] == "（" for line in told)
+        reported = wrapped(text, width)
+        assert "".join(reported) == text
+        assert max(map(size, reported)) <= width
+        assert not any(line[0] in "、。）ー" or line[-1] == "（" for line in reported)
     assert wrapped("기진력을 작게 한다", 9) == ["기진력을", "작게 한다"]
 
 
@@ -59,7 +59,7 @@ def test_a_table_of_one_row_is_turned_where_it_is_too_wide() -> None:
     assert narrow[:2] == ["            gauge, mm", "order 1, N     0.2500"]
 
 
-def test_parts_are_about_as_wide_and_each_tells_its_rows() -> None:
+def test_parts_are_about_as_wide_and_each_reports_its_rows() -> None:
     parts = lines(numbers(6, *"ABCDEFG"), 40)
     assert [part[0].split()[1::2] for part in parts] == [["1", "2", "3"], ["4", "5", "6"]]
     assert all([line[0] for line in part[2:]] == [*"ABCDEFG"] for part in parts)
@@ -69,13 +69,13 @@ def test_headings_give_way_before_words_and_words_before_the_table() -> None:
     columns = (Column(""), Column("peak to peak", "force"), Column("mean", "force"))
     rows = [("moment of the shaking force", Value(1.0), Value(2.0))]
     table = Table.of("", columns, rows)
-    told = {width: lines(table, width)[0] for width in (48, 47, 40)}
-    assert [told[48][0].split(), told[48][-1]] == [
+    content = {width: lines(table, width)[0] for width in (48, 47, 40)}
+    assert [content[48][0].split(), content[48][-1]] == [
         ["peak", "to", "peak", "mean"],
         "moment of the shaking force         1.000  2.000",
     ]
-    assert told[47][:2] == [f"{'peak to':>40}", f"{'peak   mean':>47}"]
-    assert told[40][-2:] == ["moment of the shaking       1.000  2.000", "  force"]
+    assert content[47][:2] == [f"{'peak to':>40}", f"{'peak   mean':>47}"]
+    assert content[40][-2:] == ["moment of the shaking       1.000  2.000", "  force"]
 
 
 def test_numbers_and_where_they_hold_stand_below_each_other() -> None:
@@ -87,8 +87,12 @@ def test_numbers_and_where_they_hold_stand_below_each_other() -> None:
 def test_a_value_stays_with_where_it_holds_in_a_list() -> None:
     peaks = Many(tuple(Value(k, at=1.0) for k in (12.5, 3.5, 1.5)))
     table = Table.of("", (Column(""), Column("peaks", "force")), [("gauge", peaks)])
-    told = lines(table, 24)[0]
-    assert told[-3:] == ["gauge  12.50 (57.3),", "         3.500 (57.3),", "         1.500 (57.3)"]
+    reported = lines(table, 24)[0]
+    assert reported[-3:] == [
+        "gauge  12.50 (57.3),",
+        "         3.500 (57.3),",
+        "         1.500 (57.3)",
+    ]
 
 
 def test_a_column_without_any_text_is_left_out() -> None:

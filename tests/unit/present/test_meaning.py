@@ -28,10 +28,10 @@ MACHINES = (
 
 @cache
 def tables(name: str) -> tuple[Table, ...]:
-    found = findings_of(name)
-    results = (found.analysis, found.balanced, found.response, found.sweep)
+    findings = findings_of(name)
+    results = (findings.analysis, findings.balanced, findings.response, findings.sweep)
     return tuple(
-        block for one in results if one is not None for block in one.blocks()
+        block for result in results if result is not None for block in result.blocks()
         if isinstance(block, Table)
     )  # fmt: skip
 
@@ -55,14 +55,18 @@ def test_a_mean_of_rounding_is_0_and_the_json_keeps_it() -> None:
     analysis = eq.analyze(eq.load("hydraulic-loader"))
     mean = analysis.to_dict()["summary"]["shaking_force.x"]["mean"]
     assert 0 < abs(mean) < FAINT_IN_ROW * analysis.summary["shaking_force.x"].peak
-    (frame,) = (one for one in analysis.blocks() if isinstance(one, Table) and "frame" in one.title)
+    (frame,) = (
+        block for block in analysis.blocks() if isinstance(block, Table) and "frame" in block.title
+    )
     (row,) = (row for row in grid(frame).rows if row[0].text.startswith("shaking force x"))
     assert row[1].text == "0"
 
 
 def test_work_that_comes_back_is_none() -> None:
     """A boom that is lifted and lowered without losses."""
-    (work,) = (one for one in tables("hydraulic-loader") if one.title.startswith("Work of the"))
+    (work,) = (
+        table for table in tables("hydraulic-loader") if table.title.startswith("Work of the")
+    )
     assert [cell.text for cell in grid(work).rows[0]] == ["boom", "0"]
     analysis = eq.analyze(eq.load("quick-return"))
     both, net = analysis.forces.work_both_ways["crank"], analysis.forces.work["crank"]
@@ -94,8 +98,8 @@ def test_a_crank_turns_fully_and_a_rocker_from_one_angle_to_another() -> None:
         ("four-stroke-engine", {"crank"}, {"rod", "piston"}),
     ):
         analysis = eq.analyze(eq.load(name))
-        (table,) = (one for one in analysis.blocks() if isinstance(one, Table)
-                    and one.title.startswith("Links:"))  # fmt: skip
+        (table,) = (block for block in analysis.blocks() if isinstance(block, Table)
+                    and block.title.startswith("Links:"))  # fmt: skip
         texts = {row[0].text: row[1].text for row in grid(table).rows}
         assert {link for link, text in texts.items() if text == "turns fully"} == turning
         assert swinging <= texts.keys()
@@ -103,13 +107,13 @@ def test_a_crank_turns_fully_and_a_rocker_from_one_angle_to_another() -> None:
     assert "turns fully" not in str([*part.blocks()])
 
 
-def test_only_speeds_that_say_something_are_told() -> None:
+def test_only_speeds_that_say_something_are_reported() -> None:
     """A machine of which next to nothing is left shakes as before at millions of rpm."""
     machine = eq.load("yamashita-1")
     own = machine.drive.speed
     speeds = {"shaking_force.rms": 1.4 * own, "shaking_moment.rms": 6.101e6 * PER_RPM}
-    found = SimpleNamespace(original=machine, equivalent_speeds=speeds)
-    assert [(str(row[0]), row[1]) for row in _speeds(found)] == [
+    result = SimpleNamespace(original=machine, equivalent_speeds=speeds)
+    assert [(str(row[0]), row[1]) for row in _speeds(result)] == [
         ("shaking force, RMS", Value(1.4 * own))
     ]
 
@@ -120,7 +124,7 @@ def test_a_grown_figure_stands_out_only_beside_what_matters(grown: float, concer
     balanced = findings_of("yamashita-1").balanced
     assert balanced is not None
     name = next(
-        one for one in balanced.before if one.startswith("joints.") and one.endswith(".peak")
+        item for item in balanced.before if item.startswith("joints.") and item.endswith(".peak")
     )
     largest = 1e4
     before = {**balanced.before, name: 0.0, "shaking_force.peak": largest}
@@ -128,7 +132,7 @@ def test_a_grown_figure_stands_out_only_beside_what_matters(grown: float, concer
     like = SimpleNamespace(before=before, after=after, original=balanced.original)
     table = before_after(like)
     cells = [cell for row in table.rows for cell in row if isinstance(cell, Value)]
-    (cell,) = (one for one in cells if one.value == after[name])
+    (cell,) = (item for item in cells if item.value == after[name])
     assert (cell.emphasis == "worse") is concern
 
 

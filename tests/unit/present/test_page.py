@@ -55,13 +55,13 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def found():
+def rig_findings():
     return findings_of("yamashita-rig")
 
 
 @pytest.fixture(scope="module")
-def document(found):
-    return build(found, "en", "equipoise report yamashita-rig")
+def document(rig_findings):
+    return build(rig_findings, "en", "equipoise report yamashita-rig")
 
 
 @pytest.fixture(scope="module")
@@ -77,16 +77,20 @@ def test_the_page_needs_nothing_but_itself(html):
     assert "@import" not in html and "http://" not in html.replace("http://www.w3.org", "")
 
 
-def test_the_page_holds_every_picture_and_the_model(found, html):
+def test_the_page_holds_every_picture_and_the_model(rig_findings, html):
     read = Page(html)
-    drawn = pictures(found)
-    again = sum(is_wide(one.chart) for one in drawn)  # for a telephone
+    drawn = pictures(rig_findings)
+    again = sum(is_wide(item.chart) for item in drawn)  # for a telephone
     assert read.tags.count("svg") == len(drawn) + again + 1  # the moving linkage
     words = " ".join(read.words)
-    for part in (*(one.chart.what for one in drawn), found.machine.description, eq.__version__):
+    for part in (
+        *(item.chart.what for item in drawn),
+        rig_findings.machine.description,
+        eq.__version__,
+    ):
         assert part in words
-    assert {one.chart.caption for one in drawn} <= set(read.instead)
-    assert found.text.strip() in words
+    assert {item.chart.caption for item in drawn} <= set(read.instead)
+    assert rig_findings.text.strip() in words
     assert "equipoise report yamashita-rig" in words
 
 
@@ -100,20 +104,20 @@ def test_it_is_the_same_on_every_run_in_another_language():
 # Reports of tools are drawn in tests/unit/present/test_findings.py.
 @pytest.mark.exhaustive
 def test_a_tool_has_its_report():
-    found = findings_of("brush-cutter")
-    assert isinstance(found, ToolFindings)
-    shorter = ToolFindings(replace(found.tool, design=None), found.text, found.file)
+    findings = findings_of("brush-cutter")
+    assert isinstance(findings, ToolFindings)
+    shorter = ToolFindings(replace(findings.tool, design=None), findings.text, findings.file)
     document = build(shorter)
-    told = " ".join(one for answer in document.summary for one in answer.sentences)
+    text = " ".join(sentence for answer in document.summary for sentence in answer.sentences)
     worst = max(grip.a_hv[0] for grip in shorter.exposure.named["working"].values())
-    assert f"a_hv of {worst:.2f}" in told.replace("\xa0", " ")
+    assert f"a_hv of {worst:.2f}" in text.replace("\xa0", " ")
     assert {section.name for section in document.sections} == {"model", "tool"}
     assert {section.name for section in document.appendix} >= {"sources", "settings"}
 
 
 def test_nothing_in_a_picture_stays_bright_on_a_dark_page():
     """Pale areas and lines of all roles have a colour of their own there, and a darker one."""
-    dark = dict(one.split(":") for one in colors(dark=True).removeprefix("--").split(";--"))
+    dark = dict(part.split(":") for part in colors(dark=True).removeprefix("--").split(";--"))
     pale = {
         color
         for look in LOOKS.values()
@@ -142,7 +146,7 @@ def test_the_pdf_is_the_same_on_every_run(document):
     assert made.startswith(b"%PDF") and len(made) > 50_000
 
 
-def test_missing_fonts_and_a_missing_extra_are_told(monkeypatch, tmp_path):
+def test_missing_fonts_and_a_missing_extra_are_reported(monkeypatch, tmp_path):
     class Latin:
         def families(self):
             return ["DejaVu Sans"]
@@ -160,13 +164,13 @@ def test_missing_fonts_and_a_missing_extra_are_told(monkeypatch, tmp_path):
 
 # Letters of fonts: tests/unit/present/test_headlines.py.
 @pytest.mark.exhaustive
-def test_letters_that_no_font_has_are_told_of_a_pdf(document, monkeypatch, tmp_path):
+def test_letters_that_no_font_has_are_reported_of_a_pdf(document, monkeypatch, tmp_path):
     """An English report has Japanese and Korean in its sources and in the file that it tells."""
     monkeypatch.setattr(paint, "fonts_for", lambda signs: ((), "".join(sorted(signs))))
     assert set("山下市川") <= set(boxed_in_pdf(document))
     assert not set("shaking é°²") & set(boxed_in_pdf(document))
-    told = equipoise("report", "scotch-yoke", "--out", tmp_path / "report.html", "--pdf").err
-    assert told.count("note: no font has ") == 1 and "or read the report as .html" in told
+    printed = equipoise("report", "scotch-yoke", "--out", tmp_path / "report.html", "--pdf").err
+    assert printed.count("note: no font has ") == 1 and "or read the report as .html" in printed
     monkeypatch.setattr(paint, "fonts_for", lambda signs: ((), ""))
     assert boxed_in_pdf(document) == ""
 

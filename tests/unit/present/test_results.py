@@ -79,8 +79,10 @@ def result(name: str) -> Any:
 
 def tables(blocks: Any) -> list[Table]:
     """All tables, those of sections too."""
-    parts = (tables(one.blocks) if isinstance(one, ReportSection) else [one] for one in blocks)
-    return [one for part in parts for one in part if isinstance(one, Table)]
+    parts = (
+        tables(block.blocks) if isinstance(block, ReportSection) else [block] for block in blocks
+    )
+    return [item for part in parts for item in part if isinstance(item, Table)]
 
 
 @pytest.mark.exhaustive(
@@ -114,7 +116,7 @@ def test_wide_signs_keep_within_the_terminal(name: str, language: str) -> None:
 
 
 @pytest.mark.parametrize("name", RESULTS)
-def test_no_number_is_cut_and_page_and_terminal_tell_the_same(name: str) -> None:
+def test_no_number_is_cut_and_page_and_terminal_report_the_same(name: str) -> None:
     blocks = result(name).blocks()
     text, page = words(shown(blocks, width=80)), html_of(result(name))
     for table in tables(blocks):
@@ -128,10 +130,10 @@ def test_no_number_is_cut_and_page_and_terminal_tell_the_same(name: str) -> None
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_a_notebook_shows_little(name: str) -> None:
-    found = result(name)
-    assert len(repr(found)) < 120 and "\n" not in repr(found)
-    assert 200 < len(found._repr_html_()) < 50_000
-    assert not re.search(r"\b(nan|None)\b", found._repr_html_())
+    actual = result(name)
+    assert len(repr(actual)) < 120 and "\n" not in repr(actual)
+    assert 200 < len(actual._repr_html_()) < 50_000
+    assert not re.search(r"\b(nan|None)\b", actual._repr_html_())
 
 
 @pytest.mark.parametrize("language", few(("en", "ja", "ko"), ("en",)))
@@ -141,10 +143,10 @@ def test_every_result_can_be_set_by_typst(language: str) -> None:
             ReportSection(
                 f"s{k}",
                 name,
-                tuple(b for b in found().blocks() if not isinstance(b, ReportSection)),
+                tuple(b for b in actual().blocks() if not isinstance(b, ReportSection)),
             )
             for k, name in enumerate(RESULTS)
-            for found in [lambda name=name: result(name)]
+            for actual in [lambda name=name: result(name)]
         )
     document = ReportDocument("en", "title", "", "", (), (), "", sections)
     assert pdf(document).startswith(b"%PDF")
@@ -170,14 +172,14 @@ def test_every_result_can_be_set_by_typst(language: str) -> None:
 @pytest.mark.parametrize("name", RESULTS)
 def test_every_result_is_a_dataset_and_a_frame(name: str) -> None:
     pytest.importorskip("xarray"), pytest.importorskip("pandas")
-    found = result(name)
-    dataset, frame = found.to_dataset(), found.to_frame()
+    actual = result(name)
+    dataset, frame = actual.to_dataset(), actual.to_frame()
     assert len(frame) and (len(frame.columns) or name == "tool response")
-    told = dict(leaves(found.to_dict()))
-    for path, value in told.items():
+    reported = dict(leaves(actual.to_dict()))
+    for path, value in reported.items():
         if isinstance(value, np.ndarray):
             np.testing.assert_array_equal(dataset[path], value)
-        elif isinstance(value, int | float | str) and not isinstance(found, Analysis):
+        elif isinstance(value, int | float | str) and not isinstance(actual, Analysis):
             assert dataset.attrs[path] == value
     if frame.index.name is None:
         return
@@ -231,22 +233,22 @@ def test_rows_and_columns(
 ) -> None:
     """A sweep has as many rows as its curves need."""
     pytest.importorskip("pandas")
-    found = result(name)
-    frame = found.to_frame()
+    actual = result(name)
+    frame = actual.to_frame()
     assert frame.index.name == index
-    assert len(frame) == (len(found.speed) if rows is None else rows)
-    prefix = f"{found.records}." if found.records else ""
-    assert {f"{prefix}{one}" for one in columns} <= set(frame.columns)
+    assert len(frame) == (len(actual.speed) if rows is None else rows)
+    prefix = f"{actual.records}." if actual.records else ""
+    assert {f"{prefix}{column}" for column in columns} <= set(frame.columns)
 
 
 def test_units_of_arrays_and_axes_of_tables() -> None:
     pytest.importorskip("xarray")
-    told = result("sweep").to_dataset()
-    assert told["speed"].attrs == {"units": "rad/s"}
-    assert told["gauges.gauge.rms"].attrs == {"units": "m"}
-    assert told["gauges.gauge.harmonics"].dims == ("speed", "gauges.gauge.harmonics.index_1")
-    told = result("response").to_dataset()
-    assert told["gauges.roll.harmonics"].dims == ("gauges.roll.orders",)
+    reported = result("sweep").to_dataset()
+    assert reported["speed"].attrs == {"units": "rad/s"}
+    assert reported["gauges.gauge.rms"].attrs == {"units": "m"}
+    assert reported["gauges.gauge.harmonics"].dims == ("speed", "gauges.gauge.harmonics.index_1")
+    reported = result("response").to_dataset()
+    assert reported["gauges.roll.harmonics"].dims == ("gauges.roll.orders",)
     assert result("transient").to_dataset()["mounts.spring.force"].attrs == {"units": "N"}
 
 
@@ -254,14 +256,14 @@ def test_units_of_arrays_and_axes_of_tables() -> None:
 
 
 def table_of(*cells: Any, column: Column | None = None) -> Table:
-    one = column or Column("value", "length")
-    return Table("title", (Column(""), one), tuple((f"row {k}", c) for k, c in enumerate(cells)))
+    first = column or Column("value", "length")
+    return Table("title", (Column(""), first), tuple((f"row {k}", c) for k, c in enumerate(cells)))
 
 
 def test_units_and_digits() -> None:
-    told = grid(table_of(Value(0.0123), Span(-0.001, 1.0), Value(1e-15, 1.0), None, "none"))
-    assert [row[1].text for row in told.rows] == ["12.30", "-1.000 to 1000", "0", "", "none"]
-    assert told.heads[1].heading == "value, mm"
+    reported = grid(table_of(Value(0.0123), Span(-0.001, 1.0), Value(1e-15, 1.0), None, "none"))
+    assert [row[1].text for row in reported.rows] == ["12.30", "-1.000 to 1000", "0", "", "none"]
+    assert reported.heads[1].heading == "value, mm"
     assert grid(table_of(Value(1.0), Span(-1e-20, 2e-20))).rows[1][1].text == "0"
     with showing({"length": "cm"}):
         chosen = grid(table_of(Value(0.0123)))
@@ -314,7 +316,7 @@ def test_a_daily_exposure_beyond_the_limit_value_stands_out() -> None:
     assert {cell.text_with_note for cell in cells} == {"7.071, over the limit of 5"}
     allowed = daily_exposure([Task("mowing", 5.0, 8 * 3600.0)])
     assert "over the limit" not in words(allowed.blocks())
-    tile = next(one for one in tool_tiles(findings_of("brush-cutter")) if "A(8)" in one.label)
+    tile = next(item for item in tool_tiles(findings_of("brush-cutter")) if "A(8)" in item.label)
     assert tile.emphasis == "broken"
     document = ReportDocument("en", "", "", "", (tile, replace(tile, emphasis=None)), (), "", ())
     html = page(document)

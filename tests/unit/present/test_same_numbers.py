@@ -57,55 +57,63 @@ def leaves(values: Any) -> Iterator[Any]:
         yield values
 
 
-def sizes_of(found: Mapping[str, Any]) -> Iterator[np.ndarray]:
+def sizes_of(result: Mapping[str, Any]) -> Iterator[np.ndarray]:
     """Signals, and the sizes of those that have two components."""
-    for name, value in found.items():
+    for name, value in result.items():
         if isinstance(value, Mapping):
             yield from sizes_of(value)
             pairs = (("x", "y"), ("force_x", "force_y"), ("vx", "vy"), ("ax", "ay"))
             for pair in pairs:
-                if all(isinstance(value.get(one), np.ndarray) for one in pair):
-                    yield np.hypot(*(value[one] for one in pair))
-                elif all(isinstance(found.get(f"{name}_{one}"), np.ndarray) for one in pair):
-                    yield np.hypot(*(found[f"{name}_{one}"] for one in pair))
+                if all(isinstance(value.get(item), np.ndarray) for item in pair):
+                    yield np.hypot(*(value[item] for item in pair))
+                elif all(isinstance(result.get(f"{name}_{item}"), np.ndarray) for item in pair):
+                    yield np.hypot(*(result[f"{name}_{item}"] for item in pair))
         elif isinstance(value, np.ndarray) and value.dtype.kind == "f":
             yield value
 
 
 @cache
-def told(name: str) -> np.ndarray:
+def numbers_in_json(name: str) -> np.ndarray:
     """Every number of what the commands print as JSON, sorted; of signals their figures."""
-    found = findings_of(name)
-    assert isinstance(found, Findings)
+    findings = findings_of(name)
+    assert isinstance(findings, Findings)
     given = [
-        one.to_dict()
-        for one in (found.response, found.sweep, found.modes, found.balanced, found.planting)
-        if one is not None
+        item.to_dict()
+        for item in (
+            findings.response,
+            findings.sweep,
+            findings.modes,
+            findings.balanced,
+            findings.planting,
+        )
+        if item is not None
     ]
-    for one in (found, found.after):
-        if one is not None:
-            given += [one.analysis.to_dict(split=True), order_values(one.analysis, 20, 0.0)]
-            given += [one.response.to_dict()] if one.response is not None else []
+    for entry in (findings, findings.after):
+        if entry is not None:
+            given += [entry.analysis.to_dict(split=True), order_values(entry.analysis, 20, 0.0)]
+            given += [entry.response.to_dict()] if entry.response is not None else []
     numbers: list[float] = []
-    theta = found.analysis.crank_angle
-    for signal in (one for values in given for one in sizes_of(values) if one.size):
+    theta = findings.analysis.crank_angle
+    for signal in (item for values in given for item in sizes_of(values) if item.size):
         numbers += [np.min(signal), np.max(signal), np.mean(signal), np.sqrt(np.mean(signal**2))]
         numbers += [np.ptp(signal), np.max(np.abs(signal))]
         if signal.shape == theta.shape:
-            for one in (signal, np.abs(signal)):
-                numbers += [*asdict(found.analysis.motion.figures(one)).values()]
+            for entry in (signal, np.abs(signal)):
+                numbers += [*asdict(findings.analysis.motion.figures(entry)).values()]
         numbers += signal.ravel().tolist() if len(signal) < ANGLES else []
-    numbers += [one for one in leaves(given) if isinstance(one, int | float)]
-    machine = found.machine
-    per_order = abs(machine.drive.speed) / (2 * np.pi * found.analysis.motion.turns)
+    numbers += [leaf for leaf in leaves(given) if isinstance(leaf, int | float)]
+    machine = findings.machine
+    per_order = abs(machine.drive.speed) / (2 * np.pi * findings.analysis.motion.turns)
     numbers += [*(per_order * np.arange(100)), machine.mass, machine.drive.speed, 0.0]
-    if found.balanced is not None:  # speeds for which the plan asks
-        numbers += [speed for one in found.balanced.plan.objectives for speed in one.speeds]
+    if findings.balanced is not None:  # speeds for which the plan asks
+        numbers += [
+            speed for objective in findings.balanced.plan.objectives for speed in objective.speeds
+        ]
     return np.unique(np.array(numbers))
 
 
-def is_told(name: str, value: float, tolerance: float) -> bool:
-    everything = told(name)
+def is_in_json(name: str, value: float, tolerance: float) -> bool:
+    everything = numbers_in_json(name)
     k = np.searchsorted(everything, value)
     near = everything[max(k - 1, 0) : k + 1]
     return bool(np.any(np.abs(near - value) <= tolerance))
@@ -150,15 +158,15 @@ def document(name: str) -> Any:
 )
 def test_every_number_of_cards_and_titles_is_in_the_json(name: str) -> None:
     made = document(name)
-    texts = [f"{one.value} {one.unit}, {one.note}" for one in made.tiles]
-    texts += [f"{one.after} {one.unit}" for one in made.tiles if one.after]
+    texts = [f"{tile.value} {tile.unit}, {tile.note}" for tile in made.tiles]
+    texts += [f"{tile.after} {tile.unit}" for tile in made.tiles if tile.after]
     blocks = [*shown_blocks(made.sections)]
-    texts += [one.headline for one in blocks if isinstance(one, ReportSection | SvgPicture)]
+    texts += [block.headline for block in blocks if isinstance(block, ReportSection | SvgPicture)]
     missing = {
         text
         for text in texts
         for value, half in quantities(text)
-        if not is_told(name, value, half) and not any(part in text for part in DERIVED)
+        if not is_in_json(name, value, half) and not any(part in text for part in DERIVED)
     }
     assert not missing
     assert sum(len([*quantities(text)]) for text in texts) > 8
@@ -176,14 +184,14 @@ def cells_of(table: Table) -> Iterator[tuple[str, Value]]:
 
 @pytest.mark.parametrize("name", few(MACHINES, {*MACHINES} - {"riding-transplanter"}))
 def test_every_number_of_tables_is_in_the_json(name: str) -> None:
-    found = findings_of(name)
-    assert isinstance(found, Findings)
+    findings = findings_of(name)
+    assert isinstance(findings, Findings)
     count = 0
-    for table in found.analysis.blocks():
+    for table in findings.analysis.blocks():
         for row, value in cells_of(table) if isinstance(table, Table) else ():
             near = 1e-9 * max(abs(value.value), value.scale) + 1e-12
-            assert is_told(name, value.value, near), (table.title, row, value)
-            assert value.at is None or is_told(name, value.at, 1e-6), (table.title, row, value)
+            assert is_in_json(name, value.value, near), (table.title, row, value)
+            assert value.at is None or is_in_json(name, value.at, 1e-6), (table.title, row, value)
             count += 1
     assert count > 30
 
@@ -191,14 +199,16 @@ def test_every_number_of_tables_is_in_the_json(name: str) -> None:
 @pytest.mark.parametrize("name", few(MACHINES, {*MACHINES} - {"riding-transplanter"}))
 def test_every_number_of_respond_and_balance_is_in_the_json(name: str) -> None:
     """Orders of modes, and places of rows across the machine, stand in tables alone."""
-    found = findings_of(name)
-    assert isinstance(found, Findings)
-    results = [one for one in (found.response, found.sweep, found.balanced) if one is not None]
-    tables = [one for result in results for one in result.blocks() if isinstance(one, Table)]
+    findings = findings_of(name)
+    assert isinstance(findings, Findings)
+    results = [
+        item for item in (findings.response, findings.sweep, findings.balanced) if item is not None
+    ]
+    tables = [block for result in results for block in result.blocks() if isinstance(block, Table)]
     for table in tables:
         for row, value in cells_of(table) if not table.title.startswith("Rows;") else ():
             near = 1e-9 * max(abs(value.value), value.scale) + 1e-12
-            assert is_told(name, value.value, near), (table.title, row, value)
+            assert is_in_json(name, value.value, near), (table.title, row, value)
     assert results
 
 
@@ -207,12 +217,12 @@ def test_every_figure_of_the_page_is_in_the_json(name: str) -> None:
     """As a value, and as its card prints it."""
     shown = figures_of(solved(opened_example(name)).analysis)
     assert len(shown) >= 8
-    for one in shown:
-        if one["value"] is not None:
-            value = one["value"]
-            assert is_told(name, value, 1e-9 * abs(value) + 1e-12), one
-            (printed,) = quantities(f"{one['text']} {one['unit']}")
-            assert is_told(name, *printed), one
+    for item in shown:
+        if item["value"] is not None:
+            value = item["value"]
+            assert is_in_json(name, value, 1e-9 * abs(value) + 1e-12), item
+            (printed,) = quantities(f"{item['text']} {item['unit']}")
+            assert is_in_json(name, *printed), item
 
 
 def same_as_analyzed(analysis: eq.Analysis, figures: Mapping[str, float | None]) -> int:
@@ -237,7 +247,7 @@ def test_other_surfaces_have_the_figures_of_analyze(name: str) -> None:
     analysis = eq.analyze(machine, acceleration=0.0)
     assert same_as_analyzed(analysis, comparison.figures_of(analysis)) > 8
     page = solved(opened_example(name)).analysis
-    shown = {one["name"]: one["value"] for one in figures_of(page)}
+    shown = {item["name"]: item["value"] for item in figures_of(page)}
     assert same_as_analyzed(page, shown) >= 8
     if machine.support is not None:
         torque = eq.respond(machine).to_dict()["drive"]["torque"]
@@ -265,19 +275,19 @@ def test_what_balance_makes_small_is_what_analyze_says(name: str) -> None:
     limit = Limit(Objective("shaking_moment", "peak"), ratio=2.0)
     own = Balance(phases=Phases()) if machine.rows else machine.balance
     plan = replace(own, objectives=aims, limits=() if machine.rows else (limit,))
-    found = eq.balance(machine, plan)
-    told, before, after = (
-        found.to_dict(),
-        *(eq.analyze(one, acceleration=0.0) for one in (machine, found.machine)),
+    balanced = eq.balance(machine, plan)
+    reported, before, after = (
+        balanced.to_dict(),
+        *(eq.analyze(item, acceleration=0.0) for item in (machine, balanced.machine)),
     )
     for aim in aims:
         output = before.whole(aim.output)
-        pair = [getattr(one.summary[output], aim.measure) for one in (before, after)]
-        assert [*found.aims[aim]] == pytest.approx(pair, rel=1e-9)
-        assert [*told["objectives"][aim.name].values()] == pytest.approx(pair, rel=1e-9)
+        pair = [getattr(item.summary[output], aim.measure) for item in (before, after)]
+        assert [*balanced.aims[aim]] == pytest.approx(pair, rel=1e-9)
+        assert [*reported["objectives"][aim.name].values()] == pytest.approx(pair, rel=1e-9)
     if not machine.rows:
         used = after.summary[before.whole("shaking_moment")].peak
-        assert told["prices"][limit.name]["used"] == pytest.approx(used, rel=1e-9)
+        assert reported["prices"][limit.name]["used"] == pytest.approx(used, rel=1e-9)
 
 
 # -- one sampling, one sign, one unit, all rows ----------------------------------------------------
@@ -291,11 +301,11 @@ def test_every_surface_takes_the_same_crank_angles() -> None:
 
 
 def test_the_crank_angle_of_a_peak_is_one() -> None:
-    found, made = findings_of("cam-pusher"), document("cam-pusher")
-    at = eq.analyze(found.machine).summary["drive_torque"].peak_at
-    (note,) = (one.note for one in made.tiles if one.label == "drive torque, peak")
+    actual, made = findings_of("cam-pusher"), document("cam-pusher")
+    at = eq.analyze(actual.machine).summary["drive_torque"].peak_at
+    (note,) = (tile.note for tile in made.tiles if tile.label == "drive torque, peak")
     assert note == f"at crank angle {np.degrees(at):.1f}\N{DEGREE SIGN}"
-    chart = forces_charts.torque(found.analysis)
+    chart = forces_charts.torque(actual.analysis)
     assert note.split()[-1] in " ".join(mark.text for mark in chart.panels[0].marks)
 
 
@@ -303,49 +313,51 @@ def test_a_report_has_the_cam_and_the_spring_of_its_machine() -> None:
     """In the parts before the appendix, with the figures that the analysis has of them."""
     shown = [*shown_blocks(document("cam-pusher").sections)]
     cam, spring = (
-        next(one for one in shown if isinstance(one, Table) and one.title.startswith(title))
+        next(entry for entry in shown if isinstance(entry, Table) and entry.title.startswith(title))
         for title in ("Cams", "Springs")
     )
     analysis = findings_of("cam-pusher").analysis
     assert len(cam.rows) == len(analysis.machine.cams) == 1
     assert len(spring.rows) == len(analysis.machine.springs) == 1
-    parts = next(one for one in shown if isinstance(one, Facts) and "springs" in one.title)
+    parts = next(entry for entry in shown if isinstance(entry, Facts) and "springs" in entry.title)
     assert {item.partition(":")[0] for item in parts.items} >= {"Cam", "Spring"}
 
 
 def test_a_machine_without_a_crank_has_the_words_of_one_nowhere() -> None:
     """In no line of the report of a cylinder, on paper or on a screen, but in its own file."""
     made = document("hydraulic-loader")
-    told = replace(made, appendix=tuple(one for one in made.appendix if one.name != "file"))
-    text = re.sub(r"<[^>]*>", " ", page(told)).replace("\xa0", " ")
+    reported = replace(made, appendix=tuple(item for item in made.appendix if item.name != "file"))
+    text = re.sub(r"<[^>]*>", " ", page(reported)).replace("\xa0", " ")
     assert "of the cycle" in text and "cycles a minute" in text
     wrong = r"crank angle|\brpm\b|drive pivot|turn of the crank|times a turn|once a turn"
     assert re.findall(wrong, text) == []
 
 
 def test_a_peak_has_its_sign() -> None:
-    (tile,) = (one for one in document("four-stroke-engine").tiles if "torque" in one.label)
+    (tile,) = (item for item in document("four-stroke-engine").tiles if "torque" in item.label)
     assert tile.value == "-153"
     page = eq.load("four-stroke-engine")
     analysis = eq.analyze(page)
     entries = figures_of(analysis)
-    (text,) = (one["text"] for one in entries if one["name"] == "drive_torque.peak")
+    (text,) = (entry["text"] for entry in entries if entry["name"] == "drive_torque.peak")
     assert text == "\N{MINUS SIGN}153.2"
 
 
 # Machines of several rows: the other tests of this file.
 @pytest.mark.exhaustive
 def test_cards_and_titles_speak_of_all_rows() -> None:
-    found, made = findings_of("riding-transplanter"), document("riding-transplanter")
-    summary = found.analysis.summary
-    values = {one.label: float(one.value) for one in made.tiles if one.unit in ("N", "N m")}
+    actual, made = findings_of("riding-transplanter"), document("riding-transplanter")
+    summary = actual.analysis.summary
+    values = {tile.label: float(tile.value) for tile in made.tiles if tile.unit in ("N", "N m")}
     for what in ("shaking_force", "shaking_moment", "drive_torque"):
         figure = summary[f"rows.{what}"].signed_peak
         label = f"all rows: {what.replace('_', ' ')}, peak"
         assert values[label] == pytest.approx(figure, rel=5e-3)
         assert abs(figure) > 1.1 * summary[what].peak
     seen = {
-        one.name: one.headline for one in shown_blocks(made.sections) if isinstance(one, SvgPicture)
+        block.name: block.headline
+        for block in shown_blocks(made.sections)
+        if isinstance(block, SvgPicture)
     }
     assert f"{summary['rows.shaking_force'].peak:.1f} N" in seen["force"]
     assert f"{summary['rows.shaking_moment'].peak:.2f} N m" in seen["moment"]
@@ -360,13 +372,13 @@ def test_a_cam_is_called_a_cam() -> None:
 
 # Resonances: tests/unit/vibration.
 @pytest.mark.exhaustive
-def test_of_resonances_the_loud_one_is_told() -> None:
+def test_of_resonances_the_loud_one_is_reported() -> None:
     """At 320 rpm a mode is met at 328 that adds 4 % of what the one at 255 does."""
-    found = find("sieve", speed=320 * np.pi / 30)
-    assert isinstance(found, Findings) and found.sweep is not None
-    near = nearest_loud(found.sweep.resonances, found.machine.drive.speed)
+    place = find("sieve", speed=320 * np.pi / 30)
+    assert isinstance(place, Findings) and place.sweep is not None
+    near = nearest_loud(place.sweep.resonances, place.machine.drive.speed)
     assert near.share == 1.0
-    sentences = " ".join(s for one in answers(found) for s in one.sentences)
+    sentences = " ".join(s for answer in answers(place) for s in answer.sentences)
     assert "loud resonance is at 255 rpm" in sentences
     assert "keep away from 221.1 to 277.5 rpm" in sentences
 
@@ -374,13 +386,13 @@ def test_of_resonances_the_loud_one_is_told() -> None:
 @pytest.mark.parametrize("name", ["four-stroke-engine", "hydraulic-loader"])
 def test_a_figure_has_one_unit_everywhere(name: str) -> None:
     """Large forces of joints and drives stand beside small ones of the frame."""
-    found, made = findings_of(name), document(name)
-    analysis = found.analysis
+    actual, made = findings_of(name), document(name)
+    analysis = actual.analysis
     units = {"force": display_of_totals(analysis, "shaking_force").name}
     (frame,) = (t for t in analysis.blocks() if isinstance(t, Table) and "frame" in t.title)
     rows = [cell.text for cell in (row[0] for row in grid(frame).rows)]
-    assert any(one.endswith(units["force"]) for one in rows)
-    card = next(one for one in made.tiles if "shaking force" in one.label)
+    assert any(item.endswith(units["force"]) for item in rows)
+    card = next(tile for tile in made.tiles if "shaking force" in tile.label)
     assert card.unit == units["force"]
     panels = (*forces_charts.force(analysis).panels, *forces_charts.polar(analysis).panels)
     assert {panel.y.unit.name for panel in panels} == {units["force"]}

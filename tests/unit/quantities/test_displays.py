@@ -85,7 +85,7 @@ def test_the_unit_suits_the_size_of_any_machine(
 def test_no_size_of_a_usual_machine_needs_a_power_of_ten(dimension: Dimension, size: float) -> None:
     """Where there are units for it: from the smallest to the largest of its scale."""
     shown = display(dimension, [size])
-    scale = next((one for one in _SCALES if shown.unit in one), (shown.unit,))
+    scale = next((item for item in _SCALES if shown.unit in item), (shown.unit,))
     ends = (SMALL / in_unit(scale[0]).factor, LARGE / in_unit(scale[-1]).factor)
     if ends[0] <= size <= ends[1]:
         assert "e" not in shown.text(size)
@@ -94,7 +94,7 @@ def test_no_size_of_a_usual_machine_needs_a_power_of_ten(dimension: Dimension, s
 
 
 @given(
-    st.sampled_from([(kind, unit) for kind, one in KINDS.items() for unit in one.units]),
+    st.sampled_from([(kind, unit) for kind, name in KINDS.items() for unit in name.units]),
     st.decimals(-9999, 9999, allow_nan=False, places=3),
 )
 def test_a_rounded_number_comes_back_as_it_was_typed(kind: tuple[Dimension, str], typed) -> None:  # type: ignore[no-untyped-def]
@@ -143,7 +143,7 @@ def test_units_are_read_by_name_or_by_themselves() -> None:
         ("mm, cm", {"first": "mm", "second": "cm", "dimension": "length"}),
     ],
 )
-def test_a_wrong_unit_is_told_with_what_there_is(text: str, expected: dict[str, Any]) -> None:
+def test_a_wrong_unit_is_reported_with_what_there_is(text: str, expected: dict[str, Any]) -> None:
     with refused(UsageError, **expected):
         read_units(text)
 

@@ -46,7 +46,7 @@ def test_nothing_rounds_to_minus_zero() -> None:
     assert angle(-1e-9) == "0.0°" and percent(-1e-9) == "0" and percent(-0.0004, 1) == "0.0"
 
 
-def test_a_change_is_told_with_its_sign_and_none_from_nothing() -> None:
+def test_a_change_is_reported_with_its_sign_and_none_from_nothing() -> None:
     assert change(2.0, 1.0) == "-50.0 %" and change(1.0, 1.0001) == "±0 %"
     assert change(0.0, 1.0) == ""
 

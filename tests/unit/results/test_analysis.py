@@ -33,49 +33,49 @@ def bare() -> Analysis:
 
 @pytest.mark.parametrize("name", few(NAMES, DISTINCT))
 def test_keys(name: str) -> None:
-    found = analysis(name).to_dict()
+    content = analysis(name).to_dict()
     machine = eq.load(name)
-    assert list(found)[:7] == [
+    assert list(content)[:7] == [
         "title", "speed", "acceleration", "turns", "crank_angle", "links", "points"
     ]  # fmt: skip
-    assert list(found["links"]) == list(machine.links)
+    assert list(content["links"]) == list(machine.links)
     along = ["stress", "axial_force", "bending_moment"]
-    for name, link in found["links"].items():
+    for name, link in content["links"].items():
         more = along if machine.links[name].section is not None else []
         assert list(link) == ["angle", "angular_velocity", "angular_acceleration", *more]
-    for point in found["points"].values():
+    for point in content["points"].values():
         assert list(point) == ["x", "y", "vx", "vy", "ax", "ay"]
-    for joint in found["joints"].values():
+    for joint in content["joints"].values():
         assert {"on", "by", "force_x", "force_y"} <= joint.keys()
-    assert {"shaking_force", "shaking_moment", machine.drive.effort, "summary"} <= found.keys()
-    assert "missing" not in found
+    assert {"shaking_force", "shaking_moment", machine.drive.effort, "summary"} <= content.keys()
+    assert "missing" not in content
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_array_has_one_value_a_crank_angle(name: str) -> None:
-    found = analysis(name)
-    for one in found.outputs:
-        assert one.values.shape == found.crank_angle.shape, one.name
-        assert one.values.dtype == float, one.name
-        assert np.all(np.isfinite(one.values)) or one.declared.unbounded, one.name
+    result = analysis(name)
+    for output in result.outputs:
+        assert output.values.shape == result.crank_angle.shape, output.name
+        assert output.values.dtype == float, output.name
+        assert np.all(np.isfinite(output.values)) or output.declared.unbounded, output.name
 
 
 def test_no_table_is_empty() -> None:
     """A shaft that bears no point moves none."""
     shaft = eq.Link({"A": (0.0, 0.0)}, 1.0, (0.1, 0.0), 0.2)
-    found = eq.analyze(eq.Machine("", eq.Drive("shaft", 9.0), {"A": (0.0, 0.0)}, {"shaft": shaft}))
-    assert all(table.rows for table in found.blocks() if isinstance(table, Table))
+    result = eq.analyze(eq.Machine("", eq.Drive("shaft", 9.0), {"A": (0.0, 0.0)}, {"shaft": shaft}))
+    assert all(table.rows for table in result.blocks() if isinstance(table, Table))
 
 
 def test_values_are_those_of_the_analysis() -> None:
-    found = analysis()
-    values, forces = found.to_dict(), found.forces
+    result = analysis()
+    values, forces = result.to_dict(), result.forces
     np.testing.assert_allclose(values["crank_angle"], np.arange(12) * np.pi / 6)
     np.testing.assert_array_equal(values["shaking_force"]["y"], forces.shaking_force.y)
     np.testing.assert_array_equal(values["joints"]["B"]["force_x"], forces.joints["B"].x)
     mesh = values["gears"]["rocker to counterweight"]
     assert (mesh["on"], mesh["by"]) == ("counterweight", "rocker")
-    np.testing.assert_array_equal(values["points"]["A"]["vx"], found.motion.points["A"].vx)
+    np.testing.assert_array_equal(values["points"]["A"]["vx"], result.motion.points["A"].vx)
     np.testing.assert_array_equal(values["drive_torque"], forces.drive_torque)
     assert values["about"] == {"x": 0.0, "y": 0.0}
 
@@ -85,31 +85,33 @@ def test_split_is_added_where_asked_for(name: str) -> None:
     values = analysis(name).to_dict(split=True)
     assert "by_cause" not in analysis(name).to_dict()
     for key, parts in (("by_cause", 5), ("by_link", len(values["links"]))):
-        told = values[key]
-        assert told["joints"].keys() == values["joints"].keys()
-        assert told.get("gears", {}).keys() == values.get("gears", {}).keys()
-        assert len(told["drive_torque"]) == parts
+        reported = values[key]
+        assert reported["joints"].keys() == values["joints"].keys()
+        assert reported.get("gears", {}).keys() == values.get("gears", {}).keys()
+        assert len(reported["drive_torque"]) == parts
         np.testing.assert_allclose(
-            sum(told["drive_torque"].values()), values["drive_torque"], atol=1e-10
+            sum(reported["drive_torque"].values()), values["drive_torque"], atol=1e-10
         )
         for family in ("joints", "gears"):
             for joint, whole in values.get(family, {}).items():
-                total = sum(part["x"] for part in told[family][joint].values())
+                total = sum(part["x"] for part in reported[family][joint].values())
                 np.testing.assert_allclose(total, whole["force_x"], atol=1e-9)
 
 
 def test_a_machine_without_masses() -> None:
-    found = bare()
-    values = found.to_dict()
+    result = bare()
+    values = result.to_dict()
     assert "missing for rocker" in values["missing"]
     assert not {"joints", "shaking_force", "drive_torque"} & values.keys()
     assert list(values["summary"]) == ["transmission.C", "four_bar"]
-    assert {one.group for one in found.outputs} == {*("links", "points", "transmission", "centers")}
+    assert {output.group for output in result.outputs} == {
+        *("links", "points", "transmission", "centers")
+    }
     with refused(UsageError, given="drive_torque"):
-        found.outputs["drive_torque"]
+        result.outputs["drive_torque"]
 
 
-def test_turns_are_told_of_whole_cycles_only() -> None:
+def test_turns_are_reported_of_whole_cycles_only() -> None:
     assert analysis().to_dict()["turns"] == 1
     assert "turns" not in analysis(angles=[0.1, 0.2]).to_dict()
 
@@ -118,19 +120,19 @@ def test_turns_are_told_of_whole_cycles_only() -> None:
 
 
 def test_summary() -> None:
-    found = analysis("quick-return", 90)
-    summary, sampling = found.to_dict()["summary"], found.resolved.motion.sampling
-    assert list(found.summary) == [one.name for one in found.outputs.summed]
-    for name in found.summary:
-        signal, told = found.outputs[name].resolved, summary[name]
+    result = analysis("quick-return", 90)
+    summary, sampling = result.to_dict()["summary"], result.resolved.motion.sampling
+    assert list(result.summary) == [item.name for item in result.outputs.summed]
+    for name in result.summary:
+        signal, text = result.outputs[name].resolved, summary[name]
         mean, signal = signal @ sampling.shares, signal[sampling.curve_places]
-        most = found.summary[name].peak_to_peak / 20 + 1e-8
-        assert signal.max() <= told["max"] <= signal.max() + most
-        assert signal.min() - most <= told["min"] <= signal.min()
-        assert told["mean"] == pytest.approx(mean)
-        assert told["peak"] == max(told["max"], -told["min"])
-        assert told["peak_to_peak"] == told["max"] - told["min"]
-        assert told == {**asdict(found.summary[name]), "peak_to_peak": told["peak_to_peak"]}
+        most = result.summary[name].peak_to_peak / 20 + 1e-8
+        assert signal.max() <= text["max"] <= signal.max() + most
+        assert signal.min() - most <= text["min"] <= signal.min()
+        assert text["mean"] == pytest.approx(mean)
+        assert text["peak"] == max(text["max"], -text["min"])
+        assert text["peak_to_peak"] == text["max"] - text["min"]
+        assert text == {**asdict(result.summary[name]), "peak_to_peak": text["peak_to_peak"]}
     assert "joints.block on lever.moment" in summary
     assert "four_bar" not in summary
 
@@ -160,47 +162,47 @@ def test_extremes_are_those_of_the_machine(name: str) -> None:
     """The machine has each extreme at its crank angle, or beside it where forces jump, and nothing
     beyond it anywhere.
     """
-    found = eq.analyze(eq.load(name))
-    names, figures = zip(*found.summary.items(), strict=True)
-    places = np.array([at for one in figures for at in (one.max_at, one.min_at)])
-    near = 3e-8 * found.motion.turns * np.array([[-1.0], [0.0], [1.0]])
-    there = eq.analyze(found.machine, (places + near).ravel()).outputs
-    everywhere = eq.analyze(found.machine, 7200 // found.motion.turns)
+    result = eq.analyze(eq.load(name))
+    names, figures = zip(*result.summary.items(), strict=True)
+    places = np.array([at for figure in figures for at in (figure.max_at, figure.min_at)])
+    near = 3e-8 * result.motion.turns * np.array([[-1.0], [0.0], [1.0]])
+    there = eq.analyze(result.machine, (places + near).ravel()).outputs
+    everywhere = eq.analyze(result.machine, 7200 // result.motion.turns)
     beyond, missed = (1e-5, KINKED[name]) if name in KINKED else (2e-7, 1e-7)
-    for k, (output, told) in enumerate(zip(names, figures, strict=True)):
+    for k, (output, text) in enumerate(zip(names, figures, strict=True)):
         if output.startswith(("transmission.", "curved_slots.")):
             continue  # the one folds at a right angle, the other begins anew in a closed slot
-        rounding = 1e-9 * told.rms + 1e-9
-        some, most = (share * told.peak_to_peak + rounding for share in (beyond, missed))
+        rounding = 1e-9 * text.rms + 1e-9
+        some, most = (share * text.peak_to_peak + rounding for share in (beyond, missed))
         if output in there:  # all rows together need the whole cycle
             high, low = there[output].values.reshape(3, -1, 2)[:, k].T
-            assert told.max <= np.max(high) + some
-            assert told.min >= np.min(low) - some
+            assert text.max <= np.max(high) + some
+            assert text.min >= np.min(low) - some
         values = everywhere.outputs[output].resolved
-        assert np.max(values) <= told.max + most
-        assert np.min(values) >= told.min - most
+        assert np.max(values) <= text.max + most
+        assert np.min(values) >= text.min - most
 
 
-def test_a_four_bar_is_told_by_its_links() -> None:
+def test_a_four_bar_is_described_by_its_links() -> None:
     """Of a six-bar too, where it is not plain which of the links are meant."""
     blocks = analysis("watt-six-bar").blocks()
-    (table,) = [one for one in blocks if getattr(one, "title", "").startswith("Four-bar")]
-    found = analysis("watt-six-bar").four_bar
-    assert found is not None
+    (table,) = [item for item in blocks if getattr(item, "title", "").startswith("Four-bar")]
+    machine = analysis("watt-six-bar").four_bar
+    assert machine is not None
     assert [row[:3] for row in table.rows] == [
         ("ground (fixed link)", "frame", "A, D"),
-        ("crank", found.crank, "A, B"),
-        ("coupler", found.coupler, "B, C"),
-        ("rocker", found.rocker, "D, C"),
+        ("crank", machine.crank, "A, B"),
+        ("coupler", machine.coupler, "B, C"),
+        ("rocker", machine.rocker, "D, C"),
     ]
-    said = " ".join(one for block in blocks for one in getattr(block, "items", ()))
+    said = " ".join(item for block in blocks for item in getattr(block, "items", ()))
     assert "The crank can turn fully" in said
 
 
 def test_summary_of_a_four_bar() -> None:
-    found = analysis("yamashita-1").to_dict()["summary"]["four_bar"]
-    assert found["type"] == "crank-rocker"
-    assert found["a"] == pytest.approx(0.088)
+    content = analysis("yamashita-1").to_dict()["summary"]["four_bar"]
+    assert content["type"] == "crank-rocker"
+    assert content["a"] == pytest.approx(0.088)
 
 
 # -- tables ----------------------------------------------------------------------------------------
@@ -243,52 +245,52 @@ def test_points_that_are_called_like_forces(point: str) -> None:
 @pytest.mark.parametrize("name", ["geared-counterweight", "quick-return", "class-three"])
 def test_frame_of_pandas(name: str) -> None:
     pandas = pytest.importorskip("pandas")
-    found = analysis(name)
-    frame = found.to_frame()
+    result = analysis(name)
+    frame = result.to_frame()
     assert isinstance(frame, pandas.DataFrame)
     assert frame.index.name == "crank_angle [rad]"
-    np.testing.assert_array_equal(frame.index, found.crank_angle)
-    heads = [f"{one.name} [{one.unit}]" for one in found.outputs.arrays]
-    assert [str(one) for one in frame.columns] == [one.removesuffix(" []") for one in heads]
-    np.testing.assert_array_equal(frame["drive_torque [N m]"], found.forces.drive_torque)
+    np.testing.assert_array_equal(frame.index, result.crank_angle)
+    heads = [f"{array.name} [{array.unit}]" for array in result.outputs.arrays]
+    assert [str(column) for column in frame.columns] == [head.removesuffix(" []") for head in heads]
+    np.testing.assert_array_equal(frame["drive_torque [N m]"], result.forces.drive_torque)
 
 
 @pytest.mark.parametrize("name", ["geared-counterweight", "quick-return", "class-three"])
 def test_dataset_of_xarray(name: str) -> None:
     pytest.importorskip("xarray")
-    found = analysis(name)
-    dataset = found.to_dataset()
+    result = analysis(name)
+    dataset = result.to_dataset()
     assert dict(dataset.sizes) == {"crank_angle": 12}
     assert dataset.attrs["title"] == eq.load(name).title
-    assert dataset.attrs["speed"] == found.motion.speed
-    assert list(dataset.data_vars) == [one.name for one in found.outputs.arrays]
+    assert dataset.attrs["speed"] == result.motion.speed
+    assert list(dataset.data_vars) == [item.name for item in result.outputs.arrays]
     for key, array in dataset.data_vars.items():
         assert array.attrs["units"] == unit_of(str(key))
-        assert array.attrs["long_name"] == found.outputs[str(key)].label()
-    np.testing.assert_array_equal(dataset["drive_torque"], found.forces.drive_torque)
+        assert array.attrs["long_name"] == result.outputs[str(key)].label()
+    np.testing.assert_array_equal(dataset["drive_torque"], result.forces.drive_torque)
 
 
 def test_tables_without_masses() -> None:
-    names = [one.name for one in bare().outputs.arrays]
+    names = [array.name for array in bare().outputs.arrays]
     assert "points.P.ax" in names
     assert not [name for name in names if name.startswith(("joints", "shaking", "drive"))]
 
 
 def test_machine_and_four_bar_of_an_analysis() -> None:
-    found = analysis("yamashita-1")
-    assert found.machine is found.motion.machine
-    assert found.four_bar is not None
-    assert found.four_bar == eq.mechanism.four_bar(found.machine)
+    result = analysis("yamashita-1")
+    assert result.machine is result.motion.machine
+    assert result.four_bar is not None
+    assert result.four_bar == eq.mechanism.four_bar(result.machine)
 
 
 def test_rows_of_a_machine_that_is_pushed() -> None:
     """What pushes each row is added up, each row ahead by its phase."""
     rows = (Row(0.0, -0.5), Row(0.4 * np.pi, 0.5))
-    found = eq.analyze(replace(eq.load("hydraulic-loader"), rows=rows), 45)
-    one, both = (found.outputs[name].values for name in ("drive_force", "rows.drive_force"))
-    np.testing.assert_allclose(both, one + np.roll(one, -9), rtol=1e-9)
-    assert "rows.drive_torque" not in found.outputs
-    assert {role for role, _ in torque(found).keys} == {"one", "all"}
+    result = eq.analyze(replace(eq.load("hydraulic-loader"), rows=rows), 45)
+    first, both = (result.outputs[name].values for name in ("drive_force", "rows.drive_force"))
+    np.testing.assert_allclose(both, first + np.roll(first, -9), rtol=1e-9)
+    assert "rows.drive_torque" not in result.outputs
+    assert {role for role, _ in torque(result).keys} == {"one", "all"}
 
 
 def test_an_attribute_that_there_is_not() -> None:

@@ -50,7 +50,7 @@ def declare(linear: bool) -> None:
     """Declare the power of the drive, and whether it is linear in the masses."""
     loop = "{drive torque} * {speed}"
     output(POWER, "power", "drive power", linear=linear, loop=loop)(
-        lambda found: found.forces.drive_torque * found.motion.speed
+        lambda result: result.forces.drive_torque * result.motion.speed
     )
 
 
@@ -70,7 +70,7 @@ def linear(request: pytest.FixtureRequest) -> Iterator[bool]:
         yield request.param
 
 
-def found_with() -> eq.Analysis:
+def analysis_with() -> eq.Analysis:
     assert POWER in DECLARED
     return eq.analyze(eq.load("yamashita-1"), 90)
 
@@ -88,34 +88,36 @@ def test_names_mean_what_is_declared_now() -> None:
 
 
 def test_it_stands_among_plain_data(power: None) -> None:
-    found = found_with()
-    power = found.forces.power
-    assert found.summary[POWER] == found.motion.figures(power)
-    values = json.loads(json_text(found.to_dict()))
+    result = analysis_with()
+    power = result.forces.power
+    assert result.summary[POWER] == result.motion.figures(power)
+    values = json.loads(json_text(result.to_dict()))
     np.testing.assert_allclose(values[POWER], power)
     assert values["summary"][POWER]["rms"] == pytest.approx(np.sqrt(np.mean(power**2)))
-    header = to_csv(found).splitlines()[0].split(",")
+    header = to_csv(result).splitlines()[0].split(",")
     assert "drive_power [W]" in header
 
 
 def test_it_stands_in_tables(power: None) -> None:
     pytest.importorskip("pandas"), pytest.importorskip("xarray")
-    found = found_with()
-    np.testing.assert_array_equal(found.to_frame()[f"{POWER} [W]"], found.forces.power)
-    array = found.to_dataset()[POWER]
+    result = analysis_with()
+    np.testing.assert_array_equal(result.to_frame()[f"{POWER} [W]"], result.forces.power)
+    array = result.to_dataset()[POWER]
     assert array.attrs == {"units": "W", "long_name": "drive power"}
 
 
 def test_it_is_printed() -> None:
     with declaring():
-        output(POWER, "power", "drive power", ordered=True)(lambda found: found.forces.power)
-        found = found_with()
-        tables = {one.title: one for one in found.blocks() if isinstance(one, Table)}
-        assert "drive power, W" in words(found.blocks())
+        output(POWER, "power", "drive power", ordered=True)(lambda result: result.forces.power)
+        actual = analysis_with()
+        tables = {block.title: block for block in actual.blocks() if isinstance(block, Table)}
+        assert "drive power, W" in words(actual.blocks())
         assert tables["Amplitudes by order"].columns[-1] == Column("drive power", "power")
-        *rest, last = (one for one in found.blocks(orders=4, zero=0.0) if isinstance(one, Table))
+        *rest, last = (
+            block for block in actual.blocks(orders=4, zero=0.0) if isinstance(block, Table)
+        )
         assert last.title == "Drive power" and len(rest) == 6
-        np.testing.assert_allclose(last.rows[1][3].value, found.by_order[POWER].sizes[1])
+        np.testing.assert_allclose(last.rows[1][3].value, actual.by_order[POWER].sizes[1])
 
 
 @pytest.mark.parametrize(
@@ -127,10 +129,12 @@ def test_it_is_printed() -> None:
     ],
 )
 def test_headings_of_harmonics(language: str, title: str) -> None:
-    found = eq.analyze(eq.load("yamashita-1"), 90)
+    analysis = eq.analyze(eq.load("yamashita-1"), 90)
     with speaking(language):
-        tables = [one for one in found.blocks(orders=2, zero=0.0) if isinstance(one, Table)]
-    assert [one.rows[0][0] for one in tables] == ["0"] * 6 and tables[2].title == title
+        tables = [
+            block for block in analysis.blocks(orders=2, zero=0.0) if isinstance(block, Table)
+        ]
+    assert [item.rows[0][0] for item in tables] == ["0"] * 6 and tables[2].title == title
 
 
 @pytest.mark.exhaustive(but=["ko"])
@@ -143,7 +147,7 @@ def test_it_stands_in_the_report(power: None, language: str) -> None:
 
 
 def test_it_can_be_drawn(power: None) -> None:
-    picture = render(outputs_chart(found_with(), [POWER])).decode()
+    picture = render(outputs_chart(analysis_with(), [POWER])).decode()
     assert "drive power" in picture
 
 
@@ -151,17 +155,19 @@ def test_the_page_draws_unasked_what_is_compared() -> None:
     """An output of which figures are told before and after has a chart and its numbers."""
     with declaring():
         output(POWER, "power", "drive power", compared=("rms", "peak"))(
-            lambda found: found.forces.drive_torque * found.motion.speed
+            lambda result: result.forces.drive_torque * result.motion.speed
         )
         session = Session()
         session.open(opened_example("yamashita-1"))
-        replies = [one.content for one in session.receive(message_of({"type": "ready"}))]
-    (content,) = [one for one in replies if one["type"] == "state"]
-    (chart,) = [one for one in content["charts"] if one["name"] == POWER]
+        replies = [item.content for item in session.receive(message_of({"type": "ready"}))]
+    (content,) = [reply for reply in replies if reply["type"] == "state"]
+    (chart,) = [entry for entry in content["charts"] if entry["name"] == POWER]
     (choice,) = chart["choices"]
     assert (choice["label"], choice["unit"]) == ("Drive power", "W")
     assert choice["curves"][0]["array"] in content["arrays"]
-    assert {one["unit"] for one in content["figures"] if one["signal"] == "drive power"} == {"W"}
+    assert {entry["unit"] for entry in content["figures"] if entry["signal"] == "drive power"} == {
+        "W"
+    }
 
 
 def test_the_page_offers_it_and_draws_it_when_asked(power: None) -> None:
@@ -169,7 +175,7 @@ def test_the_page_offers_it_and_draws_it_when_asked(power: None) -> None:
     session.open(opened_example("yamashita-1"))
     asked = message_of({"type": "outputs", "seq": 1, "names": [POWER, "points.P.vx"]})
     content = next(iter(session.receive(asked))).content
-    offered = {one["name"]: one for one in content["outputs"]}
+    offered = {entry["name"]: entry for entry in content["outputs"]}
     assert offered[POWER] == {
         "name": POWER,
         "label": "drive power",
@@ -186,7 +192,7 @@ def test_the_page_offers_it_and_draws_it_when_asked(power: None) -> None:
 
 
 def test_studies_know_its_dimension(power: None) -> None:
-    machine = found_with().machine
+    machine = analysis_with().machine
     for path in (POWER, f"summary.{POWER}.rms", f"{POWER}.peak_to_peak"):
         assert dimension_of(machine, "analyze", path) == "power"
     assert dimension_of(machine, "analyze", f"summary.{POWER}.max_at") == "angle"
@@ -204,11 +210,11 @@ def test_balancing_takes_it_or_says_why_not(linear: bool) -> None:
             eq.balance(machine, plan)
         return
     torque = Balance(masses=plan.masses, objectives=(Objective("drive_torque"),))
-    found, same = eq.balance(machine, plan), eq.balance(machine, torque)
+    actual, same = eq.balance(machine, plan), eq.balance(machine, torque)
     speed = abs(machine.drive.speed)
-    for one, other in zip(found.objectives.values(), same.objectives.values(), strict=True):
-        np.testing.assert_allclose(one, np.array(other) * speed, rtol=1e-6)
-    assert found.units["rms of drive_power"] == "W"
+    for objective, other in zip(actual.objectives.values(), same.objectives.values(), strict=True):
+        np.testing.assert_allclose(objective, np.array(other) * speed, rtol=1e-6)
+    assert actual.units["rms of drive_power"] == "W"
 
 
 # -- documentation ---------------------------------------------------------------------------------
@@ -230,40 +236,40 @@ def test_a_new_one_comes_into_the_documentation(linear: bool) -> None:
 
 
 def test_a_slider_crank_shows_its_stroke() -> None:
-    found = eq.analyze(eq.load("slider-crank-engine"))
-    (slider,) = found.machine.sliders
-    travel = found.outputs[f"sliders.{slider.name}.travel"]
-    places = found.motion.points[slider.point].place
+    analysis = eq.analyze(eq.load("slider-crank-engine"))
+    (slider,) = analysis.machine.sliders
+    travel = analysis.outputs[f"sliders.{slider.name}.travel"]
+    places = analysis.motion.points[slider.point].place
     ends = places[np.argmax(travel.values)], places[np.argmin(travel.values)]
     assert travel.figures.peak_to_peak == pytest.approx(abs(ends[0] - ends[1]))
 
 
 @pytest.mark.parametrize("name", sorted(eq.examples("linkage")))
 def test_sliding_and_transmission_of_every_example(name: str) -> None:
-    found = eq.analyze(eq.load(name), 360)
+    analysis = eq.analyze(eq.load(name), 360)
     step = 2 * np.pi / 360
-    for motion in found.motion.sliders.values():
-        slope = np.gradient(motion.travel, step)[2:-2] * found.motion.speed
+    for motion in analysis.motion.sliders.values():
+        slope = np.gradient(motion.travel, step)[2:-2] * analysis.motion.speed
         scale = np.max(np.abs(motion.velocity)) or 1.0
         np.testing.assert_allclose(slope, motion.velocity[2:-2], atol=5e-3 * scale)
-    for angle in found.motion.transmission.values():
+    for angle in analysis.motion.transmission.values():
         assert np.all((angle >= 0) & (angle <= np.pi))
-    if found.four_bar is not None and found.four_bar.transmission_min is not None:
-        low, high = found.four_bar.transmission_min, found.four_bar.transmission_max
-        angles: list[Any] = list(found.motion.transmission.values())
+    if analysis.four_bar is not None and analysis.four_bar.transmission_min is not None:
+        low, high = analysis.four_bar.transmission_min, analysis.four_bar.transmission_max
+        angles: list[Any] = list(analysis.motion.transmission.values())
         assert any(
-            np.min(one) >= low - 1e-9
-            and np.max(one) <= high + 1e-9
-            and np.ptp(one) > 0.9 * (high - low)
-            for one in angles
+            np.min(item) >= low - 1e-9
+            and np.max(item) <= high + 1e-9
+            and np.ptp(item) > 0.9 * (high - low)
+            for item in angles
         )
 
 
 def test_everything_that_moves_has_its_diagrams() -> None:
-    found = eq.analyze(eq.load("quick-return"), 90)
-    drawn = {chart.name: chart for chart in kinematics(found)}
-    names = ["transmission", *(slider.name for slider in found.machine.sliders)]
-    names += [*found.machine.links, *(set(found.motion.points) - set(found.machine.frame))]
+    analysis = eq.analyze(eq.load("quick-return"), 90)
+    drawn = {chart.name: chart for chart in kinematics(analysis)}
+    names = ["transmission", *(slider.name for slider in analysis.machine.sliders)]
+    names += [*analysis.machine.links, *(set(analysis.motion.points) - set(analysis.machine.frame))]
     assert set(drawn) == {f"kinematics-{name.replace(' ', '-')}" for name in names}
     titles = [panel.title for panel in drawn["kinematics-ram-on-frame"].panels]
     assert titles[0] == "travel of ram on frame, mm"

@@ -60,7 +60,7 @@ def test_a_machine_without_a_crank_has_cycles_in_its_line() -> None:
 @pytest.mark.parametrize("angles", [24, [0.0, 0.3]])
 def test_a_notebook_draws_a_machine_and_its_motion_and_tabulates_forces(angles: Any) -> None:
     motion = eq.move(FOUR_BAR, angles)
-    machine, moved, exerted = (one._repr_html_() for one in (FOUR_BAR, motion, eq.forces(motion)))
+    machine, moved, exerted = (item._repr_html_() for item in (FOUR_BAR, motion, eq.forces(motion)))
     for html in (machine, moved):
         assert picture_in(html).startswith("<svg") or "<svg" in picture_in(html)[:200]
     assert "Links; places in the axes of each link" in machine
@@ -181,7 +181,7 @@ def test_a_text_with_a_unit_is_the_same_number(name: str) -> None:
     by_text, by_number = (make() for make in SAME[name])
     if isinstance(by_text, eq.Machine):
         by_text, by_number = (
-            eq.analyze(one, 12).forces.drive_torque for one in (by_text, by_number)
+            eq.analyze(item, 12).forces.drive_torque for item in (by_text, by_number)
         )
     if isinstance(by_text, eq.Slider | eq.Mount):
         assert by_text == by_number

@@ -76,9 +76,9 @@ QUICK = {
 }  # fmt: skip
 """Of every command and kind of machine some; the others show the same before a release."""
 COMMANDS = [
-    *(("analyze", one) for one in (*LINKAGES, *ADVISED)),
+    *(("analyze", item) for item in (*LINKAGES, *ADVISED)),
     *(("respond", name) for name in LINKAGES if model_of(name).support is not None),
-    *(("balance", one) for one in ADVISED),
+    *(("balance", item) for item in ADVISED),
     *(("balance", name) for name in ("balance-geared-a", "balance-shafts", "cam-pusher",
                                      "exudyn-slider-crank", "hydraulic-loader", "sieve",
                                      "walking-transplanter", "watt-six-bar")),
@@ -154,9 +154,9 @@ def test_the_verdict_of_a_tool_is_what_a_day_amounts_to(capsys: pytest.CaptureFi
     brief = printed(capsys, "tool", "brush-cutter")
     assert brief[1].startswith("! A day of work: A(8) = 6.85 m/s^2, above the limit value")
     assert printed(capsys, "tool", "brush-cutter", "--full")[1] == brief[1]
-    found, document = findings_of("brush-cutter"), report_of("brush-cutter")
+    actual, document = findings_of("brush-cutter"), report_of("brush-cutter")
     assert document.verdict is not None and document.verdict.emphasis == "broken"
-    a8 = expose_tool(found.tool, found.speeds).a8  # type: ignore[union-attr]
+    a8 = expose_tool(actual.tool, actual.speeds).a8  # type: ignore[union-attr]
     assert f"A(8) = {a8:.2f} m/s²" in document.verdict.text
 
 
@@ -167,8 +167,8 @@ def test_a_machine_without_a_crank_has_no_crank_angle(
 ) -> None:
     for words in (("analyze", file), ("analyze", file, "--full"), ("balance", file)):
         text = "\n".join(printed(capsys, *words))
-        told = text.partition("Look at next")[0]
-        assert not re.search(r"crank|rpm|drive pivot", told.replace("double-crank", ""), re.I)
+        reported = text.partition("Look at next")[0]
+        assert not re.search(r"crank|rpm|drive pivot", reported.replace("double-crank", ""), re.I)
         assert "cycle" in text and "cycles a minute" in text
     assert "crank angle" not in "\n".join(printed(capsys, "check", file))
 
@@ -193,9 +193,9 @@ def test_what_else_is_large_is_ranked_beside_its_yardsticks() -> None:
     analysis = eq.analyze(eq.load("twin-engine"))
     entries = assess(analysis)
     first = verdict(entries)
-    (large,) = (one for one in analysis.headline(alone=True)
-                if isinstance(one, Facts) and "large" in one.title)  # fmt: skip
-    rest = [one for one in entries if one is not first and one.is_large]
+    (large,) = (element for element in analysis.headline(alone=True)
+                if isinstance(element, Facts) and "large" in element.title)  # fmt: skip
+    rest = [element for element in entries if element is not first and element.is_large]
     assert len(large.items) == min(3, len(rest))
     for item, entry in zip(large.items, rest, strict=False):
         assert item.lower().startswith(str(entry.label).lower()[:12])
@@ -206,8 +206,8 @@ def test_a_machine_without_masses_is_judged_by_its_motion() -> None:
     links = {name: link.__class__(points=link.points) for name, link in machine.links.items()}
     analysis = eq.analyze(replace(machine, links=links, balance=None))
     blocks = [*analysis.headline(alone=True)]
-    texts = [one.text for one in blocks if isinstance(one, Text)]
-    assert any("3 moving links; crank driven" in one for one in texts)
+    texts = [block.text for block in blocks if isinstance(block, Text)]
+    assert any("3 moving links; crank driven" in text for text in texts)
     assert texts[0].startswith("Transmission angle")
 
 
@@ -244,7 +244,7 @@ def test_a_follower_that_stays_on_is_no_trouble(capsys: pytest.CaptureFixture[st
     assert isinstance(first, Text) and first.emphasis == "broken"
     assert first.text.startswith("Lift-off speed of the crank: 583 rpm")
     assert "stays on" not in first.text
-    kept = tuple(one for one in assess(eq.analyze(eq.load("cam-pusher"))) if one.is_contact)
+    kept = tuple(item for item in assess(eq.analyze(eq.load("cam-pusher"))) if item.is_contact)
     assert verdict(kept) is kept[0] and verdict(()) is None
 
 

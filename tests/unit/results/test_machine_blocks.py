@@ -16,7 +16,9 @@ def made_of(body: Body) -> str:
     (table,) = bodies_tables(eq.load("yamashita-1").with_link("rocker", bodies=[body]))
     assert isinstance(table, Table)
     (row,) = table.rows
-    return str(row[[str(getattr(one, "label", one)) for one in table.columns].index("material")])
+    return str(
+        row[[str(getattr(column, "label", column)) for column in table.columns].index("material")]
+    )
 
 
 @pytest.mark.parametrize(("name", "density"), MATERIALS.items())

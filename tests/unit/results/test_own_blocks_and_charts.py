@@ -51,10 +51,10 @@ def own_blocks(_: Own) -> Iterator[Block]:
     yield Sentence("shown by its own function")
 
 
-def own_charts(found: Own) -> dict[str, Chart]:
+def own_charts(result: Own) -> dict[str, Chart]:
     x = np.linspace(0.0, 1.0, 5)
     panel = Panel(Axis("time"), Axis("square"), (Curve(x, x**2),))
-    return {name: Chart(name, found.title, name, (panel,)) for name in ("first", "second")}
+    return {name: Chart(name, result.title, name, (panel,)) for name in ("first", "second")}
 
 
 @pytest.fixture
@@ -66,11 +66,11 @@ def machine(monkeypatch: pytest.MonkeyPatch) -> Machine:
 
 
 def test_a_result_is_shown_and_drawn_by_what_its_class_declares(machine: Machine) -> None:
-    found = Own(machine)
-    assert [*found.blocks()] == [Sentence("shown by its own function")]
-    assert found.pictures == ("first", "second")
-    assert [*pictures_of(found)] == ["first", "second"]
-    words = " ".join(one.get_text() for one in found.plot("second").findobj(Text))
+    result = Own(machine)
+    assert [*result.blocks()] == [Sentence("shown by its own function")]
+    assert result.pictures == ("first", "second")
+    assert [*pictures_of(result)] == ["first", "second"]
+    words = " ".join(item.get_text() for item in result.plot("second").findobj(Text))
     assert "second" in words and "square" in words
 
 
@@ -81,19 +81,19 @@ def test_a_result_without_pictures_is_refused(machine: Machine) -> None:
 
 def kinds() -> list[type[Result]]:
     for room in map(import_module, (f"equipoise.{name}" for name in ROOMS)):
-        for one in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
-            import_module(one.name)
+        for package in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
+            import_module(package.name)
     bases = [kind for kind in Result.__subclasses__() if kind.__module__.startswith("equipoise.")]
     return [kind for base in bases for kind in (base.__subclasses__() or [base])]
 
 
 def test_what_results_declare_is_there() -> None:
     """Functions are named by texts, which no type checker reads."""
-    found = kinds()
-    assert len(found) >= 29
-    for one in found:
-        assert one.blocks_in
-        for place in filter(None, (one.blocks_in, one.headline_in, one.pictures_in)):
+    result = kinds()
+    assert len(result) >= 29
+    for item in result:
+        assert item.blocks_in
+        for place in filter(None, (item.blocks_in, item.headline_in, item.pictures_in)):
             module, _, name = place.rpartition(".")
             function = getattr(import_module(f"equipoise.{module}"), name)
             assert callable(function), place

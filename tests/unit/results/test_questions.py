@@ -17,7 +17,7 @@ from support.chosen import DISTINCT, few
 
 
 def noted(blocks: object) -> set[str]:
-    return {str(n) for one in blocks if isinstance(one, Notes) for n in one.notes}  # type: ignore[attr-defined]
+    return {str(n) for block in blocks if isinstance(block, Notes) for n in block.notes}  # type: ignore[attr-defined]
 
 
 def with_crank(machine: Machine, **changes: object) -> Machine:
@@ -37,7 +37,7 @@ def both(machine: Machine) -> tuple[set[str], set[str], set[str]]:
 
 def test_an_inertia_in_another_unit_is_asked_of() -> None:
     checked, shown, plain = both(with_crank(eq.load("yamashita-1"), inertia=1500.0))
-    (asked,) = (one for one in checked if "radius of gyration" in one)
+    (asked,) = (item for item in checked if "radius of gyration" in item)
     assert asked in shown and asked in plain and "check its unit" in asked
 
 
@@ -46,9 +46,9 @@ def test_lengths_in_different_units_are_asked_of() -> None:
     (name, (x, y)) = [*machine.links["crank"].points.items()][1]
     shorter = {**machine.links["crank"].points, name: (x / 1000, y / 1000)}
     checked, shown, plain = both(with_crank(machine, points=shorter))
-    (asked,) = (one for one in checked if "check their units" in one)
+    (asked,) = (item for item in checked if "check their units" in item)
     assert asked in shown and asked in plain
-    assert not any("check their units" in one for one in both(machine)[0])
+    assert not any("check their units" in item for item in both(machine)[0])
 
 
 def test_a_gauge_along_a_direction_in_which_nothing_moves_is_asked_of() -> None:
@@ -61,16 +61,18 @@ def test_a_gauge_along_a_direction_in_which_nothing_moves_is_asked_of() -> None:
     outward = (arm.real / abs(arm), arm.imag / abs(arm), 0.0)  # a pin lets nothing move along it
     still = replace(support, gauges={name: replace(gauge, direction=outward)})
     checked, shown, plain = both(replace(machine, support=still))
-    (asked,) = (one for one in checked if "reads nothing" in one)
+    (asked,) = (item for item in checked if "reads nothing" in item)
     assert asked in shown and asked in plain and f"support.gauges.{name}" in asked
 
 
 def test_what_a_machine_is_asked_is_said_once() -> None:
     for name in ("straw-walker", "cam-pusher", "sieve"):
         analysis = eq.analyze(eq.load(name), 90)
-        said = [str(n) for one in analysis.blocks() if isinstance(one, Notes) for n in one.notes]
+        said = [
+            str(n) for block in analysis.blocks() if isinstance(block, Notes) for n in block.notes
+        ]
         assert len(said) == len(set(said))
-        assert set(analysis.notes) >= {one for one in said if "dead position" in one}
+        assert set(analysis.notes) >= {item for item in said if "dead position" in item}
 
 
 def test_a_table_that_the_motion_never_reaches_is_asked_of() -> None:

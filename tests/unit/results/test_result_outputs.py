@@ -187,10 +187,10 @@ NEW = ResultOutput("quarter of a newton", "force", read=lambda _: 0.25, heading=
 @pytest.fixture(params=CASES)
 def case(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Case:
     """A case, while its output is declared."""
-    found = CASES[request.param]
-    new = replace(NEW, column="new" if found.csv else None, series=found.series)
-    monkeypatch.setitem(found.declared, "new", new)  # type: ignore[arg-type]
-    return found
+    actual = CASES[request.param]
+    new = replace(NEW, column="new" if actual.csv else None, series=actual.series)
+    monkeypatch.setitem(actual.declared, "new", new)  # type: ignore[arg-type]
+    return actual
 
 
 def at(values: Any, path: str) -> Any:
@@ -215,7 +215,7 @@ def test_it_is_in_a_table(case: Case) -> None:
     if not case.title:
         pytest.skip("curves are drawn, not printed")
     blocks = case.result(eq.load(case.model)).blocks()
-    (table,) = (one for one in blocks if isinstance(one, Table) and one.title == case.title)
+    (table,) = (block for block in blocks if isinstance(block, Table) and block.title == case.title)
     shown = [cell.value for row in table.rows for cell in row if isinstance(cell, Value)]
     heads = [column.label for column in table.columns] + [str(row[0]) for row in table.rows]
     assert 0.25 in shown and "largest" in heads

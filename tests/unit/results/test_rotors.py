@@ -68,9 +68,9 @@ def sieve(arm: float) -> eq.Machine:
 
 def test_an_exciter_is_not_robbed_of_its_unbalance() -> None:
     machine = sieve(14)
-    found = advise(machine)
-    assert not found.helps
-    words = " ".join(benefit_sentences(found))
+    advice = advise(machine)
+    assert not advice.helps
+    words = " ".join(benefit_sentences(advice))
     assert rotor_sentence(machine) in words
     assert "308" in rotor_sentence(machine)  # 22 kg at 14 mm, in kg mm
     assert "would be added" not in words

@@ -26,7 +26,7 @@ WITH_GAUGES = ("riding-transplanter", "sieve")
 
 def assessed(machine: eq.Machine) -> dict[str, FigureAssessment]:
     readings = eq.respond(machine).gauges if machine.support is not None else None
-    return {one.figure: one for one in assess(eq.analyze(machine), readings)}
+    return {item.figure: item for item in assess(eq.analyze(machine), readings)}
 
 
 def pump() -> eq.Machine:
@@ -47,16 +47,16 @@ def pump() -> eq.Machine:
 )
 def test_each_machine_has_the_verdict_of_its_kind(name: str, figure: str) -> None:
     """By what its outputs declare: nothing knows these machines."""
-    found = verdict(tuple(assessed(eq.load(name)).values()))
-    assert found is not None and found.figure == figure
+    result = verdict(tuple(assessed(eq.load(name)).values()))
+    assert result is not None and result.figure == figure
 
 
 def test_a_follower_that_lifts_off_is_the_verdict() -> None:
     """From its lift-off speed of 583 rpm on, and not below it."""
     machine = eq.load("cam-pusher")
     for rpm, figure in ((580, "shaking_moment.peak"), (590, "cams.crank to pusher.lift_off_speed")):
-        found = verdict(tuple(assessed(machine.with_drive(speed=f"{rpm} rpm")).values()))
-        assert found is not None and found.figure == figure
+        result = verdict(tuple(assessed(machine.with_drive(speed=f"{rpm} rpm")).values()))
+        assert result is not None and result.figure == figure
 
 
 @pytest.mark.parametrize("name", few(sorted(eq.examples("linkage")), DISTINCT))
@@ -65,39 +65,39 @@ def test_figures_are_those_of_the_machine_readable_output(name: str) -> None:
     analysis = eq.analyze(machine)
     values = analysis.to_dict()
     readings = eq.respond(machine) if name in WITH_GAUGES else None
-    found = assess(analysis, readings and readings.gauges)
-    assert found and [one.excess for one in found] == sorted(
-        (e.excess for e in found), reverse=True
+    result = assess(analysis, readings and readings.gauges)
+    assert result and [item.excess for item in result] == sorted(
+        (e.excess for e in result), reverse=True
     )
-    for one in found:
-        name, _, measure = one.figure.rpartition(".")
-        if one.output.startswith("gauges."):
+    for entry in result:
+        name, _, measure = entry.figure.rpartition(".")
+        if entry.output.startswith("gauges."):
             assert readings is not None
-            velocity = readings.to_dict()["gauges"][one.item]["velocity"]
-            assert one.value == pytest.approx(velocity["rms"])
-        elif (table := one.output.partition(".")[0]) in ("sections", "rolling_bearings"):
-            assert one.value == values[table][one.item][measure]
-        elif one.is_contact:
-            assert one.value == values["cams"][one.item]["lift_off_speed"]
+            velocity = readings.to_dict()["gauges"][entry.item]["velocity"]
+            assert entry.value == pytest.approx(velocity["rms"])
+        elif (table := entry.output.partition(".")[0]) in ("sections", "rolling_bearings"):
+            assert entry.value == values[table][entry.item][measure]
+        elif entry.is_contact:
+            assert entry.value == values["cams"][entry.item]["lift_off_speed"]
         else:
             figures = values["summary"][name]
-            assert one.value == pytest.approx(figures[measure], rel=1e-12)
-            if one.crank_angle is None:  # of the mean torque beside that of the motor
+            assert entry.value == pytest.approx(figures[measure], rel=1e-12)
+            if entry.crank_angle is None:  # of the mean torque beside that of the motor
                 continue
             places = [figures[place] for place in ("peak_at", "max_at", "min_at")]
-            assert one.crank_angle in places
-    json_text([one.to_dict() for one in found])
+            assert entry.crank_angle in places
+    json_text([item.to_dict() for item in result])
 
 
 def test_a_force_that_shakes_is_measured_by_the_weight() -> None:
     """Which is the acceleration of the common centre of mass over gravity."""
-    found = assessed(pump())["shaking_force.peak"]
+    result = assessed(pump())["shaking_force.peak"]
     acceleration = eq.analyze(pump()).outputs
     ax, ay = (acceleration[f"mass_center.{axis}"].values for axis in ("ax", "ay"))
-    assert found.ratio == pytest.approx(np.max(np.hypot(ax, ay)) / 9.80665)
+    assert result.ratio == pytest.approx(np.max(np.hypot(ax, ay)) / 9.80665)
     flat = assessed(replace(pump(), gravity=(0.0, 0.0)))["shaking_force.peak"]
-    assert flat.ratio == pytest.approx(found.ratio)
-    assert (found.unit, str(found.against)) == ("N", "the weight of the moving links")
+    assert flat.ratio == pytest.approx(result.ratio)
+    assert (result.unit, str(result.against)) == ("N", "the weight of the moving links")
 
 
 def test_a_load_that_is_larger_takes_the_place_of_the_weight() -> None:
@@ -115,19 +115,19 @@ def test_a_load_that_is_larger_takes_the_place_of_the_weight() -> None:
 
 def test_a_couple_is_measured_over_the_span_of_the_bearings() -> None:
     machine = eq.load("twin-engine")
-    found = assessed(machine)["rocking_moment.peak"]
+    result = assessed(machine)["rocking_moment.peak"]
     planes = [bearing.plane for bearing in machine.bearings.values()]
     span = max(planes) - min(planes)
     rocking = eq.analyze(machine).forces.across.rocking_moment.value
     pair = np.max(np.abs(rocking)) / span
-    assert found.ratio == pytest.approx(pair / (9.80665 * machine.mass))
+    assert result.ratio == pytest.approx(pair / (9.80665 * machine.mass))
 
 
 def test_a_torque_is_measured_by_its_mean_where_there_is_work_to_do() -> None:
     analysis = eq.analyze(eq.load("quick-return"))
     torque = analysis.summary["drive_torque"]
-    found = {one.figure: one for one in assess(analysis)}["drive_torque.peak_to_peak"]
-    assert found.ratio == pytest.approx(torque.peak_to_peak / abs(torque.mean))
+    actual = {item.figure: item for item in assess(analysis)}["drive_torque.peak_to_peak"]
+    assert actual.ratio == pytest.approx(torque.peak_to_peak / abs(torque.mean))
     idle = assessed(pump())["drive_torque.peak_to_peak"]
     assert idle.yardstick > 0 and str(idle.against) != "its mean"
 
@@ -165,8 +165,8 @@ def test_what_samples_leave_of_a_mean_of_nothing_is_no_yardstick() -> None:
     analysis = eq.analyze(eq.loads(NEAR_A_DEAD_POSITION))
     torque = analysis.summary["drives.crank.torque"]
     assert 0 < abs(torque.mean) < 0.01 * torque.rms  # no load does work: the true mean is 0
-    found = {one.figure: one for one in assess(analysis)}["drives.crank.torque.peak_to_peak"]
-    assert str(found.against) != "its mean"
+    actual = {item.figure: item for item in assess(analysis)}["drives.crank.torque.peak_to_peak"]
+    assert str(actual.against) != "its mean"
 
 
 def test_limits_of_gauges_are_their_yardsticks() -> None:
@@ -174,49 +174,49 @@ def test_limits_of_gauges_are_their_yardsticks() -> None:
     machine = eq.load("sieve")
     gauge = eq.respond(machine).gauges["stand"].displacement
     limit = Limit(Objective("gauges.stand", "ripple"), at_most=1e-4)
-    found = assessed(machine.with_balance(Balance(limits=(limit,))))
-    one = found["gauges.stand.rms"]
-    assert one.is_limit and one.ratio == pytest.approx(float(gauge.vibration_rms) / 1e-4)
-    assert "gauges.stand.velocity.rms" not in found
-    assert "gauges.stand_along.velocity.rms" in found
-    assert verdict(tuple(found.values())) is one
+    result = assessed(machine.with_balance(Balance(limits=(limit,))))
+    first = result["gauges.stand.rms"]
+    assert first.is_limit and first.ratio == pytest.approx(float(gauge.vibration_rms) / 1e-4)
+    assert "gauges.stand.velocity.rms" not in result
+    assert "gauges.stand_along.velocity.rms" in result
+    assert verdict(tuple(result.values())) is first
 
 
 def test_a_linkage_without_masses_has_its_angles() -> None:
     machine = eq.load("yamashita-1")
     links = {name: replace(link, mass=None, center_of_mass=None, inertia=None)
              for name, link in machine.links.items()}  # fmt: skip
-    found = assessed(replace(machine, links=links))
-    assert [*found] == ["transmission.C.min"]
-    (one,) = found.values()
-    assert one.ratio == pytest.approx((radians(90) - one.value) / radians(50))
+    result = assessed(replace(machine, links=links))
+    assert [*result] == ["transmission.C.min"]
+    (first,) = result.values()
+    assert first.ratio == pytest.approx((radians(90) - first.value) / radians(50))
 
 
 def test_an_output_is_assessed_where_it_is_declared_to_be() -> None:
     with declaring():
         output("thrust", "force", "thrust", yardstick="weight")(
-            lambda found: found.forces.shaking_force.x
+            lambda result: result.forces.shaking_force.x
         )
-        found = assessed(pump())
+        actual = assessed(pump())
     shaking = eq.analyze(pump()).forces.shaking_force.x
-    assert found["thrust.peak"].value == pytest.approx(np.max(np.abs(shaking)))
-    declared = {one.yardstick for one in DECLARED.values()} - {""}
+    assert actual["thrust.peak"].value == pytest.approx(np.max(np.abs(shaking)))
+    declared = {value.yardstick for value in DECLARED.values()} - {""}
     assert declared == {*OF_OUTPUT, "vibration"}
 
 
 def test_of_rows_all_together_count() -> None:
     """And the support is a part of what is shaken."""
     machine = eq.load("riding-transplanter")
-    found = assessed(machine)
-    assert "shaking_force.peak" not in found and "drive_torque.peak_to_peak" not in found
+    result = assessed(machine)
+    assert "shaking_force.peak" not in result and "drive_torque.peak_to_peak" not in result
     support = machine.support
     assert support is not None
     weight = (4 * machine.mass + support.mass) * hypot(*machine.gravity)
-    assert found["rows.shaking_force.peak"].yardstick == pytest.approx(weight)
+    assert result["rows.shaking_force.peak"].yardstick == pytest.approx(weight)
 
 
 def test_figures_beside_their_yardsticks_in_words() -> None:
-    said = {one.figure: sentence(one) for one in assessed(eq.load("twin-engine")).values()}
+    said = {value.figure: sentence(value) for value in assessed(eq.load("twin-engine")).values()}
     assert said["rocking_moment.peak"] == (
         "Rocking moment, peak: 116 N m at crank angle 90.0°, 32 times the weight of the moving "
         "links at the span"
@@ -247,8 +247,8 @@ def test_a_torque_that_loads_swing_is_judged_by_their_work() -> None:
     it only swings its links.
     """
     press = eq.load(Path(support.findings.__file__).parent / "advised" / "stamping-press.toml")
-    found = assessed(press)["drive_torque.peak_to_peak"]
-    assert str(found.against) == "its mean" and found.yardstick < 60 < found.ratio
+    result = assessed(press)["drive_torque.peak_to_peak"]
+    assert str(result.against) == "its mean" and result.yardstick < 60 < result.ratio
     idle = assessed(replace(press, loads=()))["drive_torque.peak_to_peak"]
     assert str(idle.against) == "the weight of the moving links at the throw of the crank"
 

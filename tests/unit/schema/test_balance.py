@@ -110,7 +110,7 @@ def test_materials(material: str) -> None:
 
 
 def test_dimensions_of_limits_are_those_of_outputs() -> None:
-    linear = {one.dimension for one in DECLARED.values() if not one.reason}
+    linear = {value.dimension for value in DECLARED.values() if not value.reason}
     assert linear | {"energy", "angle"} == {*MEASURED_IN}
 
 

@@ -147,7 +147,7 @@ def test_what_is_wrong_is_refused(changes: dict[str, Any], expected: dict[str, A
         read({**BRAKE, **changes})
 
 
-def test_what_is_missing_is_told_with_an_example() -> None:
+def test_what_is_missing_is_reported_with_an_example() -> None:
     with refused(ModelError, "brake.torque", example='torque = "2 N m"'):
         read({"link": "crank"})
 
@@ -218,8 +218,8 @@ def test_a_new_key_is_refused_when_wrong(line: str, expected: dict[str, Any]) ->
 @pytest.mark.usefixtures("lossy")
 def test_a_new_key_is_in_the_schema_and_in_the_documentation() -> None:
     schema = json_schema("linkage")
-    told = schema["$defs"]["LossySpring"]["properties"]["loss"]
-    assert (told["description"], told["default"]) == ("of the spring itself", "0 N s/m")
+    reported = schema["$defs"]["LossySpring"]["properties"]["loss"]
+    assert (reported["description"], reported["default"]) == ("of the spring itself", "0 N s/m")
     validator = Draft202012Validator(schema)
     assert validator.is_valid(tomllib.loads(FOUR_BAR + LOSSY))
     assert not validator.is_valid(tomllib.loads(FOUR_BAR + SPRING + 'loss = "3 N"'))
@@ -246,10 +246,10 @@ def test_a_new_key_is_reached_by_its_path(text: str) -> None:
 @pytest.mark.usefixtures("lossy")
 def test_a_new_key_is_in_the_form_of_the_live_page() -> None:
     machine = loads(FOUR_BAR + LOSSY)
-    told = tables_of(machine)
-    (springs,) = [one for one in told["groups"] if one["where"] == "springs"]
-    form = told["forms"][springs["form"]]
-    (loss,) = [one for one in form["controls"] if one["key"] == "loss"]
+    tables = tables_of(machine)
+    (springs,) = [item for item in tables["groups"] if item["where"] == "springs"]
+    form = tables["forms"][springs["form"]]
+    (loss,) = [item for item in form["controls"] if item["key"] == "loss"]
     assert (loss["text"], loss["unit"]) == ("of the spring itself", "N s/m")
     values = springs["entries"][0]["values"] | {"loss": "4 N s/m"}
     design = entered(Design("lossy", machine), Entry(("springs", 0), values, None, {}))

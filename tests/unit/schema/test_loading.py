@@ -91,7 +91,7 @@ def test_right_angles_are_exact() -> None:
         ("[assembly]", "a." * 40_000 + "a = 1", {"line": 27}),
     ],
 )
-def test_what_is_no_toml_is_told_with_its_line(
+def test_what_is_no_toml_is_reported_with_its_line(
     old: str, new: str, expected: dict[str, Any]
 ) -> None:
     with refused(ModelError, **expected) as caught:

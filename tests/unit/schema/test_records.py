@@ -160,24 +160,24 @@ def signal(header: str = "time [s],x [m/s^2],z [m/s^2]", **cells: str) -> str:
 
 
 def measured(text: str) -> Accelerations:
-    found = parse_accelerations(text)
-    assert isinstance(found, Accelerations)
-    return found
+    result = parse_accelerations(text)
+    assert isinstance(result, Accelerations)
+    return result
 
 
 def test_axes_in_si_units() -> None:
-    found = measured(signal("time [ms],x [gn],y [ft/s^2]"))
-    assert (found.kind, found.axes) == ("time", ("x", "y"))
-    np.testing.assert_allclose(found.at, 1e-4 * np.arange(ROWS), rtol=1e-15)
-    np.testing.assert_allclose(found.values[0], 9.80665 * (np.arange(ROWS) % 4), rtol=1e-15)
-    np.testing.assert_allclose(found.values[1], -0.3048 * (np.arange(ROWS) % 3), rtol=1e-15)
+    result = measured(signal("time [ms],x [gn],y [ft/s^2]"))
+    assert (result.kind, result.axes) == ("time", ("x", "y"))
+    np.testing.assert_allclose(result.at, 1e-4 * np.arange(ROWS), rtol=1e-15)
+    np.testing.assert_allclose(result.values[0], 9.80665 * (np.arange(ROWS) % 4), rtol=1e-15)
+    np.testing.assert_allclose(result.values[1], -0.3048 * (np.arange(ROWS) % 3), rtol=1e-15)
 
 
 def test_axes_and_columns_in_any_order() -> None:
-    found = measured("z [m/s^2],frequency [kHz],x [m/s^2]\n1,0.1,2\n3,0.2,4\n")
-    assert (found.kind, found.axes) == ("frequency", ("x", "z"))
-    np.testing.assert_array_equal(found.values, [[2, 4], [1, 3]])
-    np.testing.assert_array_equal(found.at, [100, 200])
+    result = measured("z [m/s^2],frequency [kHz],x [m/s^2]\n1,0.1,2\n3,0.2,4\n")
+    assert (result.kind, result.axes) == ("frequency", ("x", "z"))
+    np.testing.assert_array_equal(result.values, [[2, 4], [1, 3]])
+    np.testing.assert_array_equal(result.at, [100, 200])
 
 
 def test_axes_as_a_whole_and_cell_by_cell_agree() -> None:

@@ -48,39 +48,39 @@ FILES = {kind: sorted(examples(kind)) for kind in ("linkage", "tool", "study")}
 LEAST, MOST = -1e6, 1e6
 
 
-def quantity(kind: Quantity, one: Key) -> st.SearchStrategy[str]:
+def quantity(kind: Quantity, item: Key) -> st.SearchStrategy[str]:
     """A number within the limits of the key with any unit, in the digits that people write."""
-    low = LEAST if one.at_least is None and one.above is None else 0.0
+    low = LEAST if item.at_least is None and item.above is None else 0.0
     numbers = st.floats(low, MOST).map(lambda value: f"{value:.6g}")
     units = st.sampled_from([*KINDS[kind.dimension].units])
     return st.tuples(numbers, units).map(" ".join)
 
 
-def value_of(kind: Kind, one: Key) -> st.SearchStrategy[Any] | None:
+def value_of(kind: Kind, entry: Key) -> st.SearchStrategy[Any] | None:
     """Values of a kind as a file has them; None of what only its user can name."""
     if isinstance(kind, Quantity):
-        return quantity(kind, one)
+        return quantity(kind, entry)
     if isinstance(kind, Flag):
         return st.booleans()
     if isinstance(kind, Whole):
         return st.sampled_from(kind.names) if kind.names else st.integers(kind.least or 0, 500)
     if type(kind) is Number:
-        return st.floats(LEAST if one.at_least is None else one.at_least, 10.0).map(float)
+        return st.floats(LEAST if entry.at_least is None else entry.at_least, 10.0).map(float)
     if isinstance(kind, TextKind) and kind.names:
         return st.sampled_from(kind.names)
     if isinstance(kind, Wording):
         text = st.text("aé語글", min_size=1)
         return text | st.dictionaries(st.sampled_from([*LANGUAGES]), text, min_size=1)
     if isinstance(kind, Point):
-        length = quantity(Quantity(dimension="length"), one)
-        polar = {"distance": length, "direction": quantity(Quantity(dimension="angle"), one)}
+        length = quantity(Quantity(dimension="length"), entry)
+        polar = {"distance": length, "direction": quantity(Quantity(dimension="angle"), entry)}
         return st.tuples(length, length).map(list) | st.fixed_dictionaries(polar)
     if isinstance(kind, DirectionKind):
-        return quantity(Quantity(dimension="angle"), one) | st.lists(
+        return quantity(Quantity(dimension="angle"), entry) | st.lists(
             st.integers(-3, 3), min_size=3, max_size=3
         )
     if isinstance(kind, Listing | OneOr | Planes):
-        item = value_of(kind.item, one)
+        item = value_of(kind.item, entry)
         if item is None:
             return None
         sizes = kind.sizes if isinstance(kind, Listing) else ()
@@ -95,9 +95,9 @@ def value_of(kind: Kind, one: Key) -> st.SearchStrategy[Any] | None:
 def tables_of(of: type[Frozen], content: dict[str, Any]) -> Tables_:
     """A table and all that stand in it, each with the class that declares its keys."""
     yield of, content
-    for name, one in all_keys(of).items():
+    for name, value in all_keys(of).items():
         if name in content:
-            yield from _within(one.kind, content[name])
+            yield from _within(value.kind, content[name])
 
 
 def _within(kind: Kind, value: Any) -> Tables_:
@@ -118,7 +118,7 @@ def changed(draw: st.DrawFn, kind: Any) -> str:
     content = deepcopy(tomllib.loads(bundled()[name].read_text(encoding="utf-8")))
     for _ in range(draw(st.integers(1, 3))):
         of, table = draw(st.sampled_from([*tables_of(document_of(kind), content)]))
-        keys = {key: value_of(one.kind, one) for key, one in all_keys(of).items()}
+        keys = {key: value_of(value.kind, value) for key, value in all_keys(of).items()}
         known = [key for key, values in keys.items() if key in table or values is not None]
         assume(known)
         key = draw(st.sampled_from(known))

@@ -48,10 +48,10 @@ def test_it_is_a_schema_without_foreign_addresses(name: str) -> None:
 
 def test_densities_of_materials_stand_at_each_of_their_keys() -> None:
     schema = written("model.schema.json")
-    told = ", ".join(f"{name} {density:.0f}" for name, density in MATERIALS.items())
-    assert schema.count(f"; densities in kg/m^3: {told}") == schema.count('"tungsten alloy"') > 0
+    text = ", ".join(f"{name} {density:.0f}" for name, density in MATERIALS.items())
+    assert schema.count(f"; densities in kg/m^3: {text}") == schema.count('"tungsten alloy"') > 0
     page = (Path(__file__).parents[3] / "docs" / "model-file.md").read_text(encoding="utf-8")
-    assert page.count(f"; densities in kg/m^3: {told} |") == page.count('`"tungsten alloy"`') > 0
+    assert page.count(f"; densities in kg/m^3: {text} |") == page.count('`"tungsten alloy"`') > 0
 
 
 @pytest.mark.parametrize("text", [FOUR_BAR, EVERYTHING], ids=["four-bar", "everything"])

@@ -104,10 +104,10 @@ def test_everything(tmp_path: Path) -> None:
         "links.crank.inertia",
         "frame.points.D.x",
     )
-    assert [one.dimension for one in study.vary] == [
+    assert [item.dimension for item in study.vary] == [
         "length", "mass", "mass", "angular speed", "inertia", "length"
     ]  # fmt: skip
-    assert [one.spread for one in study.vary] == [
+    assert [item.spread for item in study.vary] == [
         Range(0.06, 0.08),
         Choices((0.1, 0.2)),
         Normal(0.199, 0.002),
@@ -339,7 +339,7 @@ def test_no_file(tmp_path: Path) -> None:
         load_study(tmp_path)
 
 
-def test_a_wrong_model_is_told_with_both_names(tmp_path: Path) -> None:
+def test_a_wrong_model_is_reported_with_both_names(tmp_path: Path) -> None:
     (tmp_path / "m.toml").write_text(FOUR_BAR.replace("199 g", "-1 g"), encoding="utf-8")
     with pytest.raises(ModelError) as caught:
         read(tmp_path, HEAD.replace("yamashita-1", "m.toml") + RANGE + REST)
@@ -392,8 +392,8 @@ def varied(grid: bool) -> st.SearchStrategy[tuple[Variable, ...]]:
     ) | st.lists(SIZES, min_size=1, max_size=4, unique=True).map(lambda v: Choices(tuple(v)))
     if not grid:
         spreads |= st.builds(Normal, SIZES, SIZES, LIMITS) | st.builds(Uniform, SIZES, SIZES)
-    one = st.builds(Variable, st.sampled_from(PATHS), spreads)
-    return st.lists(one, min_size=1, max_size=4, unique_by=lambda vary: vary.path).map(tuple)
+    first = st.builds(Variable, st.sampled_from(PATHS), spreads)
+    return st.lists(first, min_size=1, max_size=4, unique_by=lambda vary: vary.path).map(tuple)
 
 
 @st.composite

@@ -172,7 +172,7 @@ BAD: dict[str, list[tuple[str | None, str]]] = {
 
 
 @pytest.mark.parametrize(
-    ("sort", "text", "said"), [(sort, *case) for sort, found in BAD.items() for case in found]
+    ("sort", "text", "said"), [(sort, *case) for sort, actual in BAD.items() for case in actual]
 )
 def test_bad_tables(sort: str, text: str | None, said: str, tmp_path: Path) -> None:
     model, name, place = SORTS[sort]
@@ -209,14 +209,14 @@ def test_a_table_is_read_beside_the_model(sort: str, text: str, table: Any, tmp_
     model, name, _ = SORTS[sort]
     (tmp_path / "model.toml").write_text(model)
     (tmp_path / name).write_text(text)
-    found = table_of(load(tmp_path / "model.toml"), sort)
-    assert (found, found.file) == (table, name)
+    result = table_of(load(tmp_path / "model.toml"), sort)
+    assert (result, result.file) == (table, name)
 
 
 def with_tables(file: str | None = None) -> Machine:
     """A machine with a table of each sort; ``file`` is the name of all of them."""
     push, soil, curve = (
-        one if file is None else replace(one, file=file) for one in (PUSH, SOIL, CURVE)
+        item if file is None else replace(item, file=file) for item in (PUSH, SOIL, CURVE)
     )
     machine = replace(
         loads(FOUR_BAR + PLANTING), loads=(Load("coupler", "C", table=push, outside="hold"),)

@@ -132,8 +132,8 @@ def test_a_value_is_put_exactly(
     name: str, path: str, dimension: str | None, at: Callable[[Any], float]
 ) -> None:
     template = example(name)
-    before, told = template.number(path)
-    assert told == dimension
+    before, text = template.number(path)
+    assert text == dimension
     assert at(template.base()) == before
     assert at(template.machine({path: EXACT})) == EXACT
     assert at(template.base()) == before
@@ -315,13 +315,13 @@ def test_a_changed_linkage_has_no_file() -> None:
     path = "excitations[1].linkage.links.crank.mass"
     changed = template.machine({path: 0.5})
     assert isinstance(changed, Tool)
-    assert [one.file for one in changed.excitations] == ["", ""]
+    assert [excitation.file for excitation in changed.excitations] == ["", ""]
     other = template.machine({"shaft.length": 1.6})
     assert isinstance(other, Tool)
     assert other.excitations[0].file == "brush-cutter-engine"
 
 
-def test_a_wrong_file_is_told_as_ever() -> None:
+def test_a_wrong_file_is_reported_as_ever() -> None:
     with pytest.raises(ModelError) as caught:
         Template(FOUR_BAR.replace("199 g", "199"), "a.toml")
     assert str(caught.value).startswith("a.toml: links.crank.mass: got '199'; the unit is missing")
@@ -355,9 +355,9 @@ def test_tables_go_along(tmp_path: Path) -> None:
         os.remove(tmp_path / name)
     again = Template.restored(texts)
     assert again == template
-    for one in (template, again, pickle.loads(pickle.dumps(template))):
-        assert one.base() == base
-        machine = one.machine({"links.crank.mass": 0.3})
+    for item in (template, again, pickle.loads(pickle.dumps(template))):
+        assert item.base() == base
+        machine = item.machine({"links.crank.mass": 0.3})
         assert isinstance(machine, Machine)
         assert machine.loads == base.loads
         assert machine.planting == base.planting

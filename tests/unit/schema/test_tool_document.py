@@ -125,7 +125,7 @@ def test_a_linkage_is_no_tool(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["schema = 1\n", "schema = 1\n[shaft]\n[drive]\n", "x", ""])
-def test_what_tells_neither_is_read_as_a_linkage(text: str, tmp_path: Path) -> None:
+def test_what_reports_neither_is_read_as_a_linkage(text: str, tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text(text)
     with pytest.raises(ModelError) as of_any:

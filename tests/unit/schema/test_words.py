@@ -62,12 +62,12 @@ def test_words_in_other_languages() -> None:
 
 @pytest.mark.exhaustive(but=["flap-folder", "geared-counterweight", "pole-saw", "nagamine-irie"])
 @pytest.mark.parametrize("name", few(MODELS, {*eq.examples("tool"), *DISTINCT[::4]}))
-def test_words_tell_every_number_of_a_model_from_the_others(name: str) -> None:
+def test_words_report_every_number_of_a_model_from_the_others(name: str) -> None:
     """But for the length of a body, which is a coordinate and a distance at once."""
     paths = [path for path in Template.load(name).numbers() if not NO_DESIGN.match(path)]
-    told = {path: said(name, path) for path in paths}
-    assert not [path for path, words in told.items() if words == path or "{" in words]
-    others = [words for words in told.values() if not words.startswith("length ")]
+    content = {path: said(name, path) for path in paths}
+    assert not [path for path, words in content.items() if words == path or "{" in words]
+    others = [words for words in content.values() if not words.startswith("length ")]
     assert len({*others}) == len(others)
 
 
@@ -88,7 +88,7 @@ def test_numbers_that_vary_together_say_once_what_they_are_of() -> None:
 
 
 def test_figures_of_outputs_in_words() -> None:
-    told = figure_named("joints.A.peak")
-    assert str(told) == "force in joint A, peak"
+    reported = figure_named("joints.A.peak")
+    assert str(reported) == "force in joint A, peak"
     assert str(figure_named("summary.shaking_force.y.rms")) == "shaking force y, RMS"
     assert figure_named("soil.hole_length") == "soil.hole_length"

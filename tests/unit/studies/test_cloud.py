@@ -45,39 +45,39 @@ def cloud(block: DesignBlock, chunk: int) -> Cloud:
 @pytest.mark.parametrize("size", [500, MOST, MOST + 1, 30_000])
 def test_every_design_counts_once(size: int) -> None:
     block = designs(size)
-    found = cloud(block, 700)
+    result = cloud(block, 700)
     figures, reason = block.outcome.figures, block.outcome.reason
     there, lost = reason == 0, reason == 2
     good = there & (figures[:, 0] <= 50) & (figures[:, 1] >= 0.2)
-    assert (found.kept, found.beyond) == (np.sum(good), np.sum(there & ~good))
-    assert found.failed == np.sum(lost)
-    force, torque = found.spreads["force"], found.spreads["torque"]
-    assert (force.log, torque.log, found.spreads["mass"].log) == (True, False, False)
+    assert (result.kept, result.beyond) == (np.sum(good), np.sum(there & ~good))
+    assert result.failed == np.sum(lost)
+    force, torque = result.spreads["force"], result.spreads["torque"]
+    assert (force.log, torque.log, result.spreads["mass"].log) == (True, False, False)
     assert (force.low, force.high) == (np.min(figures[there, 0]), np.max(figures[there, 0]))
-    assert np.all(np.abs(found.lost["length"] - 0.29) < 0.015) and len(found.lost["length"]) > 2
-    assert found.each == (size <= MOST)
-    if found.each:
-        np.testing.assert_array_equal(found.some["torque"], figures[there, 1])
-        np.testing.assert_array_equal(found.good, good[there])
+    assert np.all(np.abs(result.lost["length"] - 0.29) < 0.015) and len(result.lost["length"]) > 2
+    assert result.each == (size <= MOST)
+    if result.each:
+        np.testing.assert_array_equal(result.some["torque"], figures[there, 1])
+        np.testing.assert_array_equal(result.good, good[there])
         return
     for first, second in PAIRS:
         names = (*NUMBERS, *(output.name for output in OUTPUTS))
         columns = dict(zip(names, (*block.values.T, *figures.T), strict=True))
-        edges = [found.spreads[name].edges for name in (second, first)]
-        for counts, mask in zip(found.counts[first, second], (good, there & ~good), strict=True):
+        edges = [result.spreads[name].edges for name in (second, first)]
+        for counts, mask in zip(result.counts[first, second], (good, there & ~good), strict=True):
             x, y = columns[first][mask], columns[second][mask]
             wanted = np.histogram2d(y, x, edges)[0]
             assert counts.shape == (BINS, BINS) and np.sum(counts) == np.sum(mask)
             assert np.sum(np.abs(counts - wanted)) <= 4  # but for rounding at the ends
-    assert SOME / 2 < len(found.good) <= SOME
+    assert SOME / 2 < len(result.good) <= SOME
 
 
 def test_blocks_do_not_matter() -> None:
     block = designs(20_000)
-    one, other = cloud(block, 20_000), cloud(block, 333)
+    first, other = cloud(block, 20_000), cloud(block, 333)
     for pair in PAIRS:
-        np.testing.assert_array_equal(one.counts[pair], other.counts[pair])
-    for name, column in one.some.items():
+        np.testing.assert_array_equal(first.counts[pair], other.counts[pair])
+    for name, column in first.some.items():
         np.testing.assert_array_equal(column, other.some[name])
 
 
@@ -91,17 +91,17 @@ def test_millions_take_no_more_memory_than_a_block() -> None:
         yield from ((k * 10_000, block) for k in range(times))
 
     tracemalloc.start()
-    found = cloud_of(blocks, NUMBERS, OUTPUTS, PAIRS, times * 10_000)
+    result = cloud_of(blocks, NUMBERS, OUTPUTS, PAIRS, times * 10_000)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < 25e6  # of all figures alone it would be 24 MB, of all columns 48 MB
-    assert found.kept + found.beyond + found.failed == times * 9000
-    assert np.sum(found.counts[PAIRS[0]]) == found.kept + found.beyond
+    assert result.kept + result.beyond + result.failed == times * 9000
+    assert np.sum(result.counts[PAIRS[0]]) == result.kept + result.beyond
 
 
 def test_nothing_that_has_figures() -> None:
     block = designs(50)
     block.outcome.reason[:] = 2
     block.outcome.figures[:] = np.nan
-    found = cloud(block, 20)
-    assert (found.kept, found.beyond, found.failed) == (0, 0, 50) and not len(found.good)
+    result = cloud(block, 20)
+    assert (result.kept, result.beyond, result.failed) == (0, 0, 50) and not len(result.good)

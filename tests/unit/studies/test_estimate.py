@@ -35,9 +35,9 @@ def test_from_as_much_of_a_chunk_as_is_quick(
         clock[0] += len(designs) * each + (100.0 if len(asked) == 1 else 0.0)
 
     monkeypatch.setattr(outcomes, "perf_counter", lambda: clock[0])
-    found = estimated(compute, 1000, chunk, processors)
+    result = estimated(compute, 1000, chunk, processors)
     workers = min(processors, -(-1000 // chunk))
-    assert found == Estimate(computed, pytest.approx(1 / each), workers, pytest.approx(seconds))
+    assert result == Estimate(computed, pytest.approx(1 / each), workers, pytest.approx(seconds))
     assert asked[-1] == range(asked[0].start, asked[0].start + computed)
     assert asked[0].start % chunk == 0
     assert asked[0].start + computed <= 1000

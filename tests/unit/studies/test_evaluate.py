@@ -135,7 +135,7 @@ def study(model: Template | str, vary: str, *outputs: Output | str, **given: Any
         title="Study",
         model=made,
         vary=(Variable(vary, Range(*ends), dimension),),
-        outputs=tuple(Output(one) if isinstance(one, str) else one for one in outputs),
+        outputs=tuple(Output(output) if isinstance(output, str) else output for output in outputs),
         sampling=Sampling("sobol", 16),
         **given,
     )
@@ -211,11 +211,11 @@ def test_figures_are_those_that_the_command_prints(
     model: str, vary: str, of: StudiedCommand, paths: list[str]
 ) -> None:
     given = study(model, vary, *asked(of, *paths), angles=360 if of == "analyze" else None)
-    found = computed(given)
+    result = computed(given)
     values = json.loads(succeeded(equipoise(of, model, "--json")))
-    assert found.reason.tolist() == [0]
+    assert result.reason.tolist() == [0]
     wanted = [printed(values, path) for path in paths]
-    assert found.figures[0] == pytest.approx(wanted, rel=1e-12, abs=0)
+    assert result.figures[0] == pytest.approx(wanted, rel=1e-12, abs=0)
 
 
 def test_a_tool_of_named_speeds_needs_no_range() -> None:
@@ -223,9 +223,9 @@ def test_a_tool_of_named_speeds_needs_no_range() -> None:
     paths = ("a8", "named.working.rear-grip", "days.rear-grip.points")
     few = study("brush-cutter", "shaft.stations[1].mass", *asked("tool", *paths))
     many = study("brush-cutter", "shaft.stations[1].mass", *asked("tool", *paths, "a_hv.max"))
-    found = computed(many)
-    assert computed(few).figures[0] == pytest.approx(found.figures[0, :3], rel=1e-12)
-    assert found.figures[0, 3] == np.max(
+    result = computed(many)
+    assert computed(few).figures[0] == pytest.approx(result.figures[0, :3], rel=1e-12)
+    assert result.figures[0, 3] == np.max(
         json.loads(succeeded(equipoise("tool", "brush-cutter", "--json", "--exposure")))["a_hv"]
     )
 
@@ -242,9 +242,9 @@ def test_several_commands_share_a_design() -> None:
         angles=90,
     )
     speed = given.model.number("drive.speed")[0]
-    found = computed(given, speed, 1.1 * speed)
-    assert found.reason.tolist() == [0, 0]
-    for row, factor in zip(found.figures, (1.0, 1.1), strict=True):
+    result = computed(given, speed, 1.1 * speed)
+    assert result.reason.tolist() == [0, 0]
+    for row, factor in zip(result.figures, (1.0, 1.1), strict=True):
         machine = eq.load("transplanter").with_drive(speed=factor * speed)
         torque = eq.analyze(machine, 90).summary["drive_torque"]
         wanted = [torque.rms, eq.plant(machine)["soil.hole_length"], torque.peak]
@@ -260,9 +260,9 @@ def test_planting_figures_of_many_designs_are_those_of_each(name: str) -> None:
     own = made.number(varied)[0]
     some = study(made, varied, *asked("plant", *paths))
     factors = np.array([0.7, 0.9, 1.15, 5.0])
-    found = computed(some, *(factors * own))
+    result = computed(some, *(factors * own))
     failed = 0
-    for factor, row, reason in zip(factors, found.figures, found.reason, strict=True):
+    for factor, row, reason in zip(factors, result.figures, result.reason, strict=True):
         machine = made.machine({varied: factor * own})
         try:
             figures = eq.plant(machine)  # type: ignore[arg-type]
@@ -289,8 +289,8 @@ def test_crank_angles_double_until_figures_stand_still() -> None:
              summary["shaking_force.y"].peak_at]  # fmt: skip
     sizes = [summary["shaking_force.y"].rms, exact[1], np.sqrt(np.mean(height**2)),
              summary["drive_torque"].rms, summary["shaking_moment"].rms]  # fmt: skip
-    found = computed(study("yamashita-1", "drive.speed", *paths, tolerance=1e-4))
-    errors = np.abs(found.figures[0] - exact)
+    result = computed(study("yamashita-1", "drive.speed", *paths, tolerance=1e-4))
+    errors = np.abs(result.figures[0] - exact)
     assert np.all(errors[:-1] < 1e-4 * np.array(sizes))
     assert errors[-1] <= np.pi / 720  # a place is that of the nearest crank angle
 
@@ -317,9 +317,9 @@ def test_a_coarser_analysis_is_gone_before_the_next_finer_one(
 
     def noted(machine: eq.Machine, angles: int) -> eq.Analysis:
         if angles > 8000:
-            assert all(one() is None for one in analyses)
-        analyses.append(weakref.ref(found := of(machine, angles)))
-        return found
+            assert all(item() is None for item in analyses)
+        analyses.append(weakref.ref(result := of(machine, angles)))
+        return result
 
     monkeypatch.setattr(analysis_module, "analyze", noted)
     gc.disable()
@@ -333,17 +333,17 @@ def test_a_coarser_analysis_is_gone_before_the_next_finer_one(
 
 
 def test_a_fixed_number_of_crank_angles() -> None:
-    found = computed(study("yamashita-1", "drive.speed", "shaking_force.y.peak", angles=90))
+    result = computed(study("yamashita-1", "drive.speed", "shaking_force.y.peak", angles=90))
     wanted = eq.analyze(eq.load("yamashita-1"), 90).summary["shaking_force.y"].peak
-    assert found.figures[0, 0] == wanted
+    assert result.figures[0, 0] == wanted
 
 
 def test_rounding_stands_still() -> None:
     """Signals that are zero but for rounding are not asked for more."""
     paths = ("joints.piston on frame.moment.max", "points.C.x.peak_to_peak", "shaking_force.x.mean")
-    found = computed(study("slider-crank-engine", "links.rod.mass", *paths))
-    assert found.reason.tolist() == [0]
-    assert np.all(np.abs(found.figures) < 1e-9)
+    result = computed(study("slider-crank-engine", "links.rod.mass", *paths))
+    assert result.reason.tolist() == [0]
+    assert np.all(np.abs(result.figures) < 1e-9)
 
 
 # -- why there are no figures ----------------------------------------------------------------------
@@ -361,18 +361,18 @@ def test_rounding_stands_still() -> None:
     ],
 )
 def test_reasons_of_an_analysis(path: str, value: float, reason: str) -> None:
-    found = computed(study("yamashita-1", path, "drive_torque.rms", angles=90), value)
-    assert REASONS[int(found.reason[0])] == reason
-    assert np.isnan(found.figures[0, 0]) == (reason != "computed")
+    result = computed(study("yamashita-1", path, "drive_torque.rms", angles=90), value)
+    assert REASONS[int(result.reason[0])] == reason
+    assert np.isnan(result.figures[0, 0]) == (reason != "computed")
 
 
 def test_the_tip_never_reaches_the_soil() -> None:
     given = study("transplanter", "planting.depth", *asked("plant", "soil.depth"), "turns")
-    found = computed(given, 0.05, -0.01, 0.6)
-    assert [REASONS[k] for k in found.reason.tolist()] == [
+    result = computed(given, 0.05, -0.01, 0.6)
+    assert [REASONS[k] for k in result.reason.tolist()] == [
         "computed", "not a machine", "no such figure",
     ]  # fmt: skip
-    assert found.figures[2, 1] == 1  # what can be told is told
+    assert result.figures[2, 1] == 1  # what can be told is told
 
 
 TRAY, ROD = "planting.tray[2].y", "links.rod.mass"
@@ -459,7 +459,7 @@ def test_a_model_that_fails_stands_back_for_designs_that_do_not() -> None:
 def test_dimensions_of_an_analysis(name: str) -> None:
     """The units of the CSV file and of the summary are those of the dimensions."""
     analysis = eq.analyze(eq.load(name), 90)
-    for column in (one.name for one in analysis.outputs.arrays):
+    for column in (array.name for array in analysis.outputs.arrays):
         if column not in ("shaking_force.x", "shaking_force.y"):  # those of the summary go first
             dimension = dimension_of(analysis.machine, "analyze", f"{column}.rms")
             assert dimension is not None
@@ -536,9 +536,9 @@ def test_dimensions(model: str, of: str, path: str, dimension: str | None) -> No
 
 def test_figures_of_cams_stand_still_to_a_share_of_themselves() -> None:
     """A lift-off speed is hundreds of rad/s, and to 1e-4 rad/s it never stands still."""
-    found = eq.analyze(eq.load("cam-pusher")).to_dict()
-    steps = resolve(found, "cams.crank to pusher.lift_off_speed")
-    assert scale(found, steps) == read(found, steps) > 50
+    content = eq.analyze(eq.load("cam-pusher")).to_dict()
+    steps = resolve(content, "cams.crank to pusher.lift_off_speed")
+    assert scale(content, steps) == read(content, steps) > 50
 
 
 def test_what_an_analysis_has_beside_outputs_is_declared() -> None:
@@ -548,13 +548,13 @@ def test_what_an_analysis_has_beside_outputs_is_declared() -> None:
     of_one = {*values["summary"]["four_bar"]}
     assert of_one == {*FOUR_BAR} and {*values["about"]} == set(ABOUT["about"].of or ())
     assert {*order_values(analysis, 3, 0.0)["shaking_force.x"]} == {*BY_ORDER}
-    for key, one in BESIDE_OUTPUTS.items():
+    for key, value in BESIDE_OUTPUTS.items():
         assert key in values or key in values["summary"]
-        if one.of is None:
-            assert dimension_of(analysis.machine, "analyze", key) == one.dimension
-    for key, one in FOUR_BAR.items():
-        found = dimension_of(analysis.machine, "analyze", f"summary.four_bar.{key}")
-        assert found == one.dimension, key
+        if value.of is None:
+            assert dimension_of(analysis.machine, "analyze", key) == value.dimension
+    for key, value in FOUR_BAR.items():
+        result = dimension_of(analysis.machine, "analyze", f"summary.four_bar.{key}")
+        assert result == value.dimension, key
 
 
 def test_every_command_of_a_study_is_declared() -> None:

@@ -42,10 +42,10 @@ CHUNKS = [range(start, start + 20) for start in range(0, 200, 20)]
 TESTS = Path(studies.__file__).parents[1]
 
 
-def check(found: list[tuple[range, DesignBlock]]) -> None:
+def check(result: list[tuple[range, DesignBlock]]) -> None:
     """Every chunk once, and as it has to be."""
-    assert sorted(designs.start for designs, _ in found) == [chunk.start for chunk in CHUNKS]
-    for designs, block in found:
+    assert sorted(designs.start for designs, _ in result) == [chunk.start for chunk in CHUNKS]
+    for designs, block in result:
         values = samples(STUDY, designs.start, len(designs))
         np.testing.assert_array_equal(block.values, values)
         np.testing.assert_array_equal(block.outcome.figures, Formulas()(values).figures)
@@ -146,11 +146,11 @@ def test_processes_end_with_the_one_that_started_them(
             os.killpg(process.pid, number)
         else:
             process.kill()
-        _, told = process.communicate(timeout=300)
+        _, text = process.communicate(timeout=300)
     assert all(map(gone, children))
     if number == signal.SIGINT:
-        assert told.count("Traceback") == 1  # that of the script itself
-        assert told.endswith("KeyboardInterrupt\n")
+        assert text.count("Traceback") == 1  # that of the script itself
+        assert text.endswith("KeyboardInterrupt\n")
 
 
 # -- a cluster -------------------------------------------------------------------------------------
@@ -194,8 +194,8 @@ def worker(address: str, *folders: Path) -> Any:
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Of a scheduler with one worker."""
-    with scheduler(tmp_path_factory.mktemp("dask")) as (found, _), worker(found):
-        yield found
+    with scheduler(tmp_path_factory.mktemp("dask")) as (result, _), worker(result):
+        yield result
 
 
 def test_a_cluster_computes_every_chunk_also_if_a_worker_is_killed_at_work(
@@ -206,13 +206,13 @@ def test_a_cluster_computes_every_chunk_also_if_a_worker_is_killed_at_work(
         while pool.room < 4:
             time.sleep(0.05)
             pool.look()
-        found = []
+        actual = []
         for done in computed(pool, CHUNKS):
-            found.append(done)
-            if len(found) == 3:
+            actual.append(done)
+            if len(actual) == 3:
                 assert second.pid in orders.processes()
                 second.kill()
-    check(found)
+    check(actual)
     begun = [int(file.name.split("-")[0]) for file in tmp_path.iterdir()]
     assert len(begun) > len(set(begun)) == len(CHUNKS)  # at least one was lost, and begun again
 
@@ -256,12 +256,12 @@ def test_a_cluster_computes_for_a_search_and_a_map_too(
     some = load_study("study-of-balance")
     swing = Output("swing", "analyze", "strokes.rocker.stroke", make="smallest")
     some = replace(some, outputs=(swing,), sampling=replace(some.sampling, designs=32))
-    results = [search(some, population=8, generations=2, cluster=one) for one in (None, address)]
+    results = [search(some, population=8, generations=2, cluster=item) for item in (None, address)]
     assert results[0].to_dict() == results[1].to_dict()
     assert (begun := len(sent)) > 0
     over = {"links.crank.points.B.x": [0.03, 0.035], "links.coupler.points.C.x": [0.1, 0.12]}
     model, of = Template.load("yamashita-1"), Objective("shaking_force")
-    here, there = (landscape(model, over, of, cluster=one) for one in (None, address))
+    here, there = (landscape(model, over, of, cluster=item) for item in (None, address))
     assert np.array_equal(here.values, there.values)
     assert len(sent) > begun
 
@@ -274,7 +274,7 @@ def test_workers_of_this_machine_have_no_place_beside_a_cluster() -> None:
 
 # Clusters at work are started before a release; the other refusals of executors stay.
 @pytest.mark.exhaustive
-def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
+def test_a_cluster_that_lacks_equipoise_or_goes_is_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "equipoise").mkdir()
@@ -298,7 +298,7 @@ def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
 
 # `test_what_cannot_be_asked_makes_no_store` of test_run.py is refused alike.
 @pytest.mark.exhaustive
-def test_no_scheduler_is_told_in_a_sentence(
+def test_no_scheduler_is_reported_in_a_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(clusters, "ANSWER", 0.5)

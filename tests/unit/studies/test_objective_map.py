@@ -49,39 +49,39 @@ def over_counterweight(
     return landscape(TEMPLATE("yamashita-1"), over, RIPPLE, given)
 
 
-def lowest(found: Landscape) -> tuple[float, float]:
-    row, column = np.unravel_index(np.nanargmin(found.values), found.values.shape)
-    return found.x[column], found.y[row]
+def lowest(result: Landscape) -> tuple[float, float]:
+    row, column = np.unravel_index(np.nanargmin(result.values), result.values.shape)
+    return result.x[column], result.y[row]
 
 
 def test_fig_9_has_its_lowest_place_where_balancing_has_it() -> None:
-    found = over_coupler()
+    result = over_coupler()
     balanced = eq.balance(eq.load("balance-coupler"))
     best = balanced.machine.links["coupler"].center_of_mass
     ((before, after),) = balanced.objectives.values()
-    assert found.best == pytest.approx(best, abs=1e-7)
-    assert (found.least, found.before) == pytest.approx((after, before), rel=1e-9)
-    assert found.start == pytest.approx((-0.045, -0.020))
-    assert lowest(found) == pytest.approx(best, abs=0.01), "a step is 10 mm"
-    assert np.min(found.values) >= found.least
+    assert result.best == pytest.approx(best, abs=1e-7)
+    assert (result.least, result.before) == pytest.approx((after, before), rel=1e-9)
+    assert result.start == pytest.approx((-0.045, -0.020))
+    assert lowest(result) == pytest.approx(best, abs=0.01), "a step is 10 mm"
+    assert np.min(result.values) >= result.least
 
 
 def test_fig_12_has_its_lowest_place_where_the_paper_and_balancing_have_it() -> None:
-    found = over_counterweight()
-    radius, direction = found.best
+    result = over_counterweight()
+    radius, direction = result.best
     assert (1e3 * radius, degrees(direction) - 83) == pytest.approx((35.70, 111.02), abs=0.005)
     ((_, after),) = eq.balance(eq.load("balance-crank")).objectives.values()
-    assert found.least == pytest.approx(after, rel=1e-9)
-    assert lowest(found) == pytest.approx(found.best, abs=0.27), "steps of 6 mm and 30 deg"
-    assert found.start is None
+    assert result.least == pytest.approx(after, rel=1e-9)
+    assert lowest(result) == pytest.approx(result.best, abs=0.27), "steps of 6 mm and 30 deg"
+    assert result.start is None
 
 
 def test_each_point_is_what_an_analysis_of_that_machine_gives() -> None:
     """The quick way by inertial parameters, against machines one by one."""
-    found = over_counterweight(5)
+    result = over_counterweight(5)
     crank = eq.load("yamashita-1").links["crank"]
     assert crank.mass is not None and crank.center_of_mass is not None and crank.inertia is not None
-    place = found.x[2] * np.exp(1j * found.y[1])
+    place = result.x[2] * np.exp(1j * result.y[1])
     mass = crank.mass + 1.145
     center = (crank.mass * complex(*crank.center_of_mass) + 1.145 * place) / mass
     own = crank.inertia + crank.mass * abs(center - complex(*crank.center_of_mass)) ** 2
@@ -92,7 +92,7 @@ def test_each_point_is_what_an_analysis_of_that_machine_gives() -> None:
         inertia=own + 1.145 * abs(center - place) ** 2,
     )
     force = eq.analyze(machine, 720).forces.shaking_force.y
-    assert found.values[1, 2] == pytest.approx(np.std(force), rel=1e-10)
+    assert result.values[1, 2] == pytest.approx(np.std(force), rel=1e-10)
 
 
 @pytest.mark.parametrize(
@@ -109,12 +109,12 @@ def test_quick_and_slow_way_agree(name: str, objective: eq.balancing.Objective) 
 
     model = TEMPLATE(name)
     over = {"links.coupler.mass": [0.3, 0.5, 0.9], "links.rocker.inertia": [1e-5, 4e-4]}
-    found = landscape(model, over, objective)
-    for row, inertia in enumerate(found.y):
-        for column, mass in enumerate(found.x):
-            machine: Any = model.machine(dict(zip(found.paths, (mass, inertia), strict=True)))
+    result = landscape(model, over, objective)
+    for row, inertia in enumerate(result.y):
+        for column, mass in enumerate(result.x):
+            machine: Any = model.machine(dict(zip(result.paths, (mass, inertia), strict=True)))
             value = Problem.value_of(machine, objective)
-            assert found.values[row, column] == pytest.approx(value, rel=1e-9)
+            assert result.values[row, column] == pytest.approx(value, rel=1e-9)
 
 
 # Points against machines: `test_each_point_is_what_an_analysis_of_that_machine_gives`.
@@ -136,12 +136,12 @@ def test_many_machines_at_once_are_those_one_by_one(name: str, output: str, meas
     paths = (f"links.{link}.mass", "counterweights.crank.direction")
     given = {"counterweights.crank.mass": 0.4, "counterweights.crank.radius": 0.03}
     x, y = np.linspace(-0.2, 0.6, 31), np.linspace(0.0, 6.0, 11)
-    found = landscape(TEMPLATE(name), dict(zip(paths, (x, y), strict=True)), of, given)
-    points = np.stack([one.ravel() for one in np.meshgrid(x, y)], axis=1)
+    result = landscape(TEMPLATE(name), dict(zip(paths, (x, y), strict=True)), of, given)
+    points = np.stack([item.ravel() for item in np.meshgrid(x, y)], axis=1)
     single = SingleValues(MachineVariants(TEMPLATE(name), given), of, paths)
     some = slice(3, None, 17)
-    np.testing.assert_allclose(found.values.ravel()[some], single(points[some]), rtol=1e-9)
-    assert np.array_equal(np.isnan(found.values), np.broadcast_to(x < 0, found.values.shape))
+    np.testing.assert_allclose(result.values.ravel()[some], single(points[some]), rtol=1e-9)
+    assert np.array_equal(np.isnan(result.values), np.broadcast_to(x < 0, result.values.shape))
 
 
 def test_a_map_of_masses_makes_no_machine_for_each_point(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -171,12 +171,12 @@ def test_contacts_that_change_sides_are_those_of_each_machine(output: str, tmp_p
     path.write_text(text, encoding="utf-8")
     model, objective = TEMPLATE(str(path)), eq.balancing.Objective(output)
     over = {"links.knife.mass": [1.0, 8.0, 20.0], "links.knife.inertia": [1.0, 3.0]}
-    found = landscape(model, over, objective)
-    for row, inertia in enumerate(found.y):
-        for column, mass in enumerate(found.x):
-            machine: Any = model.machine(dict(zip(found.paths, (mass, inertia), strict=True)))
+    result = landscape(model, over, objective)
+    for row, inertia in enumerate(result.y):
+        for column, mass in enumerate(result.x):
+            machine: Any = model.machine(dict(zip(result.paths, (mass, inertia), strict=True)))
             value = Problem.value_of(machine, objective)
-            assert found.values[row, column] == pytest.approx(value, rel=1e-9)
+            assert result.values[row, column] == pytest.approx(value, rel=1e-9)
 
 
 # Designs that fail among others: tests/unit/codegen/test_batch.py.
@@ -187,12 +187,12 @@ def test_what_cannot_turn_has_no_value() -> None:
         "links.crank.points.B.x": np.linspace(0.011, 0.081, 8),
         "links.coupler.points.C.x": np.linspace(0.041, 0.151, 8),
     }
-    found = landscape(TEMPLATE("yamashita-1"), over, eq.balancing.Objective("shaking_force"))
-    for row, coupler in enumerate(found.y):
-        for column, crank in enumerate(found.x):
+    result = landscape(TEMPLATE("yamashita-1"), over, eq.balancing.Objective("shaking_force"))
+    for row, coupler in enumerate(result.y):
+        for column, crank in enumerate(result.x):
             bars = sorted([crank, coupler, 0.08, 0.088])
             turns = bars[0] + bars[3] < bars[1] + bars[2] and crank == bars[0]
-            assert np.isnan(found.values[row, column]) != turns
+            assert np.isnan(result.values[row, column]) != turns
 
 
 ROCKER = {"links.rocker.mass": [1, 2]}
@@ -220,13 +220,13 @@ BAD: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_cannot_be_drawn_is_told(name: str) -> None:
+def test_what_cannot_be_drawn_is_reported(name: str) -> None:
     over, expected = BAD[name]
     with refused(EquipoiseError, **expected):
         landscape(TEMPLATE("yamashita-1"), over, RIPPLE, {"links.coupler.mass": 1.0})
 
 
-def test_an_unknown_output_and_what_is_no_linkage_are_told() -> None:
+def test_an_unknown_output_and_what_is_no_linkage_are_reported() -> None:
     over: Any = {"links.crank.mass": [1, 2], "links.rocker.mass": [1, 2]}
     with refused(EquipoiseError, given="shaking_forc", name="shaking_force"):
         landscape(TEMPLATE("yamashita-1"), over, eq.balancing.Objective("shaking_forc"))
@@ -241,6 +241,6 @@ def test_a_counterweight_without_mass_is_no_map() -> None:
         over_counterweight(5, mass=None)
 
 
-def test_a_least_at_the_end_of_a_range_is_told() -> None:
+def test_a_least_at_the_end_of_a_range_is_reported() -> None:
     assert over_counterweight().at_edge == []
     assert over_counterweight(5, 0.03, (3.0, 4.0)).at_edge == [f"{WEIGHT}.radius"]

@@ -88,9 +88,9 @@ def test_an_interrupted_sweep_keeps_its_chunks_and_goes_on_to_the_same_bytes(
         sweep(STUDY, tmp_path / "s", workers=2, progress=after(4, stop))
     kept = contents(tmp_path / "s")
     assert len(open_store(tmp_path / "s").missing()) == 6
-    told: list[Progress] = []
-    resume(tmp_path / "s", restore, workers=3, progress=told.append)
-    assert [progress.done for progress in told] == [400, 500, 600, 700, 800, 900, 1000]
+    texts: list[Progress] = []
+    resume(tmp_path / "s", restore, workers=3, progress=texts.append)
+    assert [progress.done for progress in texts] == [400, 500, 600, 700, 800, 900, 1000]
     assert contents(tmp_path / "s") == undisturbed
     assert kept.items() <= undisturbed.items()
 
@@ -169,9 +169,9 @@ def test_a_finished_store_is_left_alone(
 ) -> None:
     sweep(STUDY, tmp_path / "s")
     monkeypatch.delattr(run, "evaluator")  # nothing is computed
-    told: list[Progress] = []
-    resume(tmp_path / "s", restore, progress=told.append)
-    assert [(progress.done, progress.computed) for progress in told] == [(1000, 0)]
+    texts: list[Progress] = []
+    resume(tmp_path / "s", restore, progress=texts.append)
+    assert [(progress.done, progress.computed) for progress in texts] == [(1000, 0)]
     assert contents(tmp_path / "s") == undisturbed
 
 
@@ -195,7 +195,7 @@ def small_disk(folder: Path, size: str) -> Iterator[Path]:
         subprocess.run(["umount", "-l", str(folder)], check=True)
 
 
-def test_a_full_disk_is_told_and_nothing_is_lost(
+def test_a_full_disk_is_reported_and_nothing_is_lost(
     tmp_path: Path, undisturbed: dict[str, bytes]
 ) -> None:
     with small_disk(tmp_path / "disk", "400k") as disk:
@@ -215,7 +215,7 @@ def test_a_full_disk_is_told_and_nothing_is_lost(
         assert contents(disk / "s") == undisturbed
 
 
-def test_a_file_that_the_system_refuses_is_told(
+def test_a_file_that_the_system_refuses_is_reported(
     tmp_path: Path, undisturbed: dict[str, bytes]
 ) -> None:
     resource = pytest.importorskip("resource")
@@ -233,7 +233,7 @@ def test_a_file_that_the_system_refuses_is_told(
     assert contents(tmp_path / "s") == undisturbed
 
 
-def test_a_folder_that_goes_is_told_and_not_made_again(tmp_path: Path) -> None:
+def test_a_folder_that_goes_is_reported_and_not_made_again(tmp_path: Path) -> None:
     def remove() -> None:
         shutil.rmtree(tmp_path / "s")
 
@@ -305,19 +305,19 @@ def test_slow_designs_have_small_chunks(study: Study, compiled: bool, chunk: int
     assert chunk_of(study, compiled) == chunk
 
 
-def test_progress_tells_failures_and_the_best_that_keeps_the_limits(tmp_path: Path) -> None:
-    told: list[Progress] = []
-    sweep(STUDY, tmp_path / "s", progress=told.append)
+def test_progress_reports_failures_and_the_best_that_keeps_the_limits(tmp_path: Path) -> None:
+    texts: list[Progress] = []
+    sweep(STUDY, tmp_path / "s", progress=texts.append)
     outcome = Formulas()(samples(STUDY, 0, 1000))
     area, _, energy = outcome.figures[(outcome.reason == 0) & (outcome.figures[:, 0] >= 0.0045)].T
-    last = told[-1]
+    last = texts[-1]
     assert last.best == {"area": area.min(), "energy": energy.max()}
     assert last.failures == {
         "does not assemble": np.sum(outcome.reason == 1),
         "does not turn fully": np.sum(outcome.reason == 2),
     }
     assert (last.total, last.done, last.computed, last.left) == (1000, 1000, 1000, 0)
-    assert (told[0].done, told[0].rate, told[0].left, told[0].best) == (0, None, None, {})
+    assert (texts[0].done, texts[0].rate, texts[0].left, texts[0].best) == (0, None, None, {})
 
 
 def test_rate_and_time_left_are_those_of_the_last_minute(

@@ -67,10 +67,10 @@ def test_seeds_differ_and_hold(method: str) -> None:
 
 def test_studies_in_turn() -> None:
     """A thread that computes two studies in turn gives each its own designs."""
-    one, two = study(*THREE[:2]), study(*THREE)
-    whole = [samples(one, 0, 64), samples(two, 0, 64)]
+    first, two = study(*THREE[:2]), study(*THREE)
+    whole = [samples(first, 0, 64), samples(two, 0, 64)]
     for start in (0, 32, 16):
-        assert np.array_equal(samples(one, start, 16), whole[0][start : start + 16])
+        assert np.array_equal(samples(first, start, 16), whole[0][start : start + 16])
         assert np.array_equal(samples(two, start, 16), whole[1][start : start + 16])
 
 
@@ -162,7 +162,7 @@ def test_correlations_leave_each_spread_alone(method: str) -> None:
     """By Kolmogorov and Smirnov's test."""
     varied = correlated(0.95)
     varied = study(
-        *(one.spread for one in varied.vary),
+        *(item.spread for item in varied.vary),
         method=method, designs=4096, correlations=varied.correlations,
     )  # fmt: skip
     mass, length, speed = many(varied).T

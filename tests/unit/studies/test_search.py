@@ -74,38 +74,38 @@ def two_bowls(x: Array, y: Array, z: Array) -> list[Array]:
 
 
 def test_one_objective() -> None:
-    found = searched(made("f"), bowl, population=30, generations=100)
-    assert found.values[0] == pytest.approx([0.3, 0.6, 0.9], abs=2e-3)
-    assert len(found.values) == found.front == 1
-    assert np.all(np.diff(found.volumes) <= 0)
-    assert found.volumes[-1] == found.figures[0, 0]
+    result = searched(made("f"), bowl, population=30, generations=100)
+    assert result.values[0] == pytest.approx([0.3, 0.6, 0.9], abs=2e-3)
+    assert len(result.values) == result.front == 1
+    assert np.all(np.diff(result.volumes) <= 0)
+    assert result.volumes[-1] == result.figures[0, 0]
 
 
 def test_the_largest() -> None:
-    upside_down = lambda *at: [5 - one for one in bowl(*at)]  # noqa: E731
-    found = searched(made("f", make="largest"), upside_down, population=30)
-    assert found.figures[0, 0] == pytest.approx(5, abs=1e-4)
-    assert found.volumes[-1] == found.figures[0, 0]
-    assert found.stood_still
-    assert found.generations < 200
+    upside_down = lambda *at: [5 - item for item in bowl(*at)]  # noqa: E731
+    result = searched(made("f", make="largest"), upside_down, population=30)
+    assert result.figures[0, 0] == pytest.approx(5, abs=1e-4)
+    assert result.volumes[-1] == result.figures[0, 0]
+    assert result.stood_still
+    assert result.generations < 200
 
 
 def test_limits_and_failures() -> None:
     """The best lies in the corner of a limit and of a region where nothing can be computed."""
     outputs = (*made("f"), Output("x", value="a.c", at_least=0.5), Output("free", value="a.d"))
     figures, failing = lambda x, y, z: [*bowl(x, y, z), x, z], lambda x, y, z: y > 0.5
-    found = searched(outputs, figures, failing, population=30)
-    assert found.values[0] == pytest.approx([0.5, 0.5, 0.9], abs=2e-3)
-    assert found.values[0, 0] >= 0.5
-    assert 0 < found.failures["does not assemble"] < found.computed
+    result = searched(outputs, figures, failing, population=30)
+    assert result.values[0] == pytest.approx([0.5, 0.5, 0.9], abs=2e-3)
+    assert result.values[0, 0] >= 0.5
+    assert 0 < result.failures["does not assemble"] < result.computed
 
 
 def test_lists_and_whole_numbers() -> None:
     spreads = (Choices((0.9, 0.1, 0.35)), Range(-3, 12, whole=True), Range(0.0, 1.0))
     given: dict[str, Any] = {"spreads": spreads, "population": 20, "generations": 60}
-    found = searched(made("f"), lambda x, y, z: bowl(x, y / 10, z), **given)
-    assert found.values[0, :2].tolist() == [0.35, 6.0]
-    assert found.values[0, 2] == pytest.approx(0.9, abs=0.01)
+    result = searched(made("f"), lambda x, y, z: bowl(x, y / 10, z), **given)
+    assert result.values[0, :2].tolist() == [0.35, 6.0]
+    assert result.values[0, 2] == pytest.approx(0.9, abs=0.01)
 
 
 # -- several ---------------------------------------------------------------------------------------
@@ -115,15 +115,15 @@ def test_lists_and_whole_numbers() -> None:
 # tests/laws/test_study_laws.py too.
 @EXHAUSTIVE
 def test_a_front_that_is_known() -> None:
-    found = searched(made("f", "g"), two_bowls, population=60)
-    x, y, z = found.values.T
+    result = searched(made("f", "g"), two_bowls, population=60)
+    x, y, z = result.values.T
     assert np.all((x > 0.19) & (x < 0.81))
     assert max(np.max(abs(y - 0.5)), np.max(abs(z - 0.5))) < 0.03
-    assert np.all(np.diff(found.figures[:, 0]) > 0)  # in the order of the first
-    assert np.all(np.diff(found.figures[:, 1]) < 0)
+    assert np.all(np.diff(result.figures[:, 0]) > 0)  # in the order of the first
+    assert np.all(np.diff(result.figures[:, 1]) < 0)
     assert np.max(np.diff(np.sort(x))) < 0.05  # along all of it
-    assert found.front >= len(found.values) == 60
-    assert found.objectives == {"f": "smallest", "g": "smallest"}
+    assert result.front >= len(result.values) == 60
+    assert result.objectives == {"f": "smallest", "g": "smallest"}
 
 
 # Fronts: `test_many_objectives`.
@@ -132,9 +132,9 @@ def test_one_down_and_one_up() -> None:
     """Largest x for smallest x squared, where y only harms: the front is y = 0."""
     outputs = (*made("low"), *made("high", make="largest"))
     figures = lambda x, y, z: [x**2 + y, x - y - (z - 0.5) ** 2]  # noqa: E731
-    found = searched(outputs, figures, population=40)
-    assert found.figures[:, 1] == pytest.approx(np.sqrt(found.figures[:, 0]), abs=0.02)
-    assert np.ptp(found.figures[:, 1]) > 0.9
+    result = searched(outputs, figures, population=40)
+    assert result.figures[:, 1] == pytest.approx(np.sqrt(result.figures[:, 0]), abs=0.02)
+    assert np.ptp(result.figures[:, 1]) > 0.9
 
 
 def test_many_objectives() -> None:
@@ -144,36 +144,36 @@ def test_many_objectives() -> None:
     def distances(x: Array, y: Array, z: Array) -> list[Array]:
         return [(x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2 for a, b, c in corners]
 
-    found = searched(made("a", "b", "c", "d"), distances, population=84, generations=40)
-    assert np.mean(np.sum(found.values, axis=1) < 1.1) > 0.85
-    assert len(found.values) == 84
-    assert np.all(np.min(found.figures, axis=0) < 0.03)
+    result = searched(made("a", "b", "c", "d"), distances, population=84, generations=40)
+    assert np.mean(np.sum(result.values, axis=1) < 1.1) > 0.85
+    assert len(result.values) == 84
+    assert np.all(np.min(result.figures, axis=0) < 0.03)
 
 
 # Fronts: `test_many_objectives`.
 @pytest.mark.exhaustive
 def test_the_volume_grows_until_it_stands_still() -> None:
-    found = searched(made("f", "g"), two_bowls, population=40)
-    assert np.all(np.diff(found.volumes) >= -1e-12)
-    assert found.stood_still
-    assert found.generations == len(found.volumes) < 200
+    result = searched(made("f", "g"), two_bowls, population=40)
+    assert np.all(np.diff(result.volumes) >= -1e-12)
+    assert result.stood_still
+    assert result.generations == len(result.volumes) < 200
     few = searched(made("f", "g"), two_bowls, population=40, generations=3)
     assert (few.generations, few.stood_still) == (3, False)
 
 
 def test_the_same_seed_gives_the_same() -> None:
-    told: list[tuple[int, ...]] = []
+    texts: list[tuple[int, ...]] = []
     small = {"population": 20, "generations": 12}
 
     def run(seed: int | None = None, **given: Any) -> Array:
         values: Array = searched(made("f", "g"), two_bowls, seed=seed, **small, **given).values
         return values
 
-    first = run(progress=lambda *at: told.append(at))
+    first = run(progress=lambda *at: texts.append(at))
     assert np.array_equal(run(1), first)
     assert not np.array_equal(run(2), first)
-    assert [one[:2] for one in told] == [(k, 12) for k in range(1, 13)]
-    assert [one[2] for one in told] == sorted(one[2] for one in told)
+    assert [item[:2] for item in texts] == [(k, 12) for k in range(1, 13)]
+    assert [item[2] for item in texts] == sorted(item[2] for item in texts)
 
 
 @pytest.mark.parametrize(("generations", "solver"), [(200, "complete enumeration"), (5, "NSGA-II")])
@@ -192,9 +192,9 @@ def test_nothing_is_computed_twice(
         of(*made("f", "g"), spreads=spreads),
         {"population": 12, "generations": generations},
     )
-    found = search(some, compute=compute, **size)  # type: ignore[arg-type]
-    assert found.solver == solver
-    assert len(seen) == len(set(seen)) == found.computed <= 4**3
+    result = search(some, compute=compute, **size)  # type: ignore[arg-type]
+    assert result.solver == solver
+    assert len(seen) == len(set(seen)) == result.computed <= 4**3
     assert capfd.readouterr() == ("", "")
 
 
@@ -276,12 +276,12 @@ def test_a_four_bar_against_every_design() -> None:
     wanted = good[non_dominated(outcome.figures[good, :2] * (1, -1))]
     assert 3 < len(wanted) < len(good) < len(every)
 
-    found = search(some, compute=compute, population=20)
-    assert {*map(tuple, found.values)} == {*map(tuple, every[wanted])}
-    assert found.stood_still  # there was nothing else to compute
-    machine = found.machine(0)
+    result = search(some, compute=compute, population=20)
+    assert {*map(tuple, result.values)} == {*map(tuple, every[wanted])}
+    assert result.stood_still  # there was nothing else to compute
+    machine = result.machine(0)
     assert isinstance(machine, Machine)
-    assert machine.links["rocker"].points["C"][0] == found.values[0, 1]
+    assert machine.links["rocker"].points["C"][0] == result.values[0, 1]
 
     ranges = (Variable(LENGTH, Range(0.05, 0.1)), Variable(rocker, Range(0.05, 0.1)))
     between = search(replace(some, vary=ranges), compute=compute, population=24, generations=12)

@@ -66,12 +66,12 @@ def good_ones(block: DesignBlock, force: float = 0.8, lift: float = 0.2) -> Arra
 
 def undominated(costs: Array) -> list[int]:
     """By comparing each with each; the first of equal ones."""
-    found = []
-    for k, one in enumerate(costs):
-        better = np.all(costs <= one, axis=1) & np.any(costs < one, axis=1)
-        if not np.any(better) and not np.any(np.all(costs[:k] == one, axis=1)):
-            found.append(k)
-    return found
+    actual = []
+    for k, cost in enumerate(costs):
+        better = np.all(costs <= cost, axis=1) & np.any(costs < cost, axis=1)
+        if not np.any(better) and not np.any(np.all(costs[:k] == cost, axis=1)):
+            actual.append(k)
+    return actual
 
 
 # -- choosing --------------------------------------------------------------------------------------
@@ -80,15 +80,15 @@ def undominated(costs: Array) -> list[int]:
 @pytest.mark.parametrize("chunk", [7, 16, 1000])
 def test_by_one_figure(tmp_path: Path, chunk: int) -> None:
     block = random_designs(300)
-    found = best(stored(tmp_path, block, chunk=chunk), 12)
+    result = best(stored(tmp_path, block, chunk=chunk), 12)
     good = good_ones(block)
     order = good[np.argsort(block.outcome.figures[good, 0], kind="stable")][:12]
-    assert found.designs.tolist() == order.tolist()
-    assert np.array_equal(found.values, block.values[order])
-    assert np.array_equal(found.figures, block.outcome.figures[order])
-    assert (found.kept, found.stored) == (len(good), 300)
-    assert found.computed == np.sum(block.outcome.reason == 0)
-    assert found.by == {"force": "smallest"}
+    assert result.designs.tolist() == order.tolist()
+    assert np.array_equal(result.values, block.values[order])
+    assert np.array_equal(result.figures, block.outcome.figures[order])
+    assert (result.kept, result.stored) == (len(good), 300)
+    assert result.computed == np.sum(block.outcome.reason == 0)
+    assert result.by == {"force": "smallest"}
 
 
 @pytest.mark.parametrize(
@@ -102,15 +102,15 @@ def test_by_one_figure(tmp_path: Path, chunk: int) -> None:
 @pytest.mark.parametrize("chunk", [7, 64])
 def test_by_several(tmp_path: Path, by: Mapping[str, Make | None], chunk: int) -> None:
     block = random_designs(300)
-    found = best(stored(tmp_path, block, chunk=chunk), 1000, by)
+    result = best(stored(tmp_path, block, chunk=chunk), 1000, by)
     good = good_ones(block)
     columns = dict(zip(("force", "lift", "torque"), block.outcome.figures.T, strict=True))
     columns |= {MASS: block.values[:, 0], LENGTH: block.values[:, 1]}
     costs = [(-1 if way == "largest" else 1) * columns[name][good] for name, way in by.items()]
     wanted = good[undominated(np.stack(costs, axis=1))]
-    assert sorted(found.designs.tolist()) == wanted.tolist()
-    assert found.front == len(wanted) > 5
-    first = costs[0][np.searchsorted(good, found.designs)]
+    assert sorted(result.designs.tolist()) == wanted.tolist()
+    assert result.front == len(wanted) > 5
+    first = costs[0][np.searchsorted(good, result.designs)]
     assert np.all(np.diff(first) >= 0)  # told in the order of the first figure
 
 
@@ -120,38 +120,38 @@ def test_some_of_a_large_front_lie_far_apart(tmp_path: Path) -> None:
     figures = np.stack([1 - np.cos(angle), np.ones(400), 1 - np.sin(angle)], axis=1)
     block = DesignBlock(block.values, Outcome(figures, np.zeros(400, np.uint8)))
     outputs = (OUTPUTS[0], OUTPUTS[1], Output("torque", value="a.d", make="smallest"))
-    found = best(stored(tmp_path, block, outputs), 5)
+    result = best(stored(tmp_path, block, outputs), 5)
     kept = good_ones(block)
-    assert found.front == len(kept)
-    assert len(found.designs) == 5
-    assert {int(kept[0]), int(kept[-1])} <= {*found.designs.tolist()}
-    gaps = np.diff(found.designs)
+    assert result.front == len(kept)
+    assert len(result.designs) == 5
+    assert {int(kept[0]), int(kept[-1])} <= {*result.designs.tolist()}
+    gaps = np.diff(result.designs)
     assert np.min(gaps) > 0.5 * np.mean(gaps)
 
 
 def test_stores_that_are_not_finished(tmp_path: Path) -> None:
     block = random_designs(300)
-    found = best(stored(tmp_path, block, upto=5), 3)
-    assert found.stored == 5 * 16
-    assert np.max(found.designs) < 5 * 16
+    result = best(stored(tmp_path, block, upto=5), 3)
+    assert result.stored == 5 * 16
+    assert np.max(result.designs) < 5 * 16
 
 
 def test_as_plain_values(tmp_path: Path) -> None:
-    found = best(stored(tmp_path, random_designs(50)), 2)
-    values = found.to_dict()
+    result = best(stored(tmp_path, random_designs(50)), 2)
+    values = result.to_dict()
     assert values["by"] == {"force": "smallest"}
-    assert values["kept"] == found.kept
+    assert values["kept"] == result.kept
     first = values["designs"][0]
-    assert first["design"] == found.designs[0]
-    assert first["values"] == dict(zip((MASS, LENGTH), found.values[0], strict=True))
-    assert first["figures"]["lift"] == found.figures[0, 1]
+    assert first["design"] == result.designs[0]
+    assert first["values"] == dict(zip((MASS, LENGTH), result.values[0], strict=True))
+    assert first["figures"]["lift"] == result.figures[0, 1]
 
 
 # -- refused ---------------------------------------------------------------------------------------
 
 
 def test_nothing_to_go_by(tmp_path: Path) -> None:
-    outputs = tuple(Output(one.name, value=one.value) for one in OUTPUTS)
+    outputs = tuple(Output(output.name, value=output.value) for output in OUTPUTS)
     store = stored(tmp_path, random_designs(20), outputs)
     with refused(UsageError, by="_ways"):
         best(store)
@@ -198,8 +198,8 @@ def test_nothing_is_stored(tmp_path: Path) -> None:
 @pytest.mark.parametrize("count", [0, 1, 2, 200])
 def test_fronts(kinds: int, count: int) -> None:
     costs = np.random.default_rng(kinds).integers(0, 9, (count, kinds)).astype(float)
-    found = non_dominated(costs).tolist()
-    assert found == (undominated(costs)[:1] if kinds == 1 else undominated(costs))
+    result = non_dominated(costs).tolist()
+    assert result == (undominated(costs)[:1] if kinds == 1 else undominated(costs))
 
 
 def test_places_far_apart() -> None:

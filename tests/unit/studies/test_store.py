@@ -34,15 +34,15 @@ def test_what_is_stored_is_read_again_and_the_rest_is_known_to_be_missing(tmp_pa
     assert store.missing() == [1]
     assert store.numbers == STUDY.paths
     assert store.outputs == STUDY.names
-    (start, found), *more = store.in_blocks()
+    (start, actual), *more = store.in_blocks()
     assert start == 0
     assert not more
     values = samples(STUDY, 0, 250)
     values[100:200] = np.nan
-    np.testing.assert_array_equal(found.values, values)
-    np.testing.assert_array_equal(found.outcome.figures[200:], Formulas()(values[200:]).figures)
-    assert set(found.outcome.reason[100:200]) == {UNKNOWN}
-    assert set(found.outcome.reason[:100]) == {0, 1, 2}
+    np.testing.assert_array_equal(actual.values, values)
+    np.testing.assert_array_equal(actual.outcome.figures[200:], Formulas()(values[200:]).figures)
+    assert set(actual.outcome.reason[100:200]) == {UNKNOWN}
+    assert set(actual.outcome.reason[:100]) == {0, 1, 2}
 
 
 def test_many_designs_are_read_some_chunks_at_a_time(tmp_path: Path) -> None:
@@ -176,7 +176,7 @@ def incomplete(path: Path) -> None:
         newer,
     ],
 )
-def test_what_is_no_store_is_told_in_a_sentence(tmp_path: Path, make) -> None:
+def test_what_is_no_store_is_reported_in_a_sentence(tmp_path: Path, make) -> None:
     make(tmp_path / "s")
     layouts = {"layout": 7, "own": 2} if make is newer else {}
     with refused(UsageError, place=str(tmp_path / "s"), **layouts) as caught:
@@ -185,14 +185,14 @@ def test_what_is_no_store_is_told_in_a_sentence(tmp_path: Path, make) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_a_damaged_chunk_is_told_in_a_sentence(tmp_path: Path) -> None:
+def test_a_damaged_chunk_is_reported_in_a_sentence(tmp_path: Path) -> None:
     store = filled(tmp_path / "s", STUDY)
     (store.path / "area" / "c" / "1").write_bytes(b"too short")
     with refused(DamagedError, start=100, stop=199, name="area"):
         list(store.in_blocks())
 
 
-def test_a_store_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) -> None:
+def test_a_store_that_cannot_be_written_is_reported_in_a_sentence(tmp_path: Path) -> None:
     store = filled(tmp_path / "s", STUDY, (0,))
     (store.path / ".lock").mkdir()
     with refused(UsageError, place=str(store.path)), store.writing():
@@ -212,7 +212,7 @@ with locked(Folder.at(Path(sys.argv[1]))):
 """
 
 
-def test_a_second_process_is_told_who_writes_until_that_is_killed(tmp_path: Path) -> None:
+def test_a_second_process_gets_the_name_of_the_writer_until_that_is_killed(tmp_path: Path) -> None:
     store = filled(tmp_path / "s", STUDY, (0,))
     command = [sys.executable, "-c", HOLD, str(store.path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as holder:
@@ -225,8 +225,8 @@ def test_a_second_process_is_told_who_writes_until_that_is_killed(tmp_path: Path
         holder.kill()
         holder.wait()
     with store.writing():  # what the killed one wrote of itself is still there, and is longer
-        told = (store.path / ".lock").read_text()
-        assert told == f"process {os.getpid()} on {socket.gethostname()}"
+        text = (store.path / ".lock").read_text()
+        assert text == f"process {os.getpid()} on {socket.gethostname()}"
     assert (store.path / ".lock").read_bytes() == b""
 
 

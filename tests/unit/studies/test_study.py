@@ -23,7 +23,7 @@ MASSES = Normal(0.2, 0.01)
 TEETH = "gears[1].teeth[2]"
 
 
-def test_what_it_tells() -> None:
+def test_what_it_reports() -> None:
     given = study(
         Range(0.1, 0.2), MASSES,
         outputs=(
@@ -36,7 +36,7 @@ def test_what_it_tells() -> None:
     assert given.outputs[1].value == "drive_torque.peak"
     assert given.objectives == (given.outputs[0],)
     assert (given.size, given.chunk) == (64, 65_536)
-    assert [one.dimension for one in given.vary] == ["mass", "length"]
+    assert [item.dimension for item in given.vary] == ["mass", "length"]
     assert study(Range(0.1, 0.2, 21), Choices((1, 2)), **GRID).size == 42
 
 

@@ -113,7 +113,7 @@ def test_names_with_quotes_and_commas_stand_in_the_header(tmp_path: Path) -> Non
         ("nowhere/designs.csv", {"brief": "no such file or directory"}),
     ],
 )
-def test_what_cannot_be_written_is_told_and_leaves_nothing(
+def test_what_cannot_be_written_is_reported_and_leaves_nothing(
     tmp_path: Path, name: str, expected: dict[str, Any]
 ) -> None:
     (tmp_path / "folder.csv").mkdir()
@@ -139,7 +139,7 @@ def test_a_disk_that_is_full_leaves_the_file_of_before(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["designs.csv", "s"]
 
 
-def test_without_pyarrow_the_sentence_tells_how_to_install_it(
+def test_without_pyarrow_the_sentence_reports_how_to_install_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     store = filled(tmp_path / "s", STUDY)

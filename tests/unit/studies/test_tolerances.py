@@ -37,34 +37,34 @@ def formulas(values: Array) -> Outcome:
 
 
 def test_scatter() -> None:
-    found = tolerance(given(), compute=formulas)
-    scatter = found.scatters["square"]
+    result = tolerance(given(), compute=formulas)
+    scatter = result.scatters["square"]
     cut = norm.cdf(2) - norm.cdf(-2)
     failed = (norm.cdf(2) - norm.cdf(1.5)) / cut
-    assert found.failures == {"does not assemble": pytest.approx(4096 * failed, abs=4)}
-    assert scatter.base == found.study.model.number(SPEED)[0] ** 2
+    assert result.failures == {"does not assemble": pytest.approx(4096 * failed, abs=4)}
+    assert scatter.base == result.study.model.number(SPEED)[0] ** 2
     assert scatter.percentiles[50.0] == pytest.approx(
         (20 + norm.ppf(norm.cdf(-2) + 0.5 * (1 - failed) * cut)) ** 2, rel=1e-4
     )
     assert (scatter.least, scatter.largest) == pytest.approx((18**2, 21.5**2), rel=1e-2)
-    assert np.sum(scatter.counts) == 4096 - sum(found.failures.values())
+    assert np.sum(scatter.counts) == 4096 - sum(result.failures.values())
     assert (scatter.edges[0], scatter.edges[-1]) == (scatter.least, scatter.largest)
     assert scatter.within is None
     assert (scatter.below, scatter.above) == (0, 0)
 
 
 def test_failed_machines_are_outside() -> None:
-    found = tolerance(given(), compute=formulas)
-    of_sum = found.scatters["sum"]
-    assert of_sum.within is not None and found.within is not None
-    failed = sum(found.failures.values()) / 4096
+    result = tolerance(given(), compute=formulas)
+    of_sum = result.scatters["sum"]
+    assert of_sum.within is not None and result.within is not None
+    failed = sum(result.failures.values()) / 4096
     assert of_sum.within.value == pytest.approx(1 - failed - of_sum.below - of_sum.above)
-    assert found.within == of_sum.within  # the only one with limits
-    assert found.within.low < found.within.value < found.within.high
-    width = found.within.high - found.within.low
-    share = found.within.value
+    assert result.within == of_sum.within  # the only one with limits
+    assert result.within.low < result.within.value < result.within.high
+    width = result.within.high - result.within.low
+    share = result.within.value
     assert width == pytest.approx(2 * 1.96 * np.sqrt(share * (1 - share) / 4096), rel=0.01)
-    assert any("cannot be computed" in note for note in found.notes)
+    assert any("cannot be computed" in note for note in result.notes)
 
 
 @pytest.mark.parametrize(
@@ -72,27 +72,27 @@ def test_failed_machines_are_outside() -> None:
     [(512, [5, 50, 95]), (1024, [1, 5, 50, 95, 99]), (16384, [0.1, 1, 5, 50, 95, 99, 99.9])],
 )
 def test_percentiles_that_the_sample_supports(designs: int, percentiles: list[float]) -> None:
-    found = tolerance(given(designs), compute=lambda v: Outcome(v[:, :2], np.zeros(len(v), "u1")))
-    assert list(found.scatters["sum"].percentiles) == percentiles
+    result = tolerance(given(designs), compute=lambda v: Outcome(v[:, :2], np.zeros(len(v), "u1")))
+    assert list(result.scatters["sum"].percentiles) == percentiles
 
 
 def test_what_to_tighten_first() -> None:
     outputs = (replace(SUM[0], at_most=22.0), SUM[1])
-    found = tolerance(given(outputs=outputs), compute=formulas)
-    first, *others = found.causes
+    result = tolerance(given(outputs=outputs), compute=formulas)
+    first, *others = result.causes
     assert first.numbers == (SPEED,)
     assert all(first.gain > other.gain for other in others)
-    assert first.halved is not None and first.removed is not None and found.unchanged is not None
-    assert found.unchanged < first.halved < first.removed == 1.0
+    assert first.halved is not None and first.removed is not None and result.unchanged is not None
+    assert result.unchanged < first.halved < first.removed == 1.0
     assert first.effects["square"].first.value == pytest.approx(1, abs=0.02)
     assert first.gain == 1 - first.effects["sum"].halved ** 2  # the output with limits counts
 
 
 def test_without_limits_all_outputs_count() -> None:
     outputs = (Output("sum", value="a.b"), Output("square", value="a.c"))
-    found = tolerance(given(outputs=outputs), compute=formulas)
-    assert found.within is found.unchanged is None
-    for cause in found.causes:
+    result = tolerance(given(outputs=outputs), compute=formulas)
+    assert result.within is result.unchanged is None
+    for cause in result.causes:
         assert cause.halved is cause.removed is None
         gains = [1 - effect.halved**2 for effect in cause.effects.values()]
         assert cause.gain == pytest.approx(np.mean(gains))
@@ -104,18 +104,18 @@ def test_what_does_not_vary() -> None:
         outcome.figures[:, 1] = 7.0 + 1e-15 * values[:, 0]  # rounding
         return Outcome(outcome.figures, np.zeros(len(values), np.uint8))
 
-    found = tolerance(given(), compute=constant)
-    assert all(list(cause.effects) == ["sum"] for cause in found.causes)
-    assert found.scatters["square"].deviation < 1e-14
-    assert found.scatters["square"].counts.tolist() == [4096]
-    assert "square does not vary, so that no tolerance is named as its cause" in found.notes
+    result = tolerance(given(), compute=constant)
+    assert all(list(cause.effects) == ["sum"] for cause in result.causes)
+    assert result.scatters["square"].deviation < 1e-14
+    assert result.scatters["square"].counts.tolist() == [4096]
+    assert "square does not vary, so that no tolerance is named as its cause" in result.notes
 
 
-def test_it_is_the_same_again_and_tells_how_far_it_is() -> None:
-    told: list[tuple[int, int]] = []
-    first = tolerance(given(), compute=formulas, progress=lambda *at: told.append(at))
-    assert told == sorted(told)
-    assert told[-1] == (first.computed, first.computed)
+def test_it_is_the_same_again_and_reports_how_far_it_is() -> None:
+    texts: list[tuple[int, int]] = []
+    first = tolerance(given(), compute=formulas, progress=lambda *at: texts.append(at))
+    assert texts == sorted(texts)
+    assert texts[-1] == (first.computed, first.computed)
     assert first.computed == 4096 + rows_of(4096, 3) * 11
     again = tolerance(given(chunk=100), compute=formulas)
     assert str(again.to_dict()["tighten"]) == str(first.to_dict()["tighten"])
@@ -173,10 +173,10 @@ def test_a_machine() -> None:
     """By the study's own evaluator: the scatter about the machine, and its first-order slopes."""
     spreads = (Normal(0.199, 0.002), Uniform(0.0715, 0.0002))
     outputs = (Output("shaking_force.y.rms"), Output("joints.B.rms"))
-    found = tolerance(study(*spreads, designs=256, outputs=outputs, angles=90))
+    result = tolerance(study(*spreads, designs=256, outputs=outputs, angles=90))
     machine = eq.load("yamashita-1")
     for number, name in enumerate(("shaking_force.y", "joints.B")):
-        scatter = found.scatters[outputs[number].name]
+        scatter = result.scatters[outputs[number].name]
         assert scatter.base == pytest.approx(eq.analyze(machine, 90).summary[name].rms, rel=1e-12)
         slopes = []
         for cause, step in ((0, 0.002), (1, 0.0002 / np.sqrt(3))):
@@ -188,8 +188,8 @@ def test_a_machine() -> None:
             changed = changed.with_link("coupler", points=points)
             slopes.append(eq.analyze(changed, 90).summary[name].rms - scatter.base)
         assert scatter.deviation == pytest.approx(float(np.hypot(*slopes)), rel=0.05)
-        for cause in found.causes:
-            own = slopes[found.study.paths.index(cause.numbers[0])]
+        for cause in result.causes:
+            own = slopes[result.study.paths.index(cause.numbers[0])]
             share = own**2 / np.sum(np.square(slopes))
             effect = cause.effects[outputs[number].name]
             assert effect.halved == pytest.approx(np.sqrt(1 - 0.75 * share), abs=0.03)

@@ -22,11 +22,11 @@ COUNT = 24
 def drawn(kind: str, rides: str) -> tuple[Motion, Scene, list[list[Shape]]]:
     """A random machine of a kind, and the shapes of its cam at every crank angle."""
     cases = (make(kind, seed).machine for seed in range(40))
-    machine = next(one for one in cases if one.cams[0].rides == rides)
+    machine = next(case for case in cases if case.cams[0].rides == rides)
     motion = eq.move(machine, COUNT)
     scene = Scene.of(motion)
     every = [
-        [one for one in placed(scene, pieces(scene), k) if one.role in ("cam", "rider", "face")]
+        [item for item in placed(scene, pieces(scene), k) if item.role in ("cam", "rider", "face")]
         for k in range(COUNT)
     ]
     return motion, scene, every
@@ -73,11 +73,11 @@ def test_both_flanks_of_a_groove_touch_its_roller() -> None:
     scene = Scene.of(eq.move(grooved, COUNT))
     for k in range(COUNT):
         roles = ("groove", "cam", "rider")
-        shapes = [one for one in placed(scene, pieces(scene), k) if one.role in roles]
+        shapes = [item for item in placed(scene, pieces(scene), k) if item.role in roles]
         *flanks, roller = shapes
-        apart = [distance(roller.places[0], one.places) - roller.radius for one in flanks]
+        apart = [distance(roller.places[0], flank.places) - roller.radius for flank in flanks]
         np.testing.assert_allclose(apart, [0, 0], atol=1e-3 * cam.base_radius)
-        outer, inner = (np.sum(cross(one.places, np.roll(one.places, -1))) for one in flanks)
+        outer, inner = (np.sum(cross(flank.places, np.roll(flank.places, -1))) for flank in flanks)
         assert abs(outer) > abs(inner)
 
 
@@ -92,7 +92,7 @@ def test_links_hide_neither_the_surface_nor_the_roller() -> None:
 def test_the_cam_is_in_sight_and_has_a_key() -> None:
     _, scene, every = drawn("fixed_cam_tappet", "roller")
     low, high = scene.box
-    for shape in (one for shapes in every for one in shapes):
+    for shape in (item for shapes in every for item in shapes):
         places, radius = shape.places, shape.radius
         assert low.real <= np.min(places.real) - radius <= np.max(places.real) + radius <= high.real
         assert low.imag <= np.min(places.imag) - radius <= np.max(places.imag) + radius <= high.imag
@@ -106,7 +106,7 @@ def test_ribs_are_drawn_inside_of_the_surface() -> None:
     for closed_by in ("ribs", "groove", "spring"):
         closed = replace(motion.machine, cams=(replace(cam, closed_by=closed_by),))
         scene = Scene.of(eq.move(closed, COUNT))
-        by_role = {one.role: one for one in placed(scene, pieces(scene), 0)}
+        by_role = {item.role: item for item in placed(scene, pieces(scene), 0)}
         assert ("rib" in by_role) == (closed_by == "ribs")
         if closed_by == "ribs":
             apart = [distance(place, by_role["cam"].places) for place in by_role["rib"].places]

@@ -48,13 +48,13 @@ def test_a_row_beside_the_linkage_is_drawn_there_and_makes_room() -> None:
     assert row_legend(scene) == ["row 1: as drawn; row 2: pale"]
 
 
-def test_a_row_far_away_is_told_and_not_drawn() -> None:
+def test_a_row_far_away_is_reported_and_not_drawn() -> None:
     scene, _ = scene_of(Row(), Row(phase=np.pi, offset=(3.0, 0.0)))
     assert pale(scene, 0) == [] and scene.box == scene_of(Row(), Row())[0].box
     assert row_legend(scene) == ["row 1: as drawn; row 2: beside the drawing, 180° ahead"]
 
 
-def test_pictures_and_animations_tell_rows() -> None:
+def test_pictures_and_animations_report_rows() -> None:
     analysis = eq.analyze(eq.load("riding-transplanter"), 72)
     chart = linkage(analysis)
     assert "rows 1, 3: as drawn; rows 2, 4: pale, 180° ahead" in chart.words

@@ -38,11 +38,11 @@ def test_links_keep_their_lengths_and_everything_is_in_the_box(name):
     low, high = scene.box
     for body in scene.bodies:
         own = machine.links[body.name].points
-        for one in body.points:
+        for point in body.points:
             for other in body.points:
-                apart = abs(complex(*own[one]) - complex(*own[other]))
-                found = abs(scene.places[one] - scene.places[other])
-                np.testing.assert_allclose(found, apart, rtol=0, atol=1e-12)
+                apart = abs(complex(*own[point]) - complex(*own[other]))
+                size = abs(scene.places[point] - scene.places[other])
+                np.testing.assert_allclose(size, apart, rtol=0, atol=1e-12)
     for place in (*scene.places.values(), *scene.mass_centers.values()):
         assert np.all((low.real <= place.real) & (place.real <= high.real))
         assert np.all((low.imag <= place.imag) & (place.imag <= high.imag))
@@ -54,9 +54,9 @@ def test_outlines_hold_all_points_of_a_link(name):
     for body in scene.bodies:
         around = [complex(*machine.links[body.name].points[point]) for point in body.outline]
         for place in machine.links[body.name].points.values():
-            for one, other in zip(around, [*around[1:], around[0]], strict=True):
+            for item, other in zip(around, [*around[1:], around[0]], strict=True):
                 if len(around) > 2:
-                    assert kernels.cross(other - one, complex(*place) - one) >= -1e-12
+                    assert kernels.cross(other - item, complex(*place) - item) >= -1e-12
 
 
 @pytest.mark.parametrize("name", ["geared-counterweight", "planetary-planting-arm"])
@@ -64,13 +64,13 @@ def test_pitch_circles_touch_and_roll(name):
     machine, motion, scene = moved(name)
     pairs = zip(scene.wheels[::2], scene.wheels[1::2], strict=True)
     for gear, (driver, driven) in zip(machine.gears, pairs, strict=True):
-        one, other = scene.places[driver.center], scene.places[driven.center]
+        first, other = scene.places[driver.center], scene.places[driven.center]
         if gear.speed_ratio < 0:
-            np.testing.assert_allclose(abs(one - other), driver.radius + driven.radius)
-            touch = one + (other - one) * driver.radius / (driver.radius + driven.radius)
+            np.testing.assert_allclose(abs(first - other), driver.radius + driven.radius)
+            touch = first + (other - first) * driver.radius / (driver.radius + driven.radius)
         else:
-            np.testing.assert_allclose(abs(one - other), abs(driver.radius - driven.radius))
-            touch = one + (other - one) * driver.radius / (driver.radius - driven.radius)
+            np.testing.assert_allclose(abs(first - other), abs(driver.radius - driven.radius))
+            touch = first + (other - first) * driver.radius / (driver.radius - driven.radius)
         for axis in (np.real, np.imag):
             speeds = [
                 axis(
@@ -87,13 +87,13 @@ def test_pitch_curves_roll_without_gap_or_overlap():
     _, motion, scene = moved("elliptic-quick-return")
     driver, driven = scene.wheels
     for k in range(0, len(scene.crank_angle), 7):
-        one, other = (
+        first, other = (
             scene.places[wheel.center][k]
             + wheel.curve * np.exp(1j * motion.links[wheel.link].angle[k])
             for wheel in (driver, driven)
         )
         around = other - scene.places[driven.center][k]
-        arms = one - scene.places[driven.center][k]
+        arms = first - scene.places[driven.center][k]
         order = np.argsort(np.angle(around))
         edge = np.interp(
             np.angle(arms), np.angle(around)[order], np.abs(around)[order], period=2 * np.pi
@@ -143,8 +143,8 @@ def of_role(scene: Scene, *roles: str) -> list[tuple[Piece, Shape, np.ndarray]]:
     ]
 
 
-def near(found: list[np.ndarray], wanted: np.ndarray) -> float:
-    return min(float(np.max(np.abs(one - wanted))) for one in found)
+def near(result: list[np.ndarray], wanted: np.ndarray) -> float:
+    return min(float(np.max(np.abs(item - wanted))) for item in result)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -243,8 +243,8 @@ def test_gears_touch_and_turn_with_their_links() -> None:
 def test_springs_are_zigzags_between_their_ends(role: str) -> None:
     scene = scene_of("spring-balanced-crank" if role == "spring" else "balance-spring")
     ((_, shape, line),) = of_role(scene, role)
-    ((one, other),) = scene.springs if role == "spring" else scene.planned
-    np.testing.assert_allclose(line[0], scene.places[one], atol=1e-12)
+    ((first, other),) = scene.springs if role == "spring" else scene.planned
+    np.testing.assert_allclose(line[0], scene.places[first], atol=1e-12)
     np.testing.assert_allclose(line[-1], scene.places[other], atol=1e-12)
     assert np.ptp(shape.offsets.imag) > 10 and len(shape.places) >= 14
 
@@ -273,9 +273,9 @@ def test_blocks_keep_to_their_lines(name: str) -> None:
 @pytest.mark.parametrize("speed", [12.0, -12.0, 0.0])
 def test_the_driver_shows_its_sense(speed: float) -> None:
     scene = scene_of(eq.load("yamashita-1").with_drive(speed=speed))
-    found = of_role(scene, "driver")
-    assert len(found) == bool(speed)
-    for _, _, line in found:
+    result = of_role(scene, "driver")
+    assert len(result) == bool(speed)
+    for _, _, line in result:
         arms = line - scene.places[scene.drive.pivot]
         assert np.all(np.sign(np.diff(np.unwrap(np.angle(arms), axis=0), axis=0)) == np.sign(speed))
 

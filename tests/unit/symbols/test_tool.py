@@ -33,8 +33,8 @@ def test_every_sign_has_a_look_and_lies_in_the_box() -> None:
 def test_each_kind_of_seat_has_its_signs() -> None:
     def count(role: str, **seat: object) -> int:
         alone = SeatSign("one", 0.5, **seat)  # type: ignore[arg-type]
-        found = ToolScene(TUBES, (alone,), ALONG, 0 * ALONG[None]).at(0)
-        return sum(shape.role == role for shape in found)
+        values = ToolScene(TUBES, (alone,), ALONG, 0 * ALONG[None]).at(0)
+        return sum(shape.role == role for shape in values)
 
     assert count("stand", hands=2) == 2 * 5
     assert count("spring", absorber=0.1) == count("tie", harness=True) == 1
@@ -46,7 +46,7 @@ def test_each_kind_of_seat_has_its_signs() -> None:
 def test_bodies_turn_with_the_shaft_and_hands_stay_upright() -> None:
     """The shaft climbs by a tenth; a cube of 8 kg of water has 200 mm."""
     for name, (turned, upright) in SCENE.tracks.items():
-        (place,) = (one.place for one in SEATS if one.name == name)
+        (place,) = (seat.place for seat in SEATS if seat.name == name)
         assert turned.place[1] == upright.place[1] == pytest.approx(place * (1 + 0.1j))
         assert turned.angle == pytest.approx([0, np.arctan(0.1)]) and not np.any(upright.angle)
     assert SEATS[0].edge == pytest.approx(0.2)

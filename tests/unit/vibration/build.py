@@ -123,7 +123,7 @@ def body_of(**changes: Any) -> SupportBody:
     return SupportBody(block(**changes))
 
 
-def close(found: Any, wanted: Any, tolerance: float) -> None:
+def close(result: Any, wanted: Any, tolerance: float) -> None:
     """Compare values beside the largest of those wanted."""
     size = float(np.max(np.abs(wanted), initial=0.0))
-    np.testing.assert_allclose(found, wanted, rtol=0, atol=tolerance * size)
+    np.testing.assert_allclose(result, wanted, rtol=0, atol=tolerance * size)

@@ -123,12 +123,12 @@ def second_differences(potential: Callable[[Array], float], count: int, h: float
     Central differences of 2nd order miss by h^2 / 12 of the fourth derivatives, 1e-7 of them.
     """
     steps = h * np.eye(count)
-    found = np.empty((count, count))
-    for j, one in enumerate(steps):
+    result = np.empty((count, count))
+    for j, step in enumerate(steps):
         for k, other in enumerate(steps):
-            corners = [a * b * potential(a * one + b * other) for a in (1, -1) for b in (1, -1)]
-            found[j, k] = sum(corners) / (4 * h * h)
-    return found
+            corners = [a * b * potential(a * step + b * other) for a in (1, -1) for b in (1, -1)]
+            result[j, k] = sum(corners) / (4 * h * h)
+    return result
 
 
 @SEEDS
@@ -139,9 +139,9 @@ def test_turning_stiffness_against_finite_rotations(seed: int) -> None:
     def potential(turn: Array) -> float:
         return float(-force @ (Rotation.from_rotvec(turn).apply(arm) - arm))
 
-    found = turning_stiffness(force, arm)
-    np.testing.assert_allclose(found[3:, 3:], second_differences(potential, 3), atol=3e-6)
-    assert not np.any(found[:3]) and not np.any(found[:, :3])
+    result = turning_stiffness(force, arm)
+    np.testing.assert_allclose(result[3:, 3:], second_differences(potential, 3), atol=3e-6)
+    assert not np.any(result[:3]) and not np.any(result[:, :3])
 
 
 def potential_of(machine: eq.Machine) -> Callable[[Array], float]:
@@ -246,9 +246,9 @@ def test_a_one_sided_mount_that_would_pull_lets_go() -> None:
     places, center = {"a": -0.5, "b": 0.0, "c": 0.5}, 0.4
     pulled = preloads(places, center=center)
     assert pulled["a"] == pytest.approx(1 / 3 - 0.4)
-    found = preloads(places, ("a",), center=center)
+    result = preloads(places, ("a",), center=center)
     # b sinks by 0.2, c by 0.8: the beam at a stands up by 0.4.
-    assert found == pytest.approx({"a": -0.4, "b": 0.2, "c": 0.8})
+    assert result == pytest.approx({"a": -0.4, "b": 0.2, "c": 0.8})
     held = preloads(places, ("b", "c"), center=center)
     assert held == pytest.approx(pulled)
 
@@ -427,8 +427,10 @@ def test_rates_against_differences(name: str) -> None:
 
     slope = (reading.displacement(path(T + H)) - reading.displacement(path(T - H))) / (2 * H)
     np.testing.assert_allclose(moving(T), slope, rtol=0, atol=1e-7)
-    found = reading.acceleration(path(T), rates(T), changes(T))
-    np.testing.assert_allclose(found, (moving(T + H) - moving(T - H)) / (2 * H), rtol=0, atol=1e-7)
+    acceleration = reading.acceleration(path(T), rates(T), changes(T))
+    np.testing.assert_allclose(
+        acceleration, (moving(T + H) - moving(T - H)) / (2 * H), rtol=0, atol=1e-7
+    )
 
 
 @readings

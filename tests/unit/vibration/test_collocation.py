@@ -94,8 +94,8 @@ def test_integral_over_the_period() -> None:
 def test_gauss_rule_is_exact_to_its_order() -> None:
     """m nodes integrate powers up to 2 m - 1."""
     powers = np.arange(2 * STAGES)
-    found = RULE.weights @ RULE.nodes[:, None] ** powers
-    np.testing.assert_allclose(found, 1 / (powers + 1), rtol=1e-13)
+    actual = RULE.weights @ RULE.nodes[:, None] ** powers
+    np.testing.assert_allclose(actual, 1 / (powers + 1), rtol=1e-13)
 
 
 def duffing(s: Array, x: Array) -> list[Any]:
@@ -159,9 +159,9 @@ def test_multipliers_of_a_linear_oscillator(damping: float, frequency: float) ->
     """exp(lambda 2 pi), with lambda = w (-D +- i sqrt(1 - D^2))."""
     orbit = solved(oscillator(damping, frequency), 2 * pi)
     wanted = np.exp(2 * pi * frequency * (-damping + 1j * np.sqrt(1 - damping**2)))
-    found = np.linalg.eigvals(orbit.monodromy)
+    eigenvalues = np.linalg.eigvals(orbit.monodromy)
     upper = complex(wanted.real, abs(wanted.imag))
-    np.testing.assert_allclose(sorted(found, key=np.imag)[1], upper, rtol=1e-11)
+    np.testing.assert_allclose(sorted(eigenvalues, key=np.imag)[1], upper, rtol=1e-11)
 
 
 def mathieu(a: float, q: float) -> Orbit:
@@ -196,30 +196,30 @@ def stop(s: Array, x: Array) -> list[Any]:
 
 def test_mesh_is_refined_where_a_stop_sets_in() -> None:
     """Followed in time for 50 periods it comes to the same; at 1e-10 that keeps some 1e-8."""
-    found = steady(
+    result = steady(
         Equations(stop), [lambda s: np.zeros((2, len(s)))], 1, BoundaryConditions.periodic(2)
     )
-    assert found.residual < FINE
-    steps = np.diff(found.orbit.points)
+    assert result.residual < FINE
+    steps = np.diff(result.orbit.points)
     assert np.max(steps) / np.min(steps) > 100
     s = np.linspace(0, 2 * pi, 41)
     followed = solve_ivp(
         lambda t, x: stop(np.array(t), x), (0, 102 * pi), [0.0, 0.0], "DOP853",
         t_eval=100 * pi + s, rtol=1e-10, atol=1e-12, max_step=0.1,
     )  # fmt: skip
-    np.testing.assert_allclose(found.orbit.at(s), followed.y, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(result.orbit.at(s), followed.y, rtol=0, atol=1e-7)
 
 
 def test_largest_multiplier_comes_first() -> None:
     def f(s: Array, x: Array) -> list[Any]:
         return [np.cos(s) - x[0], np.sin(s) + 0.1 * x[1], -0.5 * x[2]]
 
-    found = steady(
+    result = steady(
         Equations(f), [lambda s: np.zeros((3, len(s)))], 1, BoundaryConditions.periodic(3)
     )
     wanted = np.exp(2 * pi * np.array([0.1, -0.5, -1]))
-    np.testing.assert_allclose(found.multipliers(3), wanted, rtol=1e-10)
-    np.testing.assert_allclose(found.multipliers(1), wanted[2:], rtol=1e-10)
+    np.testing.assert_allclose(result.multipliers(3), wanted, rtol=1e-10)
+    np.testing.assert_allclose(result.multipliers(1), wanted[2:], rtol=1e-10)
 
 
 def growing(_: Array, x: Array) -> list[Any]:
@@ -246,8 +246,8 @@ def test_second_guess_where_the_first_leads_nowhere() -> None:
         return np.full((1, len(s)), 1.2)
 
     f = Equations(lambda _, x: [(x[0] - 1) * (1 + x[0] ** 2)])
-    found = steady(f, [far, near], 1, BoundaryConditions.periodic(1))
-    np.testing.assert_allclose(found.orbit.starts, 1, rtol=1e-12)
+    result = steady(f, [far, near], 1, BoundaryConditions.periodic(1))
+    np.testing.assert_allclose(result.orbit.starts, 1, rtol=1e-12)
     assert asked
     with pytest.raises(ResponseError):
         steady(f, [far], 1, BoundaryConditions.periodic(1))

@@ -199,13 +199,13 @@ def test_every_model_answers_for_a_support_without_linkage(model: ExcitationMode
         name: Mount((x, 0.0, 0.0), stiffness=5e3, damping=9.0) for name, x in (("a", -1), ("b", 1))
     }
     side = Mount((0.0, 0.0, 0.0), direction=0.0, stiffness=5e3, damping=9.0)
-    found = respond(block(mounts={**feet, "side": side}), SPEED, model)
-    for gauge in found.gauges.values():
+    response = respond(block(mounts={**feet, "side": side}), SPEED, model)
+    for gauge in response.gauges.values():
         assert float(gauge.displacement.peak_to_peak) < 1e-12
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_told_values(model: str) -> None:
+def test_reported_values(model: str) -> None:
     values = respond(rig(), SPEED, model).to_dict()  # type: ignore[arg-type]
     assert values["model"] == model
     assert values["speed"] == SPEED
@@ -247,9 +247,9 @@ def test_a_coordinate_that_nothing_moves(
     }
     values = {"mass": 10.0, "center_of_mass": (0.0, 0.0, 0.0), "inertia": (0.5,)}
     machine = machine.with_support(**values, mounts=mounts, freedoms=freedoms)
-    found = respond(machine, 13.0, model).gauges  # type: ignore[arg-type]
-    assert found["surge"].displacement.peak_to_peak > 1e-3
-    assert found["heave"].displacement.peak_to_peak < 1e-3
+    gauges = respond(machine, 13.0, model).gauges  # type: ignore[arg-type]
+    assert gauges["surge"].displacement.peak_to_peak > 1e-3
+    assert gauges["heave"].displacement.peak_to_peak < 1e-3
 
 
 @pytest.mark.parametrize("mean_speed", ["held", "free"])
@@ -262,14 +262,14 @@ def test_on_solid_ground_with_a_motor(
     Nothing is lost: free, the motor runs at its no-load speed but for the curve of its torque.
     """
     motor = Motor(26.0, stall_torque, mean_speed=mean_speed, inertia=0.02)
-    found = respond(BARE.with_drive(motor=motor), drive=True)
+    response = respond(BARE.with_drive(motor=motor), drive=True)
     wanted = {"held": pytest.approx(SPEED), "free": pytest.approx(26.0, rel=1e-2)}
-    assert found.speed == wanted[mean_speed]
-    assert found.drive.speed is not None
-    assert found.drive.fluctuation > 0.01
-    assert (found.gauges, found.mounts, found.modes) == ({}, {}, ())
-    assert found.multipliers is not None
-    assert found.multipliers.shape == (1,)
+    assert response.speed == wanted[mean_speed]
+    assert response.drive.speed is not None
+    assert response.drive.fluctuation > 0.01
+    assert (response.gauges, response.mounts, response.modes) == ({}, {}, ())
+    assert response.multipliers is not None
+    assert response.multipliers.shape == (1,)
     assert solve_exact(DRIVEN, SPEED, True).system.free == ()
 
 
@@ -277,9 +277,9 @@ def test_a_motor_drives_the_way_that_is_asked_for() -> None:
     """Whether the speed is the machine's own or given: a motor runs either way."""
     machine = rig().with_drive(motor=LINE)
     wanted = respond(machine.with_drive(speed=-17.0), drive=True)
-    found = respond(machine, -17.0, drive=True)
-    assert found.speed == pytest.approx(-17)
-    assert found.drive.fluctuation == pytest.approx(wanted.drive.fluctuation)
+    response = respond(machine, -17.0, drive=True)
+    assert response.speed == pytest.approx(-17)
+    assert response.drive.fluctuation == pytest.approx(wanted.drive.fluctuation)
 
 
 def amplified(machine: eq.Machine, speed: float) -> float:
@@ -325,15 +325,15 @@ def test_a_speed_within_a_resonance_says_so(rpm: float) -> None:
     """As the report does: where the swing is more than three times that under a standing force."""
     machine = eq.load("yamashita-rig")
     speed = rpm * np.pi / 30
-    told = [str(note) for note in respond(machine, speed).notes if "to be avoided" in str(note)]
-    assert len(told) == (amplified(machine, speed) > 3)
+    texts = [str(note) for note in respond(machine, speed).notes if "to be avoided" in str(note)]
+    assert len(texts) == (amplified(machine, speed) > 3)
     assert [str(n) for n in respond(machine, speed, "exact").notes if "avoided" in str(n)][
         :1
-    ] == told
-    found = find("yamashita-rig", speed=speed)
-    assert isinstance(found, Findings)
-    summary = [line for line in vibration_sentences(found) if "to be avoided" in line]
-    assert summary == [f"T{line[1:]}." for line in told]
+    ] == texts
+    place = find("yamashita-rig", speed=speed)
+    assert isinstance(place, Findings)
+    summary = [line for line in vibration_sentences(place) if "to be avoided" in line]
+    assert summary == [f"T{line[1:]}." for line in texts]
 
 
 def test_a_sweep_covers_the_speeds_at_which_the_machine_runs() -> None:

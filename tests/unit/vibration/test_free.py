@@ -122,7 +122,7 @@ def test_proportional_damping(seed: int) -> None:
         np.testing.assert_allclose(damped.shape, free.shape, atol=1e-8)
 
 
-def test_overdamped_motion_is_told_twice() -> None:
+def test_overdamped_motion_is_reported_twice() -> None:
     """x'' + 5 x' + 4 x = 0 dies out as exp(-t) and exp(-4 t)."""
     slow, fast = of(1.0, 5.0, 4.0)
     assert [slow.eigenvalue, fast.eigenvalue] == pytest.approx([-1, -4])
@@ -141,7 +141,7 @@ def test_growing_motion() -> None:
     assert swinging.swings
 
 
-def test_free_motion_is_told_once() -> None:
+def test_free_motion_is_reported_once() -> None:
     """Two masses that only a spring joins: they drift together, and swing at sqrt(k / reduced)."""
     still, swinging = of(np.diag([2.0, 6.0]), np.zeros((2, 2)), [[90.0, -90.0], [-90.0, 90.0]])
     assert still.natural_frequency == 0
@@ -194,24 +194,24 @@ def test_mass_on_two_springs() -> None:
     """Heave and pitch of a symmetric body: sqrt(2 k / m) and l sqrt(2 k / I)."""
     k, arm = 4000.0, 0.5
     feet = {n: Mount((x, 0.0, 0.0), stiffness=k) for n, x in (("a", -arm), ("b", arm))}
-    found = eq.modes(block(freedoms=("heave", "pitch"), mounts=feet))
-    assert found.coordinates == ("heave", "pitch")
-    heave, pitch = found.modes
+    modes = eq.modes(block(freedoms=("heave", "pitch"), mounts=feet))
+    assert modes.coordinates == ("heave", "pitch")
+    heave, pitch = modes.modes
     assert heave.natural_frequency == pytest.approx(sqrt(2 * k / 10))
     assert pitch.natural_frequency == pytest.approx(arm * sqrt(2 * k / 0.4))
     np.testing.assert_allclose(np.abs([heave.shape, pitch.shape]), np.eye(2), atol=1e-9)
-    assert found.preloads == pytest.approx({"a": 5 * 9.80665, "b": 5 * 9.80665})
+    assert modes.preloads == pytest.approx({"a": 5 * 9.80665, "b": 5 * 9.80665})
     # Gauges that are not there are the coordinates themselves.
-    assert list(found.gauges) == ["heave", "pitch"]
+    assert list(modes.gauges) == ["heave", "pitch"]
 
 
 def test_gauges_read_shapes() -> None:
     """A gauge 0.4 ahead of the centre reads 0.4 of the pitch; one of the rotation reads it all."""
     feet = {n: Mount((x, 0.0, 0.0), stiffness=4e3) for n, x in (("a", -0.5), ("b", 0.5))}
     gauges = {"ahead": Gauge((0.4, 0.0, 0.0)), "tilt": Gauge(axis="pitch")}
-    found = eq.modes(block(freedoms=("heave", "pitch"), mounts=feet, gauges=gauges))
-    np.testing.assert_allclose(np.abs(found.gauges["ahead"]), [1, 0.4], atol=1e-9)
-    np.testing.assert_allclose(np.abs(found.gauges["tilt"]), [0, 1], atol=1e-9)
+    modes = eq.modes(block(freedoms=("heave", "pitch"), mounts=feet, gauges=gauges))
+    np.testing.assert_allclose(np.abs(modes.gauges["ahead"]), [1, 0.4], atol=1e-9)
+    np.testing.assert_allclose(np.abs(modes.gauges["tilt"]), [0, 1], atol=1e-9)
 
 
 def test_the_linkage_rides_where_the_model_has_it() -> None:
@@ -223,7 +223,7 @@ def test_the_linkage_rides_where_the_model_has_it() -> None:
     )
     assert linear == torque == pytest.approx(sqrt(3252.81677175 / (inertia + 1.145 * 1.34**2)))
     assert moment != pytest.approx(linear, rel=1e-3)
-    assert {eq.modes(one).linear.excitation.model for one in (rig(), springs())} == {"moment"}
+    assert {eq.modes(item).linear.excitation.model for item in (rig(), springs())} == {"moment"}
 
 
 def left_over(share: float) -> eq.Machine:
@@ -247,28 +247,28 @@ def test_preloads_that_do_not_hold_the_weight_are_noted() -> None:
     assert eq.modes(springs()).notes == ()
     for model in ("linear", "torque", "moment", "coupled"):
         assert note in respond(light, SPEED, model).notes
-    assert not any("preloads" in str(one) for one in respond(light, SPEED, "exact").notes)
-    (swept,) = (one for one in sweep_speed(light, 3.0, 9.0, speeds=4).notes if "preload" in one)
+    assert not any("preloads" in str(item) for item in respond(light, SPEED, "exact").notes)
+    (swept,) = (item for item in sweep_speed(light, 3.0, 9.0, speeds=4).notes if "preload" in item)
     assert swept == note
 
 
 @pytest.mark.parametrize("machine", [rig(), springs(), cart()], ids=["pivot", "plane", "space"])
 def test_matrices_are_about_the_reference_point(machine: eq.Machine) -> None:
     """The pivot, or the centre of mass, of which no mass of the support lies to one side."""
-    found = eq.modes(machine)
-    assert found.to_dict()["reference"] == list(found.reference)
+    modes = eq.modes(machine)
+    assert modes.to_dict()["reference"] == list(modes.reference)
     support = machine.support
     assert support is not None
     wanted = support.center_of_mass if support.pivot is None else (*support.pivot, 0.0)
-    assert found.reference == wanted
-    words = " ".join(printed(found.blocks()).split())
+    assert modes.reference == wanted
+    words = " ".join(printed(modes.blocks()).split())
     assert ("of the support's pivot, (" if support.pivot else "centre of mass, (") in words
     if support.pivot is None:  # of the support alone no mass lies beside its centre
         mass = np.array(eq.modes(weightless(machine)).to_dict()["mass"])
         assert np.max(np.abs(mass[:2, -1])) < 1e-12
 
 
-def test_told_values() -> None:
+def test_reported_values() -> None:
     values = eq.modes(springs()).to_dict()
     assert values["model"] == "moment"
     assert values["coordinates"] == ["surge", "heave", "pitch"]
@@ -286,7 +286,7 @@ def test_refusals() -> None:
         eq.modes(rig(), "whole")
 
 
-def found(machine: eq.Machine, slowest: float, fastest: float) -> list[Resonance]:
+def resonances_of(machine: eq.Machine, slowest: float, fastest: float) -> list[Resonance]:
     return resonances(Linear.of(machine), slowest, fastest)
 
 
@@ -294,7 +294,7 @@ def found(machine: eq.Machine, slowest: float, fastest: float) -> list[Resonance
 def test_an_order_meets_a_mode(machine: eq.Machine) -> None:
     """Order times speed is the frequency of the mode; the fastest comes first."""
     modes = Linear.of(machine).modes
-    met = found(machine, 2.0, 40.0)
+    met = resonances_of(machine, 2.0, 40.0)
     assert met
     for resonance in met:
         mode = modes[resonance.mode - 1]
@@ -309,18 +309,18 @@ def test_an_order_meets_a_mode(machine: eq.Machine) -> None:
 
 def test_both_ends_belong_to_the_range() -> None:
     natural = Linear.of(rig()).modes[0].natural_frequency
-    assert [r.order for r in found(rig(), natural / 3, natural)] == [1, 2, 3]
-    assert [r.order for r in found(rig(), natural / 2.99, natural / 1.01)] == [2]
-    assert not found(rig(), natural * 1.01, natural * 3)
+    assert [r.order for r in resonances_of(rig(), natural / 3, natural)] == [1, 2, 3]
+    assert [r.order for r in resonances_of(rig(), natural / 2.99, natural / 1.01)] == [2]
+    assert not resonances_of(rig(), natural * 1.01, natural * 3)
 
 
 def test_a_reversed_crank_meets_the_same() -> None:
-    forward, back = found(rig(), 3.0, 30.0), found(rig(), -3.0, -30.0)
-    for one, other in zip(forward, back, strict=True):
-        assert other.speed == -one.speed
-        assert (other.order, other.mode) == (one.order, one.mode)
-        assert one.avoid is not None and other.avoid is not None
-        assert other.avoid == pytest.approx([-speed for speed in one.avoid])
+    forward, back = resonances_of(rig(), 3.0, 30.0), resonances_of(rig(), -3.0, -30.0)
+    for item, other in zip(forward, back, strict=True):
+        assert other.speed == -item.speed
+        assert (other.order, other.mode) == (item.order, item.mode)
+        assert item.avoid is not None and other.avoid is not None
+        assert other.avoid == pytest.approx([-speed for speed in item.avoid])
 
 
 @pytest.mark.parametrize("damping", [1e-6, 0.02, 0.1, 0.16])
@@ -329,7 +329,7 @@ def test_edges_of_what_to_avoid_amplify_three_times(damping: float) -> None:
     machine = with_damping(damping)
     mode = Linear.of(machine).modes[0]
     assert mode.damping_ratio == pytest.approx(damping, rel=1e-9)
-    for resonance in found(machine, 2.0, 30.0):
+    for resonance in resonances_of(machine, 2.0, 30.0):
         assert resonance.avoid is not None
         low, high = resonance.avoid
         assert low < resonance.speed < high or damping > 0.1
@@ -342,7 +342,7 @@ def test_edges_of_what_to_avoid_amplify_three_times(damping: float) -> None:
 @pytest.mark.parametrize("damping", [0.17, 0.5, 0.8])
 def test_much_damping_leaves_nothing_to_avoid(damping: float) -> None:
     """1 / (2 D sqrt(1 - D^2)) is the most that a mode amplifies: below 3 from D = 0.169 on."""
-    for resonance in found(with_damping(damping), 2.0, 30.0):
+    for resonance in resonances_of(with_damping(damping), 2.0, 30.0):
         assert resonance.avoid is None
 
 
@@ -358,12 +358,12 @@ def with_damping(ratio: float) -> eq.Machine:
 def test_orders_that_are_not_excited_are_left_out() -> None:
     """Two rows in opposite phase leave the even orders."""
     two = rig().with_rows([Row(), Row(phase=pi)])
-    assert {r.order for r in found(two, 2.0, 30.0)} == {2, 4}
-    assert {1, 3} < {r.order for r in found(rig(), 2.0, 30.0)}
+    assert {r.order for r in resonances_of(two, 2.0, 30.0)} == {2, 4}
+    assert {1, 3} < {r.order for r in resonances_of(rig(), 2.0, 30.0)}
 
 
 def test_overdamped_modes_have_no_resonance() -> None:
-    assert not found(with_damping(1.2), 0.5, 40.0)
+    assert not resonances_of(with_damping(1.2), 0.5, 40.0)
 
 
 def test_share_is_that_of_the_peaks() -> None:
@@ -372,7 +372,7 @@ def test_share_is_that_of_the_peaks() -> None:
     There the order that meets the mode is all but alone: others add some of the damping ratio.
     """
     machine = with_damping(1e-4)
-    met = found(machine, 2.0, 30.0)
+    met = resonances_of(machine, 2.0, 30.0)
     sizes = []
     for resonance in met:
         moved = respond(machine, resonance.speed, "moment").gauges["gauge"].displacement
@@ -394,8 +394,8 @@ def test_a_sweep_is_one_response_after_another(model: ExcitationModel) -> None:
     assert done == [(k, count) for k in range(1, count + 1)]
     assert np.all(np.diff(sweep.speed) > 0)
     for k in (0, count // 2, count - 1):
-        one = respond(machine, float(sweep.speed[k]), model)
-        for name, gauge in one.gauges.items():
+        first = respond(machine, float(sweep.speed[k]), model)
+        for name, gauge in first.gauges.items():
             curve = sweep.gauges[name]
             # An exact one may start from its neighbour, and be the same to its residual only.
             for signal, prefix in (
@@ -403,13 +403,13 @@ def test_a_sweep_is_one_response_after_another(model: ExcitationModel) -> None:
                 (gauge.velocity, "velocity_"),
                 (gauge.acceleration, "acceleration_"),
             ):
-                told = getattr(curve, f"{prefix}peak_to_peak")[k]
-                assert told == pytest.approx(float(signal.peak_to_peak), rel=1e-7)
-                told = getattr(curve, f"{prefix}rms")[k]
-                assert told == pytest.approx(float(signal.vibration_rms), rel=1e-7)
-        for name, mount in one.mounts.items():
-            told = sweep.mounts[name].peak_to_peak[k]
-            assert told == pytest.approx(float(mount.force.peak_to_peak), rel=1e-7)
+                reported = getattr(curve, f"{prefix}peak_to_peak")[k]
+                assert reported == pytest.approx(float(signal.peak_to_peak), rel=1e-7)
+                reported = getattr(curve, f"{prefix}rms")[k]
+                assert reported == pytest.approx(float(signal.vibration_rms), rel=1e-7)
+        for name, mount in first.mounts.items():
+            reported = sweep.mounts[name].peak_to_peak[k]
+            assert reported == pytest.approx(float(mount.force.peak_to_peak), rel=1e-7)
 
 
 def test_speeds_are_closer_at_a_resonance() -> None:
@@ -443,7 +443,7 @@ def test_speed_that_follows_from_a_motor() -> None:
     assert np.all(sweep.stable)
 
 
-def test_told_values_of_resonance() -> None:
+def test_reported_values_of_resonance() -> None:
     values = sweep_speed(rig(), 3.0, 9.0, speeds=4).to_dict()
     assert values["model"] == "moment"
     assert values["resonances"] == [r["speed"] for r in values["resonance_map"]]

@@ -38,14 +38,14 @@ def test_rotating_unbalance(speed: float, model: str) -> None:
 
     M counts the unbalance.  It shakes up as -sin of the crank angle's second derivative.
     """
-    found = respond(unbalance(), speed, model)
+    response = respond(unbalance(), speed, model)
     gain = ECCENTRIC * RADIUS * speed**2
     gain = gain / (STIFF - (MASS + ECCENTRIC) * speed**2 + 1j * DAMP * speed)
-    moved = found.gauges["up"].displacement
+    moved = response.gauges["up"].displacement
     # Up goes sin theta: Re(-i exp(i theta)).
     close(moved.amplitudes, [0, -1j * gain], 1e-11)
-    close(found.gauges["up"].velocity.amplitudes, [0, gain * speed], 1e-11)
-    close(found.gauges["up"].acceleration.amplitudes, [0, 1j * gain * speed**2], 1e-11)
+    close(response.gauges["up"].velocity.amplitudes, [0, gain * speed], 1e-11)
+    close(response.gauges["up"].acceleration.amplitudes, [0, 1j * gain * speed**2], 1e-11)
     assert moved.peak_to_peak == pytest.approx(2 * abs(gain))
 
 
@@ -55,11 +55,11 @@ def test_transmissibility(speed: float) -> None:
 
     The linkages' force counts with both of its components: a rotating one F as sqrt(2) F.
     """
-    found = respond(unbalance(), speed, "moment").mounts
+    mounts = respond(unbalance(), speed, "moment").mounts
     natural = sqrt(STIFF / (MASS + ECCENTRIC))
     r, damping = speed / natural, DAMP / (2 * sqrt(STIFF * (MASS + ECCENTRIC)))
     whole = sqrt((1 + (2 * damping * r) ** 2) / ((1 - r**2) ** 2 + (2 * damping * r) ** 2))
-    for mount in found.values():
+    for mount in mounts.values():
         assert mount.transmissibility[1] == pytest.approx(whole / 2 / sqrt(2))
         assert mount.whole == pytest.approx(whole / 2 / sqrt(2))
         assert np.isnan(mount.transmissibility[0])
@@ -72,7 +72,7 @@ def test_transmissibility(speed: float) -> None:
 def test_links_that_cancel_hand_on_nothing() -> None:
     """A force that is rounding beside mass times size times the speed's square counts as none."""
     still = unbalance().with_link("crank", mass=ECCENTRIC, center_of_mass=(1e-17, 0.0))
-    assert all(np.isnan(one.whole) for one in respond(still, 3.0, "moment").mounts.values())
+    assert all(np.isnan(mount.whole) for mount in respond(still, 3.0, "moment").mounts.values())
 
 
 def test_without_damping_at_resonance_there_is_no_answer() -> None:
@@ -126,11 +126,11 @@ def test_springs_to_the_support_do_not_shake_it(step: str) -> None:
         mass=20.0, center_of_mass=(0.0, -0.1, 0.0), inertia=(0.5,)
     )
     theta = np.linspace(0, 6, 9)
-    found, wanted = (
+    actual, wanted = (
         linear_of(given, step).excitation.samples(theta, 15.0)
         for given in (machine, machine.with_springs(()))
     )
-    close(found, wanted, 1e-12)
+    close(actual, wanted, 1e-12)
 
 
 def test_a_row_aside_excites_roll_and_yaw() -> None:
@@ -146,19 +146,19 @@ def test_a_row_aside_excites_roll_and_yaw() -> None:
 
 def test_what_depends_on_speed_grows_with_its_square() -> None:
     linear = Linear.of(springs())
-    one, two, still = (linear.excitation.at(speed) for speed in (10.0, 20.0, 0.0))
+    first, two, still = (linear.excitation.at(speed) for speed in (10.0, 20.0, 0.0))
     theta = np.linspace(0, 6, 20)
-    moving = one.values(theta) - still.values(theta)
+    moving = first.values(theta) - still.values(theta)
     close(two.values(theta) - still.values(theta), 4 * moving, 1e-12)
 
 
 def test_drive_torque_of_all_rows() -> None:
     machine = rig().with_rows([eq.Row(), eq.Row(phase=1.2)])
-    found = respond(machine, SPEED).drive.torque
-    one = eq.analyze(rig(), 360, speed=SPEED, acceleration=0.0)
-    theta = one.motion.crank_angle
+    torque = respond(machine, SPEED).drive.torque
+    first = eq.analyze(rig(), 360, speed=SPEED, acceleration=0.0)
+    theta = first.motion.crank_angle
     ahead = eq.analyze(rig(), theta + 1.2, speed=SPEED, acceleration=0.0)
-    close(found.values(theta), one.forces.drive_torque + ahead.forces.drive_torque, 1e-12)
+    close(torque.values(theta), first.forces.drive_torque + ahead.forces.drive_torque, 1e-12)
 
 
 # -- mounts that cannot pull, and remarks ----------------------------------------------------------
@@ -170,9 +170,9 @@ def test_mount_that_does_not_touch_is_left_out() -> None:
         for name, x in (("a", -0.5), ("b", 0.0), ("c", 0.5))
     }
     machine = springs(center_of_mass=(0.4, 0.0, 0.0), mounts=mounts, freedoms=("heave", "pitch"))
-    found = respond(machine, SPEED, "moment")
-    assert "a has no contact at rest and is ignored" in map(str, found.notes)
-    assert found.mounts["a"].force.extreme(1)[0] == 0
+    response = respond(machine, SPEED, "moment")
+    assert "a has no contact at rest and is ignored" in map(str, response.notes)
+    assert response.mounts["a"].force.extreme(1)[0] == 0
 
 
 def test_mount_that_would_have_to_pull() -> None:
@@ -186,8 +186,8 @@ def test_mount_that_would_have_to_pull() -> None:
         "the loss of contact"
     )
     assert not respond(machine, 1.0, "moment").notes
-    found = respond(machine, sqrt(STIFF / 15), "moment")
-    assert [*map(str, found.notes)][-2:] == [f"a {words}", f"b {words}"]
+    response = respond(machine, sqrt(STIFF / 15), "moment")
+    assert [*map(str, response.notes)][-2:] == [f"a {words}", f"b {words}"]
 
 
 def test_a_constant_force_on_what_nothing_holds() -> None:
@@ -205,9 +205,9 @@ def test_a_period_of_several_turns() -> None:
     """A counterweight geared down by 2 comes back every other turn: orders are halves."""
     machine = rig("geared-counterweight")
     turns = eq.move(machine, 10).turns
-    found = respond(machine, 10.0)
-    assert found.turns == turns
-    moved = found.gauges["gauge"].displacement
+    response = respond(machine, 10.0)
+    assert response.turns == turns
+    moved = response.gauges["gauge"].displacement
     assert moved.turns == turns
     assert moved.orders[1] == 1 / turns
     assert moved.period == pytest.approx(2 * pi * turns)

@@ -77,23 +77,23 @@ def at(machine: eq.Machine, theta: Array = THETA) -> ReducedInertia:
 def test_energy_and_momentum(name: str, rows: list[Row]) -> None:
     """Kinetic energy, momentum and moment of momentum about the reference point, body by body."""
     machine = machine_of(name).with_rows(rows)
-    found, b = at(machine), Bodies(machine, THETA)
-    s, s1 = (np.exp(1j * b.phi) * part for part in (found.first, found.first_1))
-    assert found.mass == pytest.approx(sum(b.mass))
-    momentum = found.mass * b.dz + 1j * b.dphi * s + b.dtheta * s1
+    actual, b = at(machine), Bodies(machine, THETA)
+    s, s1 = (np.exp(1j * b.phi) * part for part in (actual.first, actual.first_1))
+    assert actual.mass == pytest.approx(sum(b.mass))
+    momentum = actual.mass * b.dz + 1j * b.dphi * s + b.dtheta * s1
     close(momentum, sum(m * v for m, v in zip(b.mass, b.velocity, strict=True)), 1e-13)
-    moment = (np.conj(s) * b.dz).imag + found.inertia * b.dphi + found.spin * b.dtheta
+    moment = (np.conj(s) * b.dz).imag + actual.inertia * b.dphi + actual.spin * b.dtheta
     wanted = sum(
         m * (np.conj(p - b.z) * v).imag + i * w
         for m, i, p, v, w in zip(b.mass, b.inertia, b.place, b.velocity, b.spin, strict=True)
     )
     close(moment, wanted, 1e-13)
     energy = (
-        found.mass * np.abs(b.dz) ** 2
-        + found.inertia * b.dphi**2
-        + found.drive * b.dtheta**2
+        actual.mass * np.abs(b.dz) ** 2
+        + actual.inertia * b.dphi**2
+        + actual.drive * b.dtheta**2
         + 2 * (np.conj(b.dz) * (1j * b.dphi * s + b.dtheta * s1)).real
-        + 2 * found.spin * b.dphi * b.dtheta
+        + 2 * actual.spin * b.dphi * b.dtheta
     ) / 2
     wanted = sum(
         m * np.abs(v) ** 2 / 2 + i * w**2 / 2
@@ -109,7 +109,7 @@ def test_derivatives_against_differences(name: str) -> None:
     machine = machine_of(name).with_rows(ROWS[:2])
     h = 2e-3
     steps = {k: at(machine, THETA + k * h) for k in (-2, -1, 1, 2)}
-    found = at(machine)
+    values = at(machine)
     for value, slope in (
         ("first", "first_1"),
         ("first_1", "first_2"),
@@ -120,7 +120,7 @@ def test_derivatives_against_differences(name: str) -> None:
         y = {k: getattr(step, value) for k, step in steps.items()}
         wanted = (8 * (y[1] - y[-1]) - (y[2] - y[-2])) / (12 * h)
         size = np.max(np.abs(wanted)) + np.max(np.abs(y[1]))
-        np.testing.assert_allclose(getattr(found, slope), wanted, rtol=0, atol=1e-7 * size)
+        np.testing.assert_allclose(getattr(values, slope), wanted, rtol=0, atol=1e-7 * size)
 
 
 def test_what_turns_with_the_crank() -> None:
@@ -137,9 +137,9 @@ def test_what_turns_with_the_crank() -> None:
 
 def test_a_flywheel_is_there_once_however_many_rows() -> None:
     machine = rig().with_drive(flywheel=0.3)
-    one = at(machine).drive - 0.3
+    first = at(machine).drive - 0.3
     two = at(machine.with_rows([Row(), Row()])).drive - 0.3
-    np.testing.assert_allclose(two, 2 * one)
+    np.testing.assert_allclose(two, 2 * first)
 
 
 def test_rows_without_any_are_the_one_of_the_file() -> None:
@@ -158,7 +158,7 @@ def test_work_of_loads() -> None:
         Load("coupler", "P", (force.real, force.imag)), Load("rocker", torque=torque),
     ))  # fmt: skip
     rows = ROWS[:2]
-    found = at(machine.with_rows(rows))
+    values = at(machine.with_rows(rows))
     rng = np.random.default_rng(3)
     dz = rng.normal(size=9) + 1j * rng.normal(size=9)
     phi, dphi, dtheta = rng.normal(size=(3, 9))
@@ -171,8 +171,8 @@ def test_work_of_loads() -> None:
         velocity = dz + turn * (1j * dphi * arm + tip.velocity * dtheta)
         power += (np.conj(turn * force) * velocity).real
         power += torque * (dphi + motion.links["rocker"].angular_velocity * dtheta)
-    whole = turn * found.load_force
-    carried = (np.conj(whole) * dz).real + found.load_moment * dphi + found.load_torque * dtheta
+    whole = turn * values.load_force
+    carried = (np.conj(whole) * dz).real + values.load_moment * dphi + values.load_torque * dtheta
     close(carried, power, 1e-13)
 
 
@@ -180,9 +180,9 @@ def test_springs_turn_the_crank_alone() -> None:
     """In every row by minus the slope of their energy, whatever carries the rows."""
     machine = eq.load("spring-balanced-crank")
     (spring,) = machine.springs
-    found = at(machine.with_rows(ROWS[:2]))
-    assert not np.any(found.load_force)
-    assert not np.any(found.load_moment)
+    values = at(machine.with_rows(ROWS[:2]))
+    assert not np.any(values.load_force)
+    assert not np.any(values.load_moment)
     wanted, step = np.zeros(9), 1e-5
     for row in ROWS[:2]:
         theta = THETA + row.phase
@@ -190,12 +190,12 @@ def test_springs_turn_the_crank_alone() -> None:
         lengths = [np.abs(place - complex(*machine.frame[spring.to])) for place in places]
         up, down = (spring.stiffness * (x - spring.free_length) ** 2 / 2 for x in lengths)
         wanted -= (up - down) / (2 * step)
-    close(found.load_torque, wanted, 1e-8)
+    close(values.load_torque, wanted, 1e-8)
 
 
 def test_no_loads() -> None:
-    found = at(eq.load("yamashita-1"))
-    for part in (found.load_force, found.load_moment, found.load_torque):
+    values = at(eq.load("yamashita-1"))
+    for part in (values.load_force, values.load_moment, values.load_torque):
         assert not np.any(part)
 
 
@@ -207,15 +207,15 @@ def test_spread_in_the_plane_is_the_mean_of_the_sums(name: str) -> None:
     """About the frame's origin: mass, first moment and moment of inertia."""
     machine = machine_of(name)
     motion = eq.move(machine, 360)
-    found, mean = spread(motion), sums(machine, motion.crank_angle, 0j, 1.0)
+    actual, mean = spread(motion), sums(machine, motion.crank_angle, 0j, 1.0)
     first = np.mean(mean.first)
     wanted = [
         [mean.mass, 0, -first.imag],
         [0, mean.mass, first.real],
         [-first.imag, first.real, np.mean(mean.inertia)],
     ]
-    np.testing.assert_allclose(found[np.ix_((0, 1, 5), (0, 1, 5))], wanted, rtol=1e-12, atol=1e-15)
-    np.testing.assert_allclose(found, found.T)
+    np.testing.assert_allclose(actual[np.ix_((0, 1, 5), (0, 1, 5))], wanted, rtol=1e-12, atol=1e-15)
+    np.testing.assert_allclose(actual, actual.T)
 
 
 def test_spread_in_space_is_the_mean_energy() -> None:
@@ -265,18 +265,18 @@ def ride(
     rate: Array = STILL, change: Array = STILL, place: Array = STILL, spin_up: float = 0.0
 ) -> BaseMotion:
     """Ride at 20 rad/s of the crank."""
-    one = np.ones(24)
-    return BaseMotion(place, rate, change, CARRIED_THETA, 20 * one, spin_up * one, 0.3 - 0.2j)
+    first = np.ones(24)
+    return BaseMotion(place, rate, change, CARRIED_THETA, 20 * first, spin_up * first, 0.3 - 0.2j)
 
 
-def same(found: JointReactions, wanted: JointReactions | eq.mechanism.Forces) -> None:
+def same(result: JointReactions, wanted: JointReactions | eq.mechanism.Forces) -> None:
     """Compare all joint forces and the torque to 1e-12 of the largest force and torque."""
     size = max(float(np.max(joint.size)) for joint in wanted.joints.values())
     for name, joint in wanted.joints.items():
-        np.testing.assert_allclose(found.joints[name].value, joint.value, atol=1e-12 * size)
+        np.testing.assert_allclose(result.joints[name].value, joint.value, atol=1e-12 * size)
     for name, gear in wanted.gears.items():
-        np.testing.assert_allclose(found.contacts[name].value, gear.value, atol=1e-12 * size)
-    close(found.drive_torque, wanted.drive_torque, 1e-11)
+        np.testing.assert_allclose(result.contacts[name].value, gear.value, atol=1e-12 * size)
+    close(result.drive_torque, wanted.drive_torque, 1e-11)
 
 
 @carried_machines
@@ -293,10 +293,10 @@ def test_on_a_support_that_only_moves_along(name: str) -> None:
     machine = carried_machine(name)
     velocity, change = STILL.copy(), STILL.copy()
     velocity[:2], change[:2] = [[3.0], [-2.0]], [[4.0], [2.5]]
-    found = joint_forces(machine, ride(velocity, change), 0.0, 0j)
+    forces = joint_forces(machine, ride(velocity, change), 0.0, 0j)
     gx, gy = machine.gravity
     heavier = replace(machine, gravity=(gx - 4.0, gy - 2.5))
-    same(found, eq.analyze(heavier, CARRIED_THETA, speed=20.0, acceleration=0.0).forces)
+    same(forces, eq.analyze(heavier, CARRIED_THETA, speed=20.0, acceleration=0.0).forces)
 
 
 @carried_machines
@@ -325,10 +325,10 @@ def test_a_crank_that_stands_still_in_space_is_not_spun_up() -> None:
     for link in ("coupler", "rocker"):
         machine = machine.with_link(link, mass=0.0, inertia=0.0)
     ahead = replace(ride(turning, spin_up, spin_up=7.0), reference=0j)
-    found = joint_forces(machine, ahead, 0.0, 0j)
+    forces = joint_forces(machine, ahead, 0.0, 0j)
     plain = joint_forces(machine, replace(ride(), reference=0j), 0.0, 0j)
-    assert np.max(found.joints["A"].size) < 1e-12 * np.max(plain.joints["A"].size)
-    assert np.max(np.abs(found.drive_torque)) < 1e-12
+    assert np.max(forces.joints["A"].size) < 1e-12 * np.max(plain.joints["A"].size)
+    assert np.max(np.abs(forces.drive_torque)) < 1e-12
 
 
 @carried_machines
@@ -339,21 +339,21 @@ def test_whole_force_is_the_change_of_momentum(name: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
     place, rate, change = rng.normal(size=(3, 3, 24))
     here = replace(ride(rate, change, place, 11.0), crank_speed=rng.normal(size=24))
-    found = joint_forces(machine, here, 0.4, 0.2 - 0.5j)
+    forces = joint_forces(machine, here, 0.4, 0.2 - 0.5j)
     row = machine.with_rows([Row(phase=0.4, offset=(0.2, -0.5))])
     s = sums(row, CARRIED_THETA, here.reference, 20.0)
     speed, spin_up, w, a = here.crank_speed, here.crank_acceleration, rate[2], change[2]
     felt = np.exp(-1j * place[2]) * (change[0] + 1j * change[1] - complex(*machine.gravity))
     bend = s.first_1 * spin_up + s.first_2 * speed**2
     force = s.mass * felt + (1j * a - w**2) * s.first + 2j * w * speed * s.first_1 + bend
-    close(-found.frame_force, force, 1e-12)
+    close(-forces.frame_force, force, 1e-12)
     moment = (np.conj(s.first) * felt).imag + s.inertia * a + s.inertia_1 * w * speed
     moment = moment + s.spin * spin_up + s.spin_1 * speed**2
     pole = here.reference - (0.2 - 0.5j)
-    close(-found.frame_moment(pole), moment, 1e-11)
+    close(-forces.frame_moment(pole), moment, 1e-11)
     torque = (np.conj(s.first_1) * felt).real + s.spin * a + s.drive * spin_up
     torque = torque + s.drive_1 * speed**2 / 2 - s.inertia_1 * w**2 / 2
-    close(found.drive_torque, torque, 1e-11)
+    close(forces.drive_torque, torque, 1e-11)
 
 
 # -- the support's own equilibrium -----------------------------------------------------------------
@@ -417,9 +417,9 @@ def test_support_is_in_equilibrium(solved: dict[str, ExactSolution], case: str) 
         fx, fy, turning = contact.at.wrench(contact.force(here.place, here.rate), here.place)
         force, moment = force + fx + 1j * fy, moment + turning
     rows = solution.machine.rows or (Row(),)
-    for row, one in zip(rows, solution.passes, strict=True):
-        force = force + turn * one.frame_force
-        moment = moment + one.frame_moment(here.reference - complex(*row.offset))
+    for row, reactions in zip(rows, solution.passes, strict=True):
+        force = force + turn * reactions.frame_force
+        moment = moment + reactions.frame_moment(here.reference - complex(*row.offset))
     reaction = turning_with_the_crank(solution)[0] * here.crank_acceleration
     wanted = support.inertia[0] * here.change[2] + reaction
     wanted = wanted + support.mass * (np.conj(arm) * center).imag
@@ -435,10 +435,10 @@ def test_torques_of_the_rows_add_up(solved: dict[str, ExactSolution], case: str)
     solution = solved[case]
     here = solution.base_motion
     carried, own = turning_with_the_crank(solution)
-    wanted = sum(one.drive_torque for one in solution.passes)
+    wanted = sum(reactions.drive_torque for reactions in solution.passes)
     wanted = wanted + carried * here.change[2] + own * here.crank_acceleration
-    found = solution.system.drive_torque(solution.sums, solution.states)
-    close(found, wanted, 1e-9)
+    torque = solution.system.drive_torque(solution.sums, solution.states)
+    close(torque, wanted, 1e-9)
 
 
 @cases
@@ -460,7 +460,7 @@ def test_signals_are_those_of_the_motion(solved: dict[str, ExactSolution], case:
             close(twice.values(theta), gauge.acceleration.values(theta), 1e-6)
 
 
-def test_largest_joint_forces_are_told() -> None:
+def test_largest_joint_forces_are_reported() -> None:
     """Of the first row, beside those on solid ground."""
     solution = solve_exact(rig(), SPEED, False)
     ground = eq.analyze(rig(), speed=SPEED, acceleration=0.0).summary

@@ -34,8 +34,8 @@ FEWEST, MOST = 40, 125
 def drawn(name: str) -> tuple[Sweep, Linear]:
     """The response as reports and the live page draw it."""
     machine = eq.load(name)
-    found = respond(machine)
-    sweep = sweep_speed(machine, *around(machine.drive, found.speed), speeds=COARSE)
+    response = respond(machine)
+    sweep = sweep_speed(machine, *around(machine.drive, response.speed), speeds=COARSE)
     return sweep, linear_of(machine, sweep.model)
 
 
@@ -53,7 +53,7 @@ def test_curves_between_speeds_are_where_they_are_drawn(name: str) -> None:
             ("displacement", curve.rms),
             ("acceleration", curve.acceleration_rms),
         ):
-            true = [getattr(one.gauges[gauge], quantity).vibration_rms for one in answers]
+            true = [getattr(answer.gauges[gauge], quantity).vibration_rms for answer in answers]
             places = rate * sweep.speed + 1j * UP / 3 * np.log10(drawn_curve)
             there = rate * middles + 1j * UP / 3 * np.log10(true)
             ways = np.diff(places)
@@ -76,25 +76,25 @@ def of_rig() -> tuple[Callable[[float], Response], Response]:
 
 def halved(answers: dict[float, Response | None]) -> list[float]:
     """Speeds that are added to these."""
-    levels = {speed: levels_of(one) for speed, one in answers.items() if one is not None}
+    levels = {speed: levels_of(value) for speed, value in answers.items() if value is not None}
     return refined_speeds([*answers], levels)
 
 
 def test_a_straight_curve_takes_no_more() -> None:
-    _, one = of_rig()
-    assert halved(dict.fromkeys((1.0, 2.0, 3.0), one)) == []
-    assert halved({1.0: one, 2.0: None, 3.0: one, 4.0: None}) == []
+    _, first = of_rig()
+    assert halved(dict.fromkeys((1.0, 2.0, 3.0), first)) == []
+    assert halved({1.0: first, 2.0: None, 3.0: first, 4.0: None}) == []
     assert halved({1.0: None, 2.0: None, 3.0: None}) == []
 
 
 def test_a_corner_is_halved_on_both_sides() -> None:
-    _, one = of_rig()
+    _, first = of_rig()
     gauges = {
         name: replace(gauge, displacement=10 * gauge.displacement)
-        for name, gauge in one.gauges.items()
+        for name, gauge in first.gauges.items()
     }
-    louder = replace(one, gauges=gauges)
-    answers = {1.0: one, 2.0: one, 3.0: louder, 4.0: one, 5.0: one, 6.0: one}
+    louder = replace(first, gauges=gauges)
+    answers = {1.0: first, 2.0: first, 3.0: louder, 4.0: first, 5.0: first, 6.0: first}
     assert halved({**answers}) == [1.5, 2.5, 3.5, 4.5]
     assert halved({-speed: answer for speed, answer in answers.items()}) == [
         -1.5,
@@ -104,16 +104,16 @@ def test_a_corner_is_halved_on_both_sides() -> None:
     ]
 
 
-def test_speeds_without_a_response_are_kept_and_told_done() -> None:
-    found, _ = of_rig()
+def test_speeds_without_a_response_are_kept_and_reported_done() -> None:
+    actual, _ = of_rig()
     done: list[tuple[int, int]] = []
 
     def some(speed: float) -> Response:
         if speed == 10.0:
             raise ResponseError("none")
-        return found(speed)
+        return actual(speed)
 
-    answers = responses_at(some, np.array([5.0, 10.0, 11.0]), lambda *told: done.append(told))
+    answers = responses_at(some, np.array([5.0, 10.0, 11.0]), lambda *text: done.append(text))
     assert answers[10.0] is None
     assert [*answers] == sorted(answers)
     assert done[-1] == (len(answers), len(answers))

@@ -16,8 +16,8 @@ HUMP = Motor(table=MotorTable((0.0, 50.0, 100.0, 110.0), (2.0, 6.0, 4.0, -1.0)))
 
 
 def torque(motor: Motor, speed: float | list[float], shift: float = 0.0, sense: float = 1) -> Array:
-    found = torque_on_crank(motor, sense * 20.0)
-    return found(np.atleast_1d(np.array(speed, float)), np.array(shift))
+    result = torque_on_crank(motor, sense * 20.0)
+    return result(np.atleast_1d(np.array(speed, float)), np.array(shift))
 
 
 @pytest.mark.parametrize(
@@ -70,11 +70,11 @@ def test_reversed(motor: Motor) -> None:
 
 def test_slopes_by_complex_steps() -> None:
     """The solver asks for derivatives so; each piece has its own."""
-    found = torque_on_crank(HUMP, 10.0)
+    result = torque_on_crank(HUMP, 10.0)
     speeds = np.array([25.0, 75.0, 105.0, 130.0, -3.0])
-    slopes = found(speeds + 1e-30j, np.array(0.0)).imag / 1e-30
+    slopes = result(speeds + 1e-30j, np.array(0.0)).imag / 1e-30
     assert slopes == pytest.approx([0.08, -0.04, -0.5, -0.5, 0.08])
-    by_shift = found(speeds.astype(complex), np.array(1e-30j)).imag / 1e-30
+    by_shift = result(speeds.astype(complex), np.array(1e-30j)).imag / 1e-30
     assert by_shift == pytest.approx(-slopes)
 
 

@@ -36,22 +36,26 @@ def test_it_dies_out_into_the_steady_state(speed: float) -> None:
     The rest: 1e-9 of the integration, and 1e-9 by splines of the linkages over 0.25 deg.
     """
     machine = rig(mounts=DAMPED).with_rows([Row(), Row(phase=2.0)])
-    found = eq.simulate(machine, 3.4, speed, samples=1001)
-    late = found.time > 3.0
+    simulation = eq.simulate(machine, 3.4, speed, samples=1001)
+    late = simulation.time > 3.0
     steady = respond(machine, speed, "exact")
-    wanted = steady.gauges["gauge"].displacement.values(found.crank_angle[late])
+    wanted = steady.gauges["gauge"].displacement.values(simulation.crank_angle[late])
     size = float(steady.gauges["gauge"].displacement.peak_to_peak)
-    np.testing.assert_allclose(found.gauges["gauge"][late], wanted, rtol=0, atol=1e-7 * size)
-    force = steady.mounts["s"].force.values(found.crank_angle[late])
-    np.testing.assert_allclose(found.mounts["s"][late], force, rtol=0, atol=1e-6 * np.max(force))
+    np.testing.assert_allclose(simulation.gauges["gauge"][late], wanted, rtol=0, atol=1e-7 * size)
+    force = steady.mounts["s"].force.values(simulation.crank_angle[late])
+    np.testing.assert_allclose(
+        simulation.mounts["s"][late], force, rtol=0, atol=1e-6 * np.max(force)
+    )
 
 
 def test_it_begins_at_rest_with_the_crank_turning() -> None:
-    found = eq.simulate(rig(), 1.0, samples=11)
-    np.testing.assert_allclose(found.time, np.linspace(0, 1, 11))
-    np.testing.assert_array_equal(found.states[:, 0], 0)
-    np.testing.assert_allclose(found.crank_speed, SPEED)
-    np.testing.assert_allclose(found.crank_angle, SPEED * found.time, rtol=1e-12, atol=1e-12)
+    simulation = eq.simulate(rig(), 1.0, samples=11)
+    np.testing.assert_allclose(simulation.time, np.linspace(0, 1, 11))
+    np.testing.assert_array_equal(simulation.states[:, 0], 0)
+    np.testing.assert_allclose(simulation.crank_speed, SPEED)
+    np.testing.assert_allclose(
+        simulation.crank_angle, SPEED * simulation.time, rtol=1e-12, atol=1e-12
+    )
 
 
 # Free decay: tests/literature/test_yamashita_decay.py and the tests beside it.
@@ -65,17 +69,17 @@ def test_free_decay_of_a_body_alone() -> None:
     }
     center = (PIVOT[0] + arm, 0.0, 0.0)
     machine = block(pivot=PIVOT, center_of_mass=center, mounts=mounts)
-    found = eq.simulate(machine, 2.0, samples=81)
+    simulation = eq.simulate(machine, 2.0, samples=81)
     whole = inertia + 10 * arm**2
 
     def falling(_: float, y: np.ndarray) -> list[float]:
         return [y[1], (-10 * 9.80665 * arm * np.cos(y[0]) - damping * y[1]) / whole]
 
     wanted = solve_ivp(
-        falling, (0, 2), [0.0, 0.0], "DOP853", t_eval=found.time, rtol=1e-11, atol=1e-12
+        falling, (0, 2), [0.0, 0.0], "DOP853", t_eval=simulation.time, rtol=1e-11, atol=1e-12
     )
     assert np.min(wanted.y[0]) < -2
-    np.testing.assert_allclose(found.states, wanted.y, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(simulation.states, wanted.y, rtol=0, atol=1e-6)
 
 
 @pytest.fixture(scope="module")
@@ -111,11 +115,13 @@ def test_crank_never_outruns_its_motor(run_up: Transient) -> None:
 
 def test_on_solid_ground() -> None:
     """Without losses, the motor's own slope settles the speed in 0.2 s."""
-    found = eq.simulate(eq.load("yamashita-1").with_drive(motor=LINE), 2.0, drive=True, samples=801)
-    steady = respond(found.machine, drive=True)
-    assert found.gauges == {} and found.mounts == {}
+    simulation = eq.simulate(
+        eq.load("yamashita-1").with_drive(motor=LINE), 2.0, drive=True, samples=801
+    )
+    steady = respond(simulation.machine, drive=True)
+    assert simulation.gauges == {} and simulation.mounts == {}
     assert steady.drive.speed is not None
-    late = found.crank_speed[found.time > 1.5]
+    late = simulation.crank_speed[simulation.time > 1.5]
     # 2.5 ms between samples: a top is missed by up to 1e-3 of the swing.
     assert np.max(late) == pytest.approx(float(steady.drive.speed.extreme(1)[0]), rel=1e-3)
     assert np.min(late) == pytest.approx(float(steady.drive.speed.extreme(-1)[0]), rel=1e-3)
@@ -128,19 +134,19 @@ def test_a_one_sided_mount_never_pulls() -> None:
         "foot": Mount((0.16, -0.2, 0.0), stiffness=900.0, damping=20.0, one_sided=True),
         "axle": Mount(axis="pitch", torsional_damping=10.0),
     }
-    found = eq.simulate(rig(mounts=feet, mass=4.0, center_of_mass=(-1.2, 0.0, 0.0)), 1.5)
-    force = found.mounts["foot"]
+    simulation = eq.simulate(rig(mounts=feet, mass=4.0, center_of_mass=(-1.2, 0.0, 0.0)), 1.5)
+    force = simulation.mounts["foot"]
     assert np.min(force) == 0
     assert np.max(force) > 0
 
 
-def test_told_values() -> None:
-    found = eq.simulate(rig(), 0.5, samples=9)
-    values = found.to_dict()
+def test_reported_values() -> None:
+    simulation = eq.simulate(rig(), 0.5, samples=9)
+    values = simulation.to_dict()
     assert len(values["time"]) == 9
     assert set(values["gauges"]) == {"gauge"}
     assert set(values["mounts"]) == {"spring"}
-    columns = {name: unit for name, unit, _ in found.columns()}
+    columns = {name: unit for name, unit, _ in simulation.columns()}
     assert columns == {
         "time": "s",
         "crank_angle": "rad",
@@ -206,13 +212,13 @@ def test_a_motor_that_stalls(of: str, mean_speed: str, way: int) -> None:
         assert words is not None
         assert [float(word) for word in words.groups()] == pytest.approx([mean, 88.0], rel=1e-3)
         return
-    told = re.match(
+    match = re.match(
         r"the motor stalls at crank angle (.*) deg: the crank needs (.*) N m to go on, and has "
         r"(.*) N m; give a stronger motor",
         str(caught.value),
     )
-    assert told is not None
-    at, needed, given = map(float, told.groups())
+    assert match is not None
+    at, needed, given = map(float, match.groups())
     motion = eq.move(machine, [radians(at)])
     lever = abs(motion.points["C"].place_1[0].real)
     assert needed == pytest.approx(force * lever, rel=2e-2)
@@ -225,9 +231,9 @@ def test_a_motor_that_stalls(of: str, mean_speed: str, way: int) -> None:
 def test_a_motor_that_does_not_stall() -> None:
     """A weaker press is not refused, and its solution is what it settles into from rest."""
     machine = press(100.0, "free")
-    found = respond(machine, drive=True)
+    response = respond(machine, drive=True)
     followed = eq.simulate(machine, 8.0, drive=True)
     late = followed.crank_speed[followed.time > 6.0]
-    assert found.drive.speed is not None
+    assert response.drive.speed is not None
     for sense, end in ((1, np.max(late)), (-1, np.min(late))):
-        assert end == pytest.approx(float(found.drive.speed.extreme(sense)[0]), rel=1e-3)
+        assert end == pytest.approx(float(response.drive.speed.extreme(sense)[0]), rel=1e-3)

@@ -38,12 +38,12 @@ class State:
         return self.vector(f"place.{point}")
 
     def field(self, path: str) -> Content:
-        (found,) = [one for one in self.content["fields"] if one["path"] == path]
-        return found
+        (actual,) = [entry for entry in self.content["fields"] if entry["path"] == path]
+        return actual
 
     def figure(self, name: str) -> Content:
-        (found,) = [one for one in self.content["figures"] if one["name"] == name]
-        return found
+        (actual,) = [entry for entry in self.content["figures"] if entry["name"] == name]
+        return actual
 
 
 def state(reply: Reply) -> State:

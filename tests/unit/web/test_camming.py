@@ -113,7 +113,7 @@ def test_a_follower_gets_a_point_where_the_cam_is_to_push_it() -> None:
 def test_what_no_cam_can_push_is_refused_in_a_sentence() -> None:
     page = with_lever(shaft())
     asked = {"driver": "crank", "driven": "rocker", "spot": spot("D"), "rides": "roller"}
-    for changed, told in (
+    for changed, text in (
         ({"rides": "ball"}, "no kind of follower is called 'ball'"),
         ({"spot": spot("C")}, "rocker turns about C; choose another place of it"),
         ({"spot": spot("B")}, "no point of the follower is called 'B'"),
@@ -121,10 +121,10 @@ def test_what_no_cam_can_push_is_refused_in_a_sentence() -> None:
         ({"spot": at(0.03 + 0j, "rocker")}, "change one of these"),
         ({"driven": "crank"}, "no body holds both crank by one pin and crank"),
     ):
-        assert told in page.refused("cam", **{**asked, **changed})
+        assert text in page.refused("cam", **{**asked, **changed})
     page.do("link", **{"from": spot("D"), "to": at(0.09 + 0.09j)})
-    told = "no body holds both crank by one pin and coupler by one pin or slider"
-    assert told in page.refused("cam", **{**asked, "driven": "coupler"})
+    text = "no body holds both crank by one pin and coupler by one pin or slider"
+    assert text in page.refused("cam", **{**asked, "driven": "coupler"})
 
 
 def test_a_cam_is_deleted_and_goes_with_its_follower() -> None:
@@ -132,9 +132,9 @@ def test_a_cam_is_deleted_and_goes_with_its_follower() -> None:
     cam(page, "rocker", "roller")
     parts = [sign["part"] for sign in page.seen.content["scene"]["signs"]]
     assert ("cams", "crank to rocker") in parts
-    told = page.do("delete", what="cams", name="crank to rocker")
+    reply = page.do("delete", what="cams", name="crank to rocker")
     assert (
-        told
+        reply
         == "mobility is 2; expected 1; rocker is not connected: pin D to another link or the frame"
     )
     ask(page.session, "undo")
@@ -148,12 +148,12 @@ def test_a_cam_is_deleted_and_goes_with_its_follower() -> None:
 def test_a_base_circle_is_dragged() -> None:
     page = with_lever(shaft())
     cam(page, "rocker", "roller")
-    (told,) = page.seen.content["scene"]["circles"]
-    assert told == {"name": "crank to rocker", "table": "cams", "path": "cams[1].base_radius",
+    (text,) = page.seen.content["scene"]["circles"]
+    assert text == {"name": "crank to rocker", "table": "cams", "path": "cams[1].base_radius",
                     "radius": 0.04, "axis": "A", "point": "D"}  # fmt: skip
-    edits = [{"set": told["path"], "value": 0.035}]
+    edits = [{"set": text["path"], "value": 0.035}]
     shown = state(ask(page.session, "edit", edits=edits, label="x", commit=True)[0])
     assert shown.content["scene"]["circles"][0]["radius"] == 0.035
     assert page.machine.cams[0].base_radius == 0.035
-    fields = {one["path"]: one["label"] for one in shown.content["fields"]}
+    fields = {entry["path"]: entry["label"] for entry in shown.content["fields"]}
     assert fields["cams[1].roller_radius"] == "crank to rocker, roller radius"

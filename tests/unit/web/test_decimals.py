@@ -45,7 +45,7 @@ def test_numbers_are_shown_with_a_comma_and_typed_with_either(tmp_path: Path) ->
     source, built = PAGE / "src" / "format.ts", tmp_path / "format.mjs"
     subprocess.run([str(ESBUILD), str(source), f"--outfile={built}"], check=True, timeout=300)
     (tmp_path / "ask.mjs").write_text(ASKED % json.dumps([[*SHOWN], [*TYPED]]), encoding="utf-8")
-    told = subprocess.run(
+    printed = subprocess.run(
         [str(NODE), "ask.mjs"],
         cwd=tmp_path,
         check=True,
@@ -53,6 +53,6 @@ def test_numbers_are_shown_with_a_comma_and_typed_with_either(tmp_path: Path) ->
         text=True,
         timeout=300,
     ).stdout
-    before, after = json.loads(told)
+    before, after = json.loads(printed)
     assert before == [[*SHOWN], [text.strip().replace("−", "-") for text in TYPED]]
     assert after == [[*SHOWN.values()], [*TYPED.values()]]

@@ -39,12 +39,12 @@ def test_a_file_is_saved_in_place(path: Path) -> None:
     assert base and state(ask(session, "ready")[1]).content["file"]["saved"]
     changed = edit(session, CHANGE).content
     assert changed["file"] == {"name": "mine.toml", "saved": False, "comments": True}
-    after, told = ask(session, "save", seq=1)
-    assert told.content["base"] == session.hello().content["base"] != base
+    after, reply = ask(session, "save", seq=1)
+    assert reply.content["base"] == session.hello().content["base"] != base
     assert state(after).content["file"] == {"name": "mine.toml", "saved": True, "comments": False}
     own = eq.load("yamashita-1")
     assert eq.load(path) == own.with_link("crank", mass=0.3)
-    assert eq.loads(told.content["text"]) == own  # with what the steps began
+    assert eq.loads(reply.content["text"]) == own  # with what the steps began
     undone = state(ask(session, "undo")[0]).content
     assert (undone["steps"], undone["file"]["saved"]) == ([0, 1], False)
 
@@ -63,15 +63,15 @@ def test_what_somebody_else_wrote_is_not_lost(path: Path) -> None:
 
 def test_pages_do_not_write_over_each_other(path: Path) -> None:
     begin = begun(str(path))
-    one, other = begin().session, begin().session
-    edit(one, CHANGE)
+    first, other = begin().session, begin().session
+    edit(first, CHANGE)
     edit(other, {**CHANGE, "text": "150 g"})
-    ask(one, "save")
+    ask(first, "save")
     saved = path.read_text(encoding="utf-8")
     assert "by another page or program" in refusal(ask(other, "save"))
     assert path.read_text(encoding="utf-8") == saved
-    ask(one, "undo")
-    ask(one, "save")
+    ask(first, "undo")
+    ask(first, "save")
     assert eq.load(path) == eq.load("yamashita-1")
     path.write_text(saved, encoding="utf-8")  # by a program of another kind
     again = begin().session

@@ -37,11 +37,11 @@ def kept(session: Session, **values: Any) -> Reply:
 
 def charts_of(session: Session) -> dict[str, list[str]]:
     """Choices of every chart that a page is told of, by its name."""
-    told = [*session.state_replies(None), *session.deferred_replies()]
+    texts = [*session.state_replies(None), *session.deferred_replies()]
     if isinstance(session.base(), Computed) and session.current().design.machine.run is not None:
-        told += ask(session, "run", seq=1)
-    charts = [chart for reply in told for chart in reply.content.get("charts", [])]
-    return {chart["name"]: [one["name"] for one in chart["choices"]] for chart in charts}
+        texts += ask(session, "run", seq=1)
+    charts = [chart for reply in texts for chart in reply.content.get("charts", [])]
+    return {chart["name"]: [item["name"] for item in chart["choices"]] for chart in charts}
 
 
 def explanation_of(chart: str) -> str:
@@ -79,11 +79,11 @@ def test_every_explanation_is_of_a_chart() -> None:
     session = Session()
     ask(session, "open", seq=1, name="engine.toml", text=eq.dumps(engine()))
     charts = charts_of(session) | charts_of(running_on_its_support())
-    found = {"polar", "path", "output", *map(explanation_of, charts)}
+    actual = {"polar", "path", "output", *map(explanation_of, charts)}
     for name in titles():
-        if found != CHARTS.keys():
-            found |= {*map(explanation_of, charts_of(opened(name)[0]))}
-    assert found == CHARTS.keys()
+        if actual != CHARTS.keys():
+            actual |= {*map(explanation_of, charts_of(opened(name)[0]))}
+    assert actual == CHARTS.keys()
 
 
 def test_gauges_and_mounts_of_a_run_are_named_and_explained(
@@ -94,8 +94,8 @@ def test_gauges_and_mounts_of_a_run_are_named_and_explained(
     run = Mock(wraps=module.run)
     monkeypatch.setattr(module, "run", run)
     session = running_on_its_support()
-    (told,) = ask(session, "run", seq=2)
-    charts = {chart["name"]: chart["choices"][0]["label"] for chart in told.content["charts"]}
+    (reply,) = ask(session, "run", seq=2)
+    charts = {chart["name"]: chart["choices"][0]["label"] for chart in reply.content["charts"]}
     assert {*map(explanation_of, charts)} <= CHARTS.keys()
     of_support = ["run.gauges.0", "run.mounts.0", "run.mounts.1"]
     assert [name for name in charts if name not in ("run.speed.0", "run.speed.1")] == of_support
@@ -107,28 +107,28 @@ def test_gauges_and_mounts_of_a_run_are_named_and_explained(
 
 def test_what_cannot_be_drawn_is_refused() -> None:
     session, _ = opened("yamashita-1")
-    for told, values in {
+    for text, values in {
         "run.speed.7": {"kind": "chart", "chart": "run.speed.7"},
         "no.such": {"kind": "chart", "chart": "polr", "choice": "no.such"},
         "format of pictures": {"kind": "drawing", "format": "bmp"},
         "sample of the crank angle": {"kind": "drawing", "at": 720},
         "no download": {"kind": "film2"},
     }.items():
-        assert told in refusal(ask(session, "download", seq=1, **values)[-1:])
+        assert text in refusal(ask(session, "download", seq=1, **values)[-1:])
 
 
-def test_a_page_that_plays_holds_all_that_was_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_that_plays_holds_all_that_was_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     built = {"equipoise.js": b'"</script>"', "equipoise.css": b"a{}"}
     monkeypatch.setattr(played_module, "assets", lambda: built)
     session, _ = opened("yamashita-rig")
     page = kept(session, kind="played", language="ko").buffer.decode()
     assert page.count("</script>") == 2
-    told = json.loads(re.search(r'id="equipoise-played">(.*?)</script>', page, re.S)[1])  # type: ignore[index]
-    kinds = [content["type"] for content, _ in told["replies"]]
+    reported = json.loads(re.search(r'id="equipoise-played">(.*?)</script>', page, re.S)[1])  # type: ignore[index]
+    kinds = [content["type"] for content, _ in reported["replies"]]
     assert kinds[:3] == ["spoken", "hello", "state"] and kinds.count("response") == 2
-    state = told["replies"][2][0]
-    assert {f"output.{one['name']}" for one in state["outputs"]} <= state["arrays"].keys()
-    assert told["replies"][0][0]["language"] == "ko"
+    state = reported["replies"][2][0]
+    assert {f"output.{item['name']}" for item in state["outputs"]} <= state["arrays"].keys()
+    assert reported["replies"][0][0]["language"] == "ko"
 
 
 def test_a_page_that_computes_is_that_of_export(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -36,8 +36,8 @@ def test_only_what_is_dragged_moves(name: str, at: int) -> None:
     for point in points:
         goal = before.place(point)[at] + 0.004 * size * (1 + 0.5j)
         after = edit(session, move(point, goal, at), commit=False)
-        wanted = {one: before.place(one)[at] for one in points} | {point: goal}
-        off = {one: abs(after.place(one)[at] - wanted[one]) / size for one in points}
+        wanted = {item: before.place(item)[at] for item in points} | {point: goal}
+        off = {item: abs(after.place(item)[at] - wanted[item]) / size for item in points}
         assert max(off.values()) < ROUNDED, (point, off)
         for body in before.content["scene"]["bodies"]:
             if len(body["points"]) > 1:  # one of a single point goes where that goes
@@ -52,10 +52,10 @@ def test_a_drag_goes_on_from_the_motion_before(monkeypatch: pytest.MonkeyPatch) 
     for share in (0.01, 0.02):
         after = edit(session, move("B", before.place("B")[0] * (1 + share), 0), commit=False)
     monkeypatch.undo()
-    found = session.shown
-    want = eq.move(replace(found.design.machine), len(found.motion.crank_angle))
+    shown = session.shown
+    want = eq.move(replace(shown.design.machine), len(shown.motion.crank_angle))
     for name, point in want.points.items():
-        np.testing.assert_allclose(found.motion.points[name].place, point.place, atol=1e-12)
+        np.testing.assert_allclose(shown.motion.points[name].place, point.place, atol=1e-12)
         np.testing.assert_allclose(after.place(name), point.place, atol=1e-7)
 
 
@@ -201,11 +201,13 @@ def test_what_joints_need_goes_along(
     after = edit(session, move(point, to, at))
     assert abs(after.place(point)[at] - to) < 2e-6
     new = session.shown.design.own.bodies
-    changed = {(body, one) for body in new for one in new[body] if new[body][one] != old[body][one]}
+    changed = {
+        (body, item) for body in new for item in new[body] if new[body][item] != old[body][item]
+    }
     assert changed == set(wanted.items())
     (note,) = after.content["notes"]
     assert note.endswith("moved too, so that all joints fit")
-    assert all(one == point or f"{one} of {body!r}" in note for body, one in wanted.items())
+    assert all(value == point or f"{value} of {body!r}" in note for body, value in wanted.items())
     (undone,) = ask(session, "undo", seq=2)
     assert undone.content["notes"] == []
     assert session.shown.design.own.bodies == old

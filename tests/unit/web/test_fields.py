@@ -43,8 +43,8 @@ def test_every_number_can_be_set_and_lies_on_its_slider(name: str) -> None:
         assert changed[path].value == pytest.approx(near, rel=1e-9)  # places have 12 digits
         tells_places = ".points." in path or is_measure(path)
         others = {
-            p: one.value
-            for p, one in changed.items()
+            p: value.value
+            for p, value in changed.items()
             if p != path and not (tells_places and (is_measure(p) or ".points." in p))
         }
         before = {p: fields[p].value for p in others if p in fields}
@@ -86,7 +86,7 @@ def test_what_friction_costs_follows_its_coefficient() -> None:
     for coefficient in (0.08, 0.16, 0.0):
         edit(session, {"set": "joints[1].friction", "value": coefficient})
         (table,) = [r.content for r in session.deferred_replies() if r.content["type"] == "strokes"]
-        figures = {one["name"]: one for one in table["figures"]}
+        figures = {item["name"]: item for item in table["figures"]}
         losses = eq.analyze(machine.with_number("joints[1].friction", coefficient)).losses
         if losses is None:
             assert coefficient == 0.0 and "friction.loss" not in figures
@@ -124,12 +124,12 @@ def test_a_sketch_keeps_planes_and_bearings() -> None:
     """Also under other names; what is gone takes its own with it."""
     machine = eq.load("twin-engine").with_link("crank", planes={"B1": -0.04})
     sketch = sketch_of(solved(Design("twin", machine)), 0)
-    found = computed_or_incomplete(
+    result = computed_or_incomplete(
         renamed(renamed(sketch, "point", "B1", "P"), "link", "crank", "shaft")
     )
-    made = found.design.machine
+    made = result.design.machine
     assert made.links["shaft"].planes == {"P": -0.04}
-    assert {one.link for one in made.bearings.values()} == {"shaft"}
+    assert {bearing.link for bearing in made.bearings.values()} == {"shaft"}
     assert not without_link(sketch, "crank").rest["bearings"]
 
 

@@ -22,20 +22,20 @@ def test_every_machine_is_offered_with_a_picture_and_a_sentence(language: str) -
     assert end.content == {"type": "gallery", "seq": 1}
     assert sorted(reply.content["name"] for reply in offered) == sorted(titles())
     for reply in offered:
-        told, machine = reply.content, eq.load(reply.content["name"])
+        text, machine = reply.content, eq.load(reply.content["name"])
         with speaking(language):
-            assert told["title"] == localized(machine.title)
-            assert told["line"] and told["line"][:8] == localized(machine.description).lstrip()[:8]
-        assert not set(told["line"]) & set("()（）")
-        assert told["scene"]["signs"]
+            assert text["title"] == localized(machine.title)
+            assert text["line"] and text["line"][:8] == localized(machine.description).lstrip()[:8]
+        assert not set(text["line"]) & set("()（）")
+        assert text["scene"]["signs"]
     asking = [eq.load(reply.content["name"]).balance is not None for reply in offered]
     assert asking == sorted(asking)  # who only asks how to balance another comes last
 
 
 def test_the_picture_is_where_nothing_hides() -> None:
     replies = ask(Session(), "gallery", seq=1)
-    (one,) = [reply for reply in replies if reply.content.get("name") == "yamashita-1"]
-    shown = State(one.content, np.frombuffer(one.buffer, "<f4"))
+    (first,) = [reply for reply in replies if reply.content.get("name") == "yamashita-1"]
+    shown = State(first.content, np.frombuffer(first.buffer, "<f4"))
     motion = eq.analyze(eq.load("yamashita-1"), SAMPLES).motion
-    assert 0 <= one.content["at"] < SAMPLES
+    assert 0 <= first.content["at"] < SAMPLES
     np.testing.assert_allclose(shown.place("C"), motion.points["C"].place, atol=1e-6)

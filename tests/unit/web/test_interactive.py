@@ -66,16 +66,16 @@ def compare(figures: Any, analysis: eq.Analysis, tolerance: float) -> None:
     known = {name: analysis.summary[name] for name in analysis.summary if name in figures}
     assert figures and known.keys() == figures.keys()
     largest: dict[str, float] = {}
-    for name, one in known.items():
+    for name, value in known.items():
         unit = analysis.outputs[name].unit
-        largest[unit] = max(largest.get(unit, 0.0), one.peak)
-    for name, one in known.items():
+        largest[unit] = max(largest.get(unit, 0.0), value.peak)
+    for name, value in known.items():
         near = tolerance * largest[analysis.outputs[name].unit]
         for figure in ("mean", "rms", "peak", "max", "min"):
-            got, wanted = figures[name][figure], getattr(one, figure)
+            got, wanted = figures[name][figure], getattr(value, figure)
             # the least size of a vector is the root of a difference of squares
-            least = figure == "min" and 0 <= wanted < 1e-6 * one.peak
-            close = near**0.5 * one.peak**0.5 if least else near
+            least = figure == "min" and 0 <= wanted < 1e-6 * value.peak
+            close = near**0.5 * value.peak**0.5 if least else near
             assert got == pytest.approx(wanted, rel=0, abs=close), (name, figure)
 
 
@@ -196,7 +196,7 @@ def test_what_does_not_turn_says_where(tmp_path: Path) -> None:
     )
     with pytest.raises(RangeError) as caught:
         eq.analyze(Template.of(machine).machine(long))
-    angles = [float(one) for one in re.findall(r"-?\d+\.\d+", refusal.replace("\u2212", "-"))]
+    angles = [float(match) for match in re.findall(r"-?\d+\.\d+", refusal.replace("\u2212", "-"))]
     # between two crank angles a degree apart the file takes the margin as straight
     assert np.allclose(angles, np.degrees(np.ravel(sorted(caught.value.ranges))), rtol=0, atol=0.05)
     apart = {"frame.points.D.x": 0.9}
@@ -222,7 +222,7 @@ def test_limits_and_units_of_typed_numbers(tmp_path: Path) -> None:
     assert values[:3] == (0.3, 0.3, pytest.approx(0.45359237))
     assert refusals[:3] == (None, None, None)
     assert "give 0 g or more" in refusals[3]
-    assert all("give a number, such as 12.5 g" in one for one in values[4:])
+    assert all("give a number, such as 12.5 g" in value for value in values[4:])
 
 
 def test_a_cycle_of_a_cylinder_has_no_speed_in_rpm() -> None:
@@ -230,7 +230,7 @@ def test_a_cycle_of_a_cylinder_has_no_speed_in_rpm() -> None:
 
     Of two turns of the phase, after which a load is back, the speed is that of the phase.
     """
-    told = {}
+    content = {}
     machines = {name: eq.load(name) for name in ("hydraulic-loader", "yamashita-1")}
     loader = machines["hydraulic-loader"]
     table = LoadTable((0.0, 4 * pi), ((5.0, 5.0),))
@@ -238,11 +238,11 @@ def test_a_cycle_of_a_cylinder_has_no_speed_in_rpm() -> None:
     machines["two turns"] = replace(loader, loads=(*loader.loads, load))
     for name, machine in machines.items():
         fields = Interactive(machine, 0.0).content["fields"]
-        (speed,) = (one for one in fields if one["path"] == "drive.speed")
-        told[name] = [speed[key] for key in ("label", "unit", "written")]
-    assert told["two turns"] == ["speed of the cycle", "rpm", "rpm"]
-    assert told["hydraulic-loader"] == ["speed of the cycle", "1/min", "rpm"]
-    assert told["yamashita-1"] == ["speed of the drive", "rpm", "rpm"]
+        (speed,) = (field for field in fields if field["path"] == "drive.speed")
+        content[name] = [speed[key] for key in ("label", "unit", "written")]
+    assert content["two turns"] == ["speed of the cycle", "rpm", "rpm"]
+    assert content["hydraulic-loader"] == ["speed of the cycle", "1/min", "rpm"]
+    assert content["yamashita-1"] == ["speed of the drive", "rpm", "rpm"]
 
 
 @node
@@ -315,9 +315,9 @@ def outlines(signs: Any) -> dict[str, list[Any]]:
 
 
 def compare_drawings(got: Any, known: Any, size: float) -> None:
-    one, other = outlines(got), outlines(known)
-    assert one.keys() == other.keys()
-    for key, rows in one.items():
+    first, other = outlines(got), outlines(known)
+    assert first.keys() == other.keys()
+    for key, rows in first.items():
         assert [*map(len, rows)] == [*map(len, other[key])], key
         for row, there in zip(rows, other[key], strict=True):
             # corners are compared with 6 digits behind the point, m, and have 2 of pixels
@@ -374,7 +374,7 @@ def test_a_machine_without_masses_only_moves(tmp_path: Path) -> None:
         balance=None,
     )
     path = tmp_path / "machine.html"
-    assert any("forces" in one for one in eq.export(bare, path))
+    assert any("forces" in item for item in eq.export(bare, path))
     names = evaluated(path.read_text("utf-8"), "return machine.data.names;", tmp_path)
     assert "points.P.x" in names and "shaking_force.x" not in names
 

@@ -64,12 +64,12 @@ def test_cycles_of_stress_are_points_below_their_limits(session: Session) -> Non
     """Every cycle of the picture, at its mean, and limits as straight lines between theirs."""
     reply = strokes_of(session)
     block, arrays = np.frombuffer(reply.buffer, "<f4"), reply.content["arrays"]
-    chart = next(one for one in reply.content["charts"] if one["name"] == "haigh-rod")
+    chart = next(entry for entry in reply.content["charts"] if entry["name"] == "haigh-rod")
     begin, length = arrays[chart["x"]["array"]]
     x = block[begin : begin + length]
     (panel,) = pictures("engine")["haigh-rod"].panels
     *limits, cycles = chart["choices"][0]["curves"]
-    assert cycles["points"] and not any("points" in one for one in limits)
+    assert cycles["points"] and not any("points" in item for item in limits)
     at, length = arrays[cycles["array"]]
     values = block[at : at + length]
     sent = sorted((a, b) for a, b in zip(x, values, strict=True) if not np.isnan(b))
@@ -84,8 +84,8 @@ def test_cycles_of_stress_are_points_below_their_limits(session: Session) -> Non
         there = ~np.isnan(values)
         assert np.count_nonzero(there) >= len(curve.x) - 1
         wanted = np.interp(x[there], curve.x, curve.y)
-        told = ~np.isnan(wanted)  # beside a gap 32-bit numbers of x may lie in it
-        np.testing.assert_allclose(values[there][told], wanted[told], rtol=1e-5, atol=50.0)
+        reported = ~np.isnan(wanted)  # beside a gap 32-bit numbers of x may lie in it
+        np.testing.assert_allclose(values[there][reported], wanted[reported], rtol=1e-5, atol=50.0)
 
 
 def test_they_are_explained_and_can_be_kept(session: Session) -> None:

@@ -78,10 +78,10 @@ def test_what_was_not_measured_is_a_gap() -> None:
 
 def test_what_a_gauge_reads_stands_beside_its_response() -> None:
     session, _ = opened("yamashita-rig")
-    found = eq.respond(eq.load("yamashita-rig")).gauges["gauge"].displacement.samples(360)
-    text = written(("crank_angle [deg]", np.arange(360.0)), ("gauge [mm]", 1e3 * found))
+    samples = eq.respond(eq.load("yamashita-rig")).gauges["gauge"].displacement.samples(360)
+    text = written(("crank_angle [deg]", np.arange(360.0)), ("gauge [mm]", 1e3 * samples))
     sent = dropped(text, session).array("measured.gauges.gauge")
-    np.testing.assert_allclose(sent, found, atol=0.02 * np.max(np.abs(found)))
+    np.testing.assert_allclose(sent, samples, atol=0.02 * np.max(np.abs(samples)))
 
 
 ROWS = "\n".join(f"{k},{k}" for k in range(20))
@@ -102,7 +102,7 @@ ROWS = "\n".join(f"{k},{k}" for k in range(20))
         (f"time [s],{NAME} [N]\n0,x\n{ROWS}", f"line 2, column {NAME}: got 'x'; give a number"),
     ],
 )
-def test_what_is_no_record_is_told_in_one_sentence(text, said) -> None:
+def test_what_is_no_record_is_reported_in_one_sentence(text, said) -> None:
     session, _ = opened("yamashita-1")
     replies = ask(session, "record", name="run.csv", text=text)
     assert said is None or said in refusal(replies)

@@ -55,9 +55,9 @@ def answered(session: Session, text: str) -> list[dict[str, Any]]:
     replies = [*session.receive(message)]
     assert all(packed(reply) for reply in replies)
     for reply in replies:
-        told = reply.content.get("message", "-")
-        assert 0 < len(told) < 1000
-        assert all(line.isprintable() for line in told.splitlines())  # some are to be pasted
+        reported = reply.content.get("message", "-")
+        assert 0 < len(reported) < 1000
+        assert all(line.isprintable() for line in reported.splitlines())  # some are to be pasted
     return [reply.content for reply in replies]
 
 
@@ -94,7 +94,7 @@ def test_random_edits(name: str, data: st.DataObject) -> None:
         edit = {"type": "edit", "commit": draw(st.booleans()), "edits": [change]}
         replies = answered(session, json.dumps(edit))
         assert replies[0]["type"] in {"state", "refused"}
-        shown = next((one for one in replies if one["type"] == "state"), shown)
+        shown = next((reply for reply in replies if reply["type"] == "state"), shown)
 
 
 MAKING: dict[str, tuple[str, ...]] = {
@@ -114,7 +114,7 @@ MAKING: dict[str, tuple[str, ...]] = {
 
 def operation(scene: dict[str, Any], draw: Any) -> dict[str, Any]:
     """Something that is done to what is shown, with parts that there mostly are."""
-    points = [*scene["frame"], *(one for body in scene["bodies"] for one in body["points"]), "Z"]
+    points = [*scene["frame"], *(item for body in scene["bodies"] for item in body["points"]), "Z"]
     links = [*(body["name"] for body in scene["bodies"]), "nothing"]
     do = draw(st.sampled_from([*MAKING]))
     spots = [{"point": draw(st.sampled_from(points))}]

@@ -17,11 +17,11 @@ def carried() -> set[str]:
     """What the sources import, and what those need; a package may be a bundle of its own."""
     names = set()
     for file in PAGE.glob("src/**/*.ts"):
-        found = re.findall(r'(?:from|import) "([^."][^"]*)"', file.read_text(encoding="utf-8"))
-        names |= {"/".join(one.split("/")[: 1 + one.startswith("@")]) for one in found}
+        matches = re.findall(r'(?:from|import) "([^."][^"]*)"', file.read_text(encoding="utf-8"))
+        names |= {"/".join(item.split("/")[: 1 + item.startswith("@")]) for item in matches}
     new = names
     while new:
-        new = {inner for one in new for inner in about(one).get("dependencies", {})} - names
+        new = {inner for item in new for inner in about(item).get("dependencies", {})} - names
         names |= new
     return names
 

@@ -37,13 +37,13 @@ def test_a_parameter_moves_all_that_is_worked_out_from_it() -> None:
 
 
 def test_a_number_that_is_worked_out_shows_by_what() -> None:
-    told = {
-        path: Scale.of(design()).field_message(one) for path, one in fields_of(design()).items()
+    content = {
+        path: Scale.of(design()).field_message(value) for path, value in fields_of(design()).items()
     }
-    assert told["links.rod.mass"]["text"] == "=weight"
-    assert told["links.rod.mass"]["shown"] == "200 g"
-    assert told["frame.points.D.x"]["text"] == "=base"
-    assert told["parameters.crank"]["text"] == "30 mm"
+    assert content["links.rod.mass"]["text"] == "=weight"
+    assert content["links.rod.mass"]["shown"] == "200 g"
+    assert content["frame.points.D.x"]["text"] == "=base"
+    assert content["parameters.crank"]["text"] == "30 mm"
 
 
 def test_a_number_is_given_from_parameters_and_then_follows_them() -> None:

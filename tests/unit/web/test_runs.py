@@ -56,56 +56,56 @@ def computed(monkeypatch: pytest.MonkeyPatch) -> list[Run]:
 
 def test_a_run_on_the_page_is_that_of_the_command() -> None:
     """Words, figures, curves, and the crank at each instant."""
-    machine, (shown, told) = eq.load("cutter-bar"), run_of("cutter-bar")
+    machine, (shown, text) = eq.load("cutter-bar"), run_of("cutter-bar")
     run = eq.run(machine)
-    assert told.content["design"] == shown.content["design"]
+    assert text.content["design"] == shown.content["design"]
     headline = run.headline()[0]
     assert isinstance(headline, Text)
-    assert told.content["blocks"][0]["text"] == printed(headline.text)
-    tables = {one["title"]: one for one in told.content["blocks"] if one["kind"] == "table"}
+    assert text.content["blocks"][0]["text"] == printed(headline.text)
+    tables = {entry["title"]: entry for entry in text.content["blocks"] if entry["kind"] == "table"}
     events = tables["Events"]
     assert [row[0] for row in events["rows"]] == ["motor switched off", "stands still"]
     assert events["numbers"] == [False, True, True, True]
     assert float(events["rows"][1][1]) == pytest.approx(run.end.time, rel=1e-3)  # four digits
-    speed, torque = told.content["charts"]
+    speed, torque = text.content["charts"]
     assert speed["x"] == {"array": "run.speed.0.x", "at": None, "unit": "s", "factor": 1.0}
     assert (speed["choices"][0]["label"], torque["choices"][0]["unit"]) == ("Crank speed", "N m")
     assert speed["choices"][0]["factor"] == pytest.approx(30 / pi)
     # What follows is as 32-bit floats are.
-    assert told.array("run.speed.0.0") == pytest.approx(run.crank_speed, rel=1e-6, abs=1e-6)
-    assert told.array("run.speed.1.0") == pytest.approx(run.drive_torque, rel=1e-6, abs=1e-6)
-    assert told.array("run.time") == pytest.approx(run.time, rel=1e-6)
-    assert told.array("run.cycles") * 2 * pi == pytest.approx(run.crank_angle, rel=1e-6)
-    assert told.content["frames"] == 0
+    assert text.array("run.speed.0.0") == pytest.approx(run.crank_speed, rel=1e-6, abs=1e-6)
+    assert text.array("run.speed.1.0") == pytest.approx(run.drive_torque, rel=1e-6, abs=1e-6)
+    assert text.array("run.time") == pytest.approx(run.time, rel=1e-6)
+    assert text.array("run.cycles") * 2 * pi == pytest.approx(run.crank_angle, rel=1e-6)
+    assert text.content["frames"] == 0
     # One array for all that is over time.
-    arrays = told.content["arrays"]
+    arrays = text.content["arrays"]
     assert arrays["run.time"] == arrays["run.speed.0.x"] == arrays["run.speed.1.x"]
 
 
 def test_a_cycle_of_several_turns_is_one_part(computed: list[Run]) -> None:
-    shown, told = run_of("four-stroke-engine")
+    shown, text = run_of("four-stroke-engine")
     (run,) = computed
     assert shown.content["turns"] == 2
-    assert told.array("run.cycles")[-1] == pytest.approx(run.turned / 2, rel=1e-6)
+    assert text.array("run.cycles")[-1] == pytest.approx(run.turned / 2, rel=1e-6)
 
 
 def test_drives_that_go_their_own_ways_bring_their_poses(computed: list[Run]) -> None:
     """Each a pose of the linkage: links keep their lengths, and cranks their angles of the run."""
-    machine, (_, told) = eq.load("two-motor-mixer"), run_of("two-motor-mixer")
+    machine, (_, text) = eq.load("two-motor-mixer"), run_of("two-motor-mixer")
     (run,) = computed
-    count, time = told.content["frames"], told.array("run.time")
-    assert len(time) == count == len(told.place("C"))
-    assert told.array("run.cycles") == pytest.approx(np.arange(count) / count)
+    count, time = text.content["frames"], text.array("run.time")
+    assert len(time) == count == len(text.place("C"))
+    assert text.array("run.cycles") == pytest.approx(np.arange(count) / count)
     for link in machine.links.values():
         for (a, at), (b, to) in itertools.pairwise(link.points.items()):
             gap = abs(complex(*to) - complex(*at))
-            assert abs(told.place(b) - told.place(a)) == pytest.approx(gap, rel=1e-5)
-    crank = told.place("B") - told.place("A")
+            assert abs(text.place(b) - text.place(a)) == pytest.approx(gap, rel=1e-5)
+    crank = text.place("B") - text.place("A")
     angle = np.interp(time, run.time, run.drives["left-crank"].angle)
     own = complex(*machine.links["left-crank"].points["B"])
     assert crank == pytest.approx(own * np.exp(1j * angle), abs=1e-6)
     assert np.max(np.diff(angle)) < pi / 18  # a motion that the eye can follow
-    assert [choice["label"] for choice in told.content["charts"][0]["choices"][0]["curves"]] == [
+    assert [choice["label"] for choice in text.content["charts"][0]["choices"][0]["curves"]] == [
         "left-crank",
         "right-crank",
     ]
@@ -117,16 +117,18 @@ def test_a_support_moves_with_the_poses_of_a_run() -> None:
     session, _ = opened("cutter-bar")
     ask(session, "open", seq=2, name="rig.toml", text=text)
     (reply,) = ask(session, "run", seq=3)
-    told = State(reply.content, np.frombuffer(reply.buffer, "<f4"))
+    reported = State(reply.content, np.frombuffer(reply.buffer, "<f4"))
     run = eq.run(eq.loads(text))
     assert isinstance(run, DrivesRun) and run.support is not None
-    assert len(told.array("run.angle")) == told.content["frames"] > 100
-    moved = [*told.array("run.place").reshape(-1, 2).T, told.array("run.angle")]
+    assert len(reported.array("run.angle")) == reported.content["frames"] > 100
+    moved = [*reported.array("run.place").reshape(-1, 2).T, reported.array("run.angle")]
     planar = run.support.place[[*map(FREEDOMS.index, PLANAR)]]
-    true = [np.interp(told.array("run.time"), run.time, each) for each in planar]
+    true = [np.interp(reported.array("run.time"), run.time, each) for each in planar]
     factor = np.max(np.abs(moved)) / np.max(np.abs(true))  # 1, 2 or 5 and zeros
     assert f"{factor:.2e}"[0] in "125"
-    assert any("movement of the support" in one.get("text", "") for one in told.content["blocks"])
+    assert any(
+        "movement of the support" in entry.get("text", "") for entry in reported.content["blocks"]
+    )
     size = np.max(np.abs(moved))
     np.testing.assert_allclose(moved, factor * np.array(true), atol=1e-4 * size)
 
@@ -148,27 +150,27 @@ def test_a_run_is_of_the_design_that_was_shown() -> None:
     assert ask(session, "run", seq=5)[0].content["design"] == 0
 
 
-def test_what_cannot_run_is_told_in_the_sentence_of_the_command() -> None:
+def test_what_cannot_run_is_reported_in_the_sentence_of_the_command() -> None:
     session, _ = opened("cutter-bar")
     massless = eq.load("cutter-bar").with_link("crank", **BARE)
     ask(session, "open", seq=2, name="massless.toml", text=eq.dumps(massless))
-    (told,) = ask(session, "run", seq=3)
+    (reply,) = ask(session, "run", seq=3)
     with pytest.raises(MassError) as refused:
         eq.run(massless)
-    assert refusal([told]) == refused.value.message()
+    assert refusal([reply]) == refused.value.message()
 
 
-def test_a_run_is_told_in_the_language_of_the_page() -> None:
+def test_a_run_is_reported_in_the_language_of_the_page() -> None:
     session, _ = opened("cutter-bar")
     ask(session, "speak", seq=2, languages=["de"])
-    (told,) = ask(session, "run", seq=3)
-    assert told.content["blocks"][0]["text"].startswith(
+    (reply,) = ask(session, "run", seq=3)
+    assert reply.content["blocks"][0]["text"].startswith(
         "Die Maschine steht nach 3,789\N{NO-BREAK SPACE}s"
     )
-    assert told.content["charts"][0]["choices"][0]["label"] == "Kurbeldrehzahl"
+    assert reply.content["charts"][0]["choices"][0]["label"] == "Kurbeldrehzahl"
 
 
-def test_blocks_are_told_as_print_has_them() -> None:
+def test_blocks_are_reported_as_print_has_them() -> None:
     """With true signs, what stands out, and what is left out."""
     table = Table.of(
         "Gap of 2e-5 m",
@@ -206,31 +208,36 @@ def test_long_curves_keep_their_extremes() -> None:
     panels = tuple(Panel(axis, axis, (Curve(time, values),)) for values in (slow, fast))
     block = FloatBlock()
     charts = list(result_blocks.panel_charts("run", [Chart("speed", "", "", panels)], block))
-    told = State({"arrays": block.placement}, np.frombuffer(block.data, "<f4"))
+    reported = State({"arrays": block.placement}, np.frombuffer(block.data, "<f4"))
     assert [chart["x"]["array"] for chart in charts] == ["run.speed.0.x", "run.speed.1.x"]
-    assert told.content["arrays"]["run.speed.0.x"] == told.content["arrays"]["run.speed.1.x"]
-    at = told.array("run.speed.0.x")
+    assert (
+        reported.content["arrays"]["run.speed.0.x"] == reported.content["arrays"]["run.speed.1.x"]
+    )
+    at = reported.array("run.speed.0.x")
     assert len(at) <= result_blocks.MOST_POINTS
     assert np.all(np.diff(at) >= 0)
     assert (at[0], at[-1]) == (np.float32(time[0]), np.float32(time[-1]))
     edges = np.linspace(time[0], time[-1], 50)
     for name, values in (("run.speed.0.0", slow), ("run.speed.1.0", fast)):
-        sent = told.array(name)
+        sent = reported.array(name)
         assert len(sent) == len(at)
         for low, high in itertools.pairwise(edges):
             whole = values[(time >= low) & (time <= high)]
             part = sent[(at >= low) & (at <= high)]
             assert np.max(part) == pytest.approx(np.max(whole), abs=3e-3)
             assert np.min(part) == pytest.approx(np.min(whole), abs=3e-3)
-    assert (np.max(told.array("run.speed.0.0")), np.min(told.array("run.speed.1.0"))) == (5.0, -7.0)
+    assert (np.max(reported.array("run.speed.0.0")), np.min(reported.array("run.speed.1.0"))) == (
+        5.0,
+        -7.0,
+    )
 
 
 def test_the_clock_of_a_long_run_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """The angles that are sent are those of the run, from its start to its end."""
     monkeypatch.setattr(runs, "MOST_INSTANTS", 500)
-    _, told = run_of("cutter-bar")
+    _, text = run_of("cutter-bar")
     run = eq.run(eq.load("cutter-bar"))
-    time, angle = told.array("run.time"), told.array("run.cycles") * 2 * pi
+    time, angle = text.array("run.time"), text.array("run.cycles") * 2 * pi
     assert len(time) == len(angle) == 500
     assert angle == pytest.approx(np.interp(time, run.time, run.crank_angle), abs=1e-3)
     assert (time[-1], angle[-1]) == pytest.approx((run.time[-1], run.crank_angle[-1]), rel=1e-6)
@@ -319,8 +326,8 @@ def test_what_is_computed_is_shown_until_it_is_answered(tmp_path: Path) -> None:
 @needs_tools
 def test_the_clock_of_the_page_plays_a_run_to_its_end_and_the_cycle_again(tmp_path: Path) -> None:
     """At half of the true speed, so that 3 s are seen for 6 s; a run that is over begins anew."""
-    told, places = said_by(PLAYED, ("player", "scale"), tmp_path)
-    begun, later, ended, over, again, cycle = told
+    text, places = said_by(PLAYED, ("player", "scale"), tmp_path)
+    begun, later, ended, over, again, cycle = text
     assert begun == [0, True, 0, 0.5]
     assert later == [pytest.approx(0.5), True, 167, 0.5]
     assert ended == [3, True, 1000, 0.5]

@@ -33,7 +33,7 @@ class Line:
         """What is answered."""
         self.heard = [packed(reply) for reply in answers(self.to, json.loads(text))]
         parts = map(unpacked, self.heard)
-        return [State(told, np.frombuffer(data, "<f4")) for told, data in parts]
+        return [State(reported, np.frombuffer(data, "<f4")) for reported, data in parts]
 
     def ask(self, kind: str, **values: Any) -> list[State]:
         return self.send(json.dumps({"type": kind, "seq": 7, **values}))
@@ -45,8 +45,8 @@ def line() -> Line:
 
 
 def test_a_page_is_served_within_its_own_process(line: Line) -> None:
-    hello, told = line.ask("ready")
-    assert told.content == {"type": "told", "seq": 7}
+    hello, reply = line.ask("ready")
+    assert reply.content == {"type": "told", "seq": 7}
     assert hello.content["machine"] is False
     first = line.ask("open", example="balance-crank")[0]
     assert first.content["seq"] == 7
@@ -57,20 +57,20 @@ def test_a_page_is_served_within_its_own_process(line: Line) -> None:
     np.testing.assert_allclose(
         changed.vector("shaking_force"), forces.shaking_force.value, rtol=1e-5
     )
-    assert [one.content["type"] for one in more if one.content["type"] == "strokes"]
-    kinds = [one.content["type"] for one in line.ask("balance")]
+    assert [item.content["type"] for item in more if item.content["type"] == "strokes"]
+    kinds = [item.content["type"] for item in line.ask("balance")]
     assert kinds[:3] == ["busy", "balanced", "state"]
     assert line.ask("undo")[0].content["undo"] == "mass"
 
 
-def test_an_edit_that_is_tried_is_told_no_more_than_it_needs(line: Line) -> None:
+def test_an_edit_that_is_tried_is_sent_no_more_than_it_needs(line: Line) -> None:
     line.ask("open", example="transplanter")
     change = {"set": "drive.speed", "text": "150 rpm"}
     tried = line.ask("edit", commit=False, label="speed", edits=[change])
-    assert {one.content["type"] for one in tried} <= {"state", "response", "ghost", "variants"}
+    assert {item.content["type"] for item in tried} <= {"state", "response", "ghost", "variants"}
     kept = line.ask("edit", label="speed", edits=[change])
     assert kept[-1].content["type"] == "told"
-    assert "planting" in {one.content["type"] for one in kept}
+    assert "planting" in {item.content["type"] for item in kept}
 
 
 def test_nonsense_gets_a_sentence(line: Line) -> None:

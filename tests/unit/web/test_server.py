@@ -187,9 +187,9 @@ def test_nonsense_is_answered_with_a_sentence(here: Here) -> None:
         assert hear(page)["type"] == "hello"
         for nonsense in ("", "[" * 100_000, "[]", '{"type":"close"}', '{"type":"undo","seq":NaN}',
                          "1" * 5000, b"\x00", '{"type":"edit","edits":[{}]}'):  # fmt: skip
-            told = ask(page, nonsense)
-            assert told["type"] == "refused"
-            assert told["message"].isprintable()
+            reply = ask(page, nonsense)
+            assert reply["type"] == "refused"
+            assert reply["message"].isprintable()
         big = {"type": "open", "seq": 3, "name": "big.toml", "text": "x" * 2_000_001}
         assert "longer than 2 MB" in ask(page, big)["message"]
         assert ask(page, {"type": "ready"})["machine"] is True
@@ -203,7 +203,7 @@ def test_nonsense_is_answered_with_a_sentence(here: Here) -> None:
     ("error", "message"),
     [(MemoryError(), "not enough memory: needs more"), (KeyError("x"), "inside the program")],
 )
-def test_what_nobody_refuses_is_told_and_the_page_goes_on(
+def test_what_nobody_refuses_is_reported_and_the_page_goes_on(
     error: Exception, message: str, here: Here, monkeypatch: pytest.MonkeyPatch,
     capfd: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
@@ -213,17 +213,17 @@ def test_what_nobody_refuses_is_told_and_the_page_goes_on(
         hear(page)
         with monkeypatch.context() as patch:
             patch.setattr(Session, "_edit", mock.Mock(side_effect=error))
-            told = ask(page, change)
-        assert told["type"] == "refused" and message in told["message"]
+            reply = ask(page, change)
+        assert reply["type"] == "refused" and message in reply["message"]
         assert ("Traceback" in capfd.readouterr().err) == isinstance(error, KeyError)
         assert ask(page, change)["type"] == "state"
 
 
 def test_pages_do_not_disturb_each_other(here: Here) -> None:
-    with here.page() as one, here.page() as other:
-        assert hear(one)["type"] == hear(other)["type"] == "hello"
+    with here.page() as item, here.page() as other:
+        assert hear(item)["type"] == hear(other)["type"] == "hello"
         change = {"set": "links.crank.mass", "text": "300 g"}
-        edited = ask(one, {"type": "edit", "seq": 1, "label": "mass", "edits": [change]})
+        edited = ask(item, {"type": "edit", "seq": 1, "label": "mass", "edits": [change]})
         assert edited["undo"] == "mass"
         ask(other, {"type": "ready", "seq": 2})
         untouched = hear(other)
@@ -253,7 +253,7 @@ def test_dragging_goes_on_while_something_takes_long(
         assert (late["type"], late["seq"]) == ("refused", 1)
         assert "was changed while" in late["message"]
         rest = iter(lambda: hear(page), {"type": "told", "seq": 2})  # both are answered by now
-        assert "told" not in {one["type"] for one in rest}
+        assert "told" not in {item["type"] for item in rest}
         assert given_back.wait(300)
 
 
@@ -275,7 +275,7 @@ def test_a_question_too_many_has_all_its_answers_too(
         for seq in range(2, most + 1):
             page.send(json.dumps({"type": "balance", "seq": seq}))
         *waiting, refused = [hear(page) for _ in range(2, most + 1)]
-        assert {one["type"] for one in waiting} == {"busy"}
+        assert {item["type"] for item in waiting} == {"busy"}
         assert (refused["type"], refused["seq"]) == ("refused", most)
         rested.set()
         assert any(hear(page) == {"type": "told", "seq": most} for _ in range(100))
@@ -301,17 +301,17 @@ class Dragged:
         return await self.coming.get()
 
     async def send_bytes(self, data: bytes) -> None:
-        told = unpacked(data)[0]
-        if told["type"] in {"state", "response"}:
-            self.sent.append((told["type"], told["seq"]))
-        if told["type"] == "state" and told["seq"] < self.moves:
-            self.go(told["seq"] + 1)
-        elif told == {"type": "told", "seq": self.moves}:
+        reported = unpacked(data)[0]
+        if reported["type"] in {"state", "response"}:
+            self.sent.append((reported["type"], reported["seq"]))
+        if reported["type"] == "state" and reported["seq"] < self.moves:
+            self.go(reported["seq"] + 1)
+        elif reported == {"type": "told", "seq": self.moves}:
             self.coming.put_nowait({"type": "websocket.disconnect"})
 
 
 @pytest.mark.parametrize("seldom", [1e9, -1.0])
-def test_a_move_that_is_overtaken_is_told_by_its_state_alone(
+def test_a_move_that_is_overtaken_is_reported_by_its_state_alone(
     seldom: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """But now and then all of it is told, or a drag without a pause would show too little."""
@@ -448,7 +448,9 @@ def test_what_takes_long_is_cancelled_and_asked_again(
             page.send('{"type": "cancel"}')
             answers = [*iter(lambda: hear(page), {"type": "told", "seq": 2})]
         assert ended.is_set()
-        refusals = {one["seq"]: one["message"] for one in answers if one["type"] == "refused"}
+        refusals = {
+            answer["seq"]: answer["message"] for answer in answers if answer["type"] == "refused"
+        }
         assert refusals == dict.fromkeys((1, 2), "cancelled; nothing was changed")
         page.send('{"type": "cancel"}')  # when nothing is computed
         assert ask(page, {"type": "balance", "seq": 3})["type"] == "busy"
@@ -602,7 +604,7 @@ def test_time_to_send_is_counted_of_each_request() -> None:
     loop.call_later.return_value.cancel.assert_called_once()
 
 
-def test_a_port_that_is_taken_is_told() -> None:
+def test_a_port_that_is_taken_is_reported() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         with refused(UsageError, port=port), served(Session, port):

@@ -112,25 +112,25 @@ def test_a_counterweight_is_a_point_mass_on_the_link() -> None:
 
 def test_balancing_shows_before_and_after_and_can_be_taken_back() -> None:
     session, first = opened("balance-crank")
-    told, shown = ask(session, "balance", seq=4)
+    reply, shown = ask(session, "balance", seq=4)
     machine = eq.load("balance-crank")
-    found = eq.balance(machine)
-    assert told.content["changes"]
-    by_label = {one["label"]: one for one in told.content["figures"]}
+    balanced = eq.balance(machine)
+    assert reply.content["changes"]
+    by_label = {entry["label"]: entry for entry in reply.content["figures"]}
     force = by_label["shaking force y, RMS"]
-    assert force["before"] == pytest.approx(found.before["shaking_force.y.rms"])
-    assert force["after"] == pytest.approx(found.after["shaking_force.y.rms"])
+    assert force["before"] == pytest.approx(balanced.before["shaking_force.y.rms"])
+    assert force["after"] == pytest.approx(balanced.after["shaking_force.y.rms"])
     after = state(shown)
-    (aim,) = told.content["aims"]
-    assert [aim["before"], aim["after"]] == pytest.approx(next(iter(found.objectives.values())))
+    (aim,) = reply.content["aims"]
+    assert [aim["before"], aim["after"]] == pytest.approx(next(iter(balanced.objectives.values())))
     assert after.content["before"]
     assert after.figure("shaking_force.y.rms")["before"] == pytest.approx(
-        found.before["shaking_force.y.rms"], rel=1e-6
+        balanced.before["shaking_force.y.rms"], rel=1e-6
     )
     assert (after.vector("before.shaking_force") == first.vector("shaking_force")).all()
     assert after.field("counterweights.crank.mass")["text"] == "1145 g"
     radius = after.field("counterweights.crank.radius")["value"]
-    assert radius == pytest.approx(found.changes[0].values["radius"])
+    assert radius == pytest.approx(balanced.changes[0].values["radius"])
     assert state(ask(session, "undo")[0]).block.tobytes() == first.block.tobytes()
     compared = state(ask(session, "compare", on=True)[0])
     assert "before.shaking_force" in compared.content["arrays"]
@@ -145,18 +145,20 @@ def test_balancing_again_replaces_the_counterweight(name: str) -> None:
     ask(session, "balance")
     edit(session, {"set": "links.coupler.mass", "text": "900 g"})
     shown = edit(session, {"set": "counterweights.rocker.mass", "text": "100 g"})
-    told, after = ask(session, "balance")
+    reply, after = ask(session, "balance")
     once, _ = opened(name)
     edit(once, {"set": "links.coupler.mass", "text": "900 g"})
     edit(once, {"set": "counterweights.rocker.mass", "text": "100 g"})
     ask(once, "balance")
-    weights = [one.shown.design.counterweights["crank"].mass for one in (session, once)]
+    weights = [item.shown.design.counterweights["crank"].mass for item in (session, once)]
     assert weights[0] == pytest.approx(weights[1], rel=1e-6)
     own = session.shown.design.own.links
     assert own["crank"] == eq.load(name).links["crank"]
     assert session.shown.design.counterweights["rocker"].mass == 0.1
-    assert told.content["changes"][0].startswith("crank: take off the counterweight of 1")
-    (force,) = [one for one in told.content["figures"] if one["label"] == "shaking force, RMS"]
+    assert reply.content["changes"][0].startswith("crank: take off the counterweight of 1")
+    (force,) = [
+        entry for entry in reply.content["figures"] if entry["label"] == "shaking force, RMS"
+    ]
     table = state(after).figure("shaking_force.rms")
     assert force["before"] == table["before"] == shown.figure("shaking_force.rms")["value"]
     assert force["after"] == table["value"]
@@ -167,15 +169,15 @@ def test_balancing_again_replaces_the_counterweight(name: str) -> None:
 def test_advice_ends_where_nothing_more_helps() -> None:
     """The second time nothing is better than what is on the crank already."""
     session, _ = opened("kim-chung-c")
-    told, _ = ask(session, "balance")
-    assert told.content["changes"][0].startswith("crank: add a counterweight of ")
+    reply, _ = ask(session, "balance")
+    assert reply.content["changes"][0].startswith("crank: add a counterweight of ")
     before = session.shown
     weight = before.design.counterweights["crank"].mass
     (again,) = ask(session, "balance")
     assert again.content["notes"][0].startswith("Leave the masses as they are")
     edit(session, {"set": "counterweights.crank.mass", "text": "20 g"})
-    told, _ = ask(session, "balance")
-    assert told.content["changes"][0] == "crank: take off the counterweight of 20.00 g"
+    reply, _ = ask(session, "balance")
+    assert reply.content["changes"][0] == "crank: take off the counterweight of 20.00 g"
     assert session.shown.design.counterweights["crank"].mass == pytest.approx(weight)
     before = session.shown
     ask(session, "balance")
@@ -209,11 +211,11 @@ def test_the_plan_of_a_file_outlives_balancing(tmp_path: Path) -> None:
     text = ask(desk.session, "download", kind="model")[0].buffer.decode()
     assert eq.loads(text).balance == plan
     listed = tables_of(own)["groups"]
-    assert next(one for one in listed if one["where"] == "balance.masses")["entries"]
+    assert next(item for item in listed if item["where"] == "balance.masses")["entries"]
     entry = {"place": "balance.objectives[1]", "label": "", "name": ""}
     ask(desk.session, "entry", **entry, values={"output": "shaking_force.x", "measure": "rms"})
-    told, _ = ask(desk.session, "balance")
-    assert [one["label"] for one in told.content["aims"]] == ["shaking force x, RMS"]
+    reply, _ = ask(desk.session, "balance")
+    assert [item["label"] for item in reply.content["aims"]] == ["shaking force x, RMS"]
 
 
 # Counterweights are: `test_balancing_again_replaces_the_counterweight`.
@@ -228,30 +230,30 @@ def test_shafts_of_a_plan_are_replaced_by_balancing_again(name: str) -> None:
     first = session.shown.design.machine
     kept = first.balance
     assert kept is not None and kept.objectives == plan.objectives
-    renamed = [f"{one.name} 2" for one in (*plan.geared, *plan.shafts)]
-    assert [one.name for one in (*kept.geared, *kept.shafts)] == renamed
+    renamed = [f"{item.name} 2" for item in (*plan.geared, *plan.shafts)]
+    assert [item.name for item in (*kept.geared, *kept.shafts)] == renamed
     (again,) = ask(session, "balance")
     assert again.content["notes"][0].startswith("nothing to gain")
     lighter = {"set": f"links.{'coupler' if 'geared' in name else 'rod'}.mass", "text": "20 g"}
     edit(session, lighter)
-    told, _ = ask(session, "balance")
+    reply, _ = ask(session, "balance")
     second = session.shown.design.machine
     assert len(second.links) == len(first.links) and len(second.gears) == len(first.gears)
     assert second.balance == plan
-    taken = [line for line in told.content["changes"] if line.endswith("take off this shaft")]
+    taken = [line for line in reply.content["changes"] if line.endswith("take off this shaft")]
     assert len(taken) == len(first.links) - len(eq.load(name).links)
     once, _ = opened(name)
     edit(once, lighter)
     alone, _ = ask(once, "balance")
-    after = [one.content["aims"][0]["after"] for one in (told, alone)]
+    after = [item.content["aims"][0]["after"] for item in (reply, alone)]
     assert after[0] == pytest.approx(after[1], rel=1e-3)
 
 
 def test_rows_have_the_same_figures_in_the_panel_and_the_table() -> None:
     """Peaks between the samples, and moments that are nothing but rounding before."""
     session, _ = opened("four-row-transplanter")
-    told, shown = ask(session, "balance")
-    panel = {one["label"]: one for one in told.content["figures"]}
+    reply, shown = ask(session, "balance")
+    panel = {entry["label"]: entry for entry in reply.content["figures"]}
     for name in ("shaking_force", "roll_moment"):
         table = state(shown).figure(f"rows.{name}.peak")
         line = panel[table["label"].replace("rows,", "rows:")]
@@ -265,12 +267,12 @@ def test_rows_have_the_same_figures_in_the_panel_and_the_table() -> None:
 def test_a_sector_keeps_its_own_inertia_on_the_page() -> None:
     session, _ = opened("balance-rig")
     ask(session, "balance")
-    found = eq.balance(eq.load("balance-rig"))
-    assert session.shown.design.own.links["crank"] == found.original.links["crank"]
-    shown, made = (one.links["crank"] for one in (session.shown.design.machine, found.machine))
+    balanced = eq.balance(eq.load("balance-rig"))
+    assert session.shown.design.own.links["crank"] == balanced.original.links["crank"]
+    shown, made = (item.links["crank"] for item in (session.shown.design.machine, balanced.machine))
     assert (shown.mass, shown.inertia) == pytest.approx((made.mass, made.inertia), rel=1e-9)
     assert shown.center_of_mass == pytest.approx(made.center_of_mass, rel=1e-9)
-    (piece,) = found.changes[0].values["pieces"]
+    (piece,) = balanced.changes[0].values["pieces"]
     outer, inner = piece["outer_radius"], piece["inner_radius"]
     weight = session.shown.design.counterweights["crank"]
     about = piece["mass"] * (outer**2 + inner**2) / 2
@@ -287,10 +289,10 @@ def test_a_change_while_it_is_balanced_is_not_lost() -> None:
     assert session.shown.design.own.links["crank"].mass == 0.25
 
 
-def test_a_speed_within_a_resonance_is_told_with_the_response() -> None:
+def test_a_speed_within_a_resonance_is_reported_with_the_response() -> None:
     session, _ = opened("yamashita-rig")
     shown = ask(session, "edit", seq=1, edits=[{"set": "drive.speed", "text": "118 rpm"}])
-    notes = next(one.content["notes"] for one in shown if one.content["type"] == "response")
+    notes = next(item.content["notes"] for item in shown if item.content["type"] == "response")
     assert any("is to be avoided: between 97.0 and 137 rpm order 1" in note for note in notes)
 
 
@@ -320,19 +322,21 @@ def test_a_crank_that_cannot_turn_swings_and_can_be_dragged() -> None:
     assert "which is not in the file: motion = { between =" in first["notes"][0]
     assert "crank from" in first["status"]["text"]
     moved = [{"move": "C", "to": [0.1, 0.1], "at": 3}]
-    found = state(ask(session, "edit", seq=2, edits=moved, label="move C")[0]).content
-    assert found["status"]["finished"] and found["angles"] == first["angles"]
+    actual = state(ask(session, "edit", seq=2, edits=moved, label="move C")[0]).content
+    assert actual["status"]["finished"] and actual["angles"] == first["angles"]
     (film,) = ask(session, "download", kind="film")
     assert film.buffer.startswith(b"GIF")
-    told = ask(session, "balance", seq=3)[0].content
-    assert told["type"] == "state" and told["notes"][0].startswith("Leave the masses as they are")
+    content = ask(session, "balance", seq=3)[0].content
+    assert content["type"] == "state" and content["notes"][0].startswith(
+        "Leave the masses as they are"
+    )
 
 
-def test_what_a_drive_holds_is_told_where_it_is_dragged() -> None:
+def test_what_a_drive_holds_is_reported_where_it_is_dragged() -> None:
     session, first = opened("hydraulic-loader")
     assert first.content["held"] is None
-    told = edit(session, move("B", 0.95 - 0.05j, at=90)).content["held"]
-    assert told.startswith("the position of B is limited by the stroke of the drive")
+    content = edit(session, move("B", 0.95 - 0.05j, at=90)).content["held"]
+    assert content.startswith("the position of B is limited by the stroke of the drive")
     assert edit(session, move("Q", -0.1 + 0.32j, at=90)).content["held"] is None
 
 
@@ -368,11 +372,11 @@ def test_steps_of_undo_keep_no_motion() -> None:
     before = edit(session, MASS)
     assert isinstance(session.current_state, Computed)
     kept = [
-        weakref.ref(one) for one in (session.current_state, session.current_state.motion.linkage)
+        weakref.ref(item) for item in (session.current_state, session.current_state.motion.linkage)
     ]
     for mass in ("31 g", "32 g"):
         edit(session, {"set": "links.crank.mass", "text": mass})
     gc.collect()
-    assert [one() for one in kept] == [None, None]
+    assert [item() for item in kept] == [None, None]
     ask(session, "undo")
     assert state(ask(session, "undo")[0]).block.tobytes() == before.block.tobytes()

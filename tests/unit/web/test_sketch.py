@@ -77,11 +77,11 @@ def check_same(machine: eq.Machine, like: eq.Machine, same: float = SAME) -> Non
 
     same : largest difference, over the largest force.
     """
-    one, other = eq.analyze(machine), eq.analyze(like)
+    first, other = eq.analyze(machine), eq.analyze(like)
     for name in ("shaking_force.x", "shaking_force.y", "shaking_moment", "drive_torque"):
         wanted = other.outputs[name].values
         size = np.max(np.abs(other.outputs["shaking_force.x"].values))
-        assert one.outputs[name].values == pytest.approx(wanted, abs=same * max(size, 1.0))
+        assert first.outputs[name].values == pytest.approx(wanted, abs=same * max(size, 1.0))
 
 
 def four_bar() -> Maker:
@@ -133,14 +133,14 @@ def test_slider_crank_from_nothing_has_the_figures_of_its_file() -> None:
     place = drawn("slider-crank-engine")
     page.do("new")
     page.do("link", **{"from": at(place["A"], "frame"), "to": at(place["B"])})
-    told = page.do("link", **{"from": spot("B"), "to": at(place["C"])})
+    reply = page.do("link", **{"from": spot("B"), "to": at(place["C"])})
     assert (
-        told
+        reply
         == "mobility is 2; expected 1; coupler is not connected: pin C to another link or the frame"
     )
     page.do("drive", link="crank")
-    told = page.do("slider", **{"from": spot("C"), "to": spot("A")})
-    assert told == "1 degree of freedom; crank turns fully"
+    reply = page.do("slider", **{"from": spot("C"), "to": spot("A")})
+    assert reply == "1 degree of freedom; crank turns fully"
     made = page.machine
     assert made.sliders[0].direction == pytest.approx(np.pi / 2, abs=1e-15)
     assert made.assembly == like.assembly
@@ -200,13 +200,13 @@ def test_geared_five_bar_from_nothing_has_the_figures_of_its_file() -> None:
     page.do("link", **{"from": spot("B"), "to": at(place["C"])})
     page.do("point", spot=at(place["E"]))  # is called D
     page.do("link", **{"from": spot("D"), "to": at(place["D"])})
-    told = page.do("link", **{"from": spot("E"), "to": spot("C")})
-    assert told.startswith(
+    reply = page.do("link", **{"from": spot("E"), "to": spot("C")})
+    assert reply.startswith(
         "mobility is 2; expected 1; the position of crank, coupler, rocker and link1 is"
     )
     page.do("drive", link="crank")
-    told = page.do("gears", driver="crank", driven="rocker", teeth=20, driven_teeth=40)
-    assert told == "1 degree of freedom; crank turns fully"
+    reply = page.do("gears", driver="crank", driven="rocker", teeth=20, driven_teeth=40)
+    assert reply == "1 degree of freedom; crank turns fully"
     names = {"crank": "crank", "coupler": "coupler", "rocker": "rocker", "link1": "link1"}
     made = page.machine
     assert np.degrees(made.gears[0].start) == pytest.approx(120, abs=1e-9)
@@ -222,18 +222,18 @@ def test_an_example_goes_on_being_made_and_finishes_again() -> None:
         session, _ = opened(name)
         page, like = Maker(session), session.shown.design.machine
         crank = like.drive.link
-        told = page.do("rename", what="link", name=crank, to="wheel", at=123)
-        assert told == "1 degree of freedom; wheel turns fully"
+        reply = page.do("rename", what="link", name=crank, to="wheel", at=123)
+        assert reply == "1 degree of freedom; wheel turns fully"
         assert page.machine.assembly == like.assembly
         page.do("rename", what="link", name="wheel", to=crank, at=50)
         check_same(page.machine, like)
 
 
-def test_what_hangs_free_is_told_until_it_is_pinned_again() -> None:
+def test_what_hangs_free_is_reported_until_it_is_pinned_again() -> None:
     session, _ = opened("yamashita-1")
     page = Maker(session)
-    told = page.do("separate", point="C", at=30)
-    assert told == (
+    reply = page.do("separate", point="C", at=30)
+    assert reply == (
         "mobility is 3; expected 1; coupler is not connected: pin C or P to another link "
         "or the frame"
     )
@@ -251,10 +251,10 @@ def test_what_hangs_free_is_told_until_it_is_pinned_again() -> None:
     assert page.machine == eq.load("yamashita-1")
 
 
-def test_too_many_joints_are_told() -> None:
+def test_too_many_joints_are_reported() -> None:
     page = four_bar()
-    told = page.do("link", **{"from": spot("C"), "to": at(0.02 - 0.12j, "frame")})
-    assert told.startswith("no degree of freedom: overconstrained by the joints of ")
+    reply = page.do("link", **{"from": spot("C"), "to": at(0.02 - 0.12j, "frame")})
+    assert reply.startswith("no degree of freedom: overconstrained by the joints of ")
     page.do("delete", what="link", name=[*page.seen.content["scene"]["bodies"]][-1]["name"])
     assert page.do("drive", link="crank") == "1 degree of freedom; crank turns fully"
 
@@ -262,14 +262,14 @@ def test_too_many_joints_are_told() -> None:
 def test_a_crank_that_cannot_turn_swings_and_goes_on_being_made() -> None:
     page = four_bar()
     ask(page.session, "edit", edits=[{"move": "B", "to": [0.09, 0.0], "at": 0}], label="move B")
-    told = page.do("drive", link="crank")
-    assert "crank from" in told and "and back" in told
+    reply = page.do("drive", link="crank")
+    assert "crank from" in reply and "and back" in reply
     places = page.seen.place("B")
     stand = page.seen.content["status"]["stand"]
     assert abs(places[round(stand / 360 * len(places))] - 0.09) < 1e-3  # where it was drawn
     back = [{"move": "B", "to": [0.0335, 0.0], "at": 0}]
-    found = state(ask(page.session, "edit", edits=back, label="move B")[0])
-    assert found.content["status"]["finished"]
+    result = state(ask(page.session, "edit", edits=back, label="move B")[0])
+    assert result.content["status"]["finished"]
 
 
 def test_what_cannot_be_made_is_refused_in_a_sentence() -> None:
@@ -298,11 +298,11 @@ def test_what_cannot_be_made_is_refused_in_a_sentence() -> None:
 def test_numbers_of_what_is_unfinished_are_typed() -> None:
     page = four_bar()
     setting = {"set": "links.crank.lengths.A-B", "text": "40 mm"}
-    told = state(ask(page.session, "edit", edits=[setting], label="length")[0])
-    assert told.place("B")[0] == pytest.approx(0.04, abs=1e-9)
+    reported = state(ask(page.session, "edit", edits=[setting], label="length")[0])
+    assert reported.place("B")[0] == pytest.approx(0.04, abs=1e-9)
     setting = {"set": "frame.points.D.x", "text": "12 mm"}
-    told = state(ask(page.session, "edit", edits=[setting], label="D")[0])
-    assert told.place("D")[0].real == pytest.approx(0.012, abs=1e-9)
+    reported = state(ask(page.session, "edit", edits=[setting], label="D")[0])
+    assert reported.place("D")[0].real == pytest.approx(0.012, abs=1e-9)
     setting = {"set": "links.crank.lengths.A-B", "text": "-5 mm"}
     sentence = refusal(ask(page.session, "edit", edits=[setting], label="length"))
     assert sentence == "got a length of -5 mm; give more than 0"
@@ -315,8 +315,8 @@ def test_one_slider_or_pair_of_gears_is_deleted() -> None:
     sketch = maker.session.base().design
     assert not sketch.sliders and "piston" in sketch.links  # which has a mass
     assert maker.seen.content["notes"] == []
-    told = "no slider is called 'x on y'"
-    assert told in maker.refused("delete", what="slider", name="x on y")
+    text = "no slider is called 'x on y'"
+    assert text in maker.refused("delete", what="slider", name="x on y")
     maker = Maker()
     maker.session = opened("geared-counterweight")[0]
     name = maker.machine.gears[0].name
@@ -338,10 +338,10 @@ def test_a_belt_and_a_rack_are_added_as_they_are_drawn() -> None:
         maker.do("delete", what=table, name=name, at=77)
         assert (maker.session.base().design.rest["balance"] is None) == (table == "belts")
         assert not maker.session.base().design.rest[table]
-        told = f"no {table[:-1]} is called 'x to y'"
-        assert told in maker.refused("delete", what=table, name="x to y")
-    told = "neither shaft nor crank slides on a body about one point of which the other turns;"
-    assert told in maker.refused("rack", driver="shaft", driven="crank")
+        text = f"no {table[:-1]} is called 'x to y'"
+        assert text in maker.refused("delete", what=table, name="x to y")
+    text = "neither shaft nor crank slides on a body about one point of which the other turns;"
+    assert text in maker.refused("rack", driver="shaft", driven="crank")
     maker.do("belt", driver="shaft", driven="crank", teeth=34, driven_teeth=34)
     assert (
         maker.do("rack", driver="sector", driven="knife")
@@ -354,8 +354,8 @@ def test_a_belt_and_a_rack_are_added_as_they_are_drawn() -> None:
     at = maker.seen.content["status"]["stand"]
     assert at > 10
     travel, first = (
-        eq.move(one, np.radians(at + np.arange(360))).sliders["knife on frame"].travel
-        for one in (made, like)
+        eq.move(item, np.radians(at + np.arange(360))).sliders["knife on frame"].travel
+        for item in (made, like)
     )
     assert travel[0] == pytest.approx(first[0], abs=1e-9)
     assert np.ptp(travel) == pytest.approx(np.ptp(first) * 145 / 120, rel=1e-9)
@@ -407,13 +407,15 @@ def test_locked_lengths_stay_while_a_point_is_dragged() -> None:
 def test_tables_of_a_file_are_added_while_a_machine_is_unfinished() -> None:
     page = four_bar()
     values: Content = {"between": ["crank", "rocker"], "teeth": [20, 40]}
-    told = ask(page.session, "entry", place="gears[1]", values=values, label="gears")[0]
-    assert state(told).content["status"]["text"].startswith("no degree of freedom: overconstrained")
+    reply = ask(page.session, "entry", place="gears[1]", values=values, label="gears")[0]
+    assert (
+        state(reply).content["status"]["text"].startswith("no degree of freedom: overconstrained")
+    )
     ask(page.session, "undo")
     values = {"points": {"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]}, "mass": "200 g"}
     values |= {"center_of_mass": ["10 mm", "0 mm"], "inertia": "30 kg mm^2"}
-    told = ask(page.session, "entry", place="links.crank", values=values, label="mass")[0]
-    assert state(told).content["scene"]["mass_centers"] == ["crank", "coupler", "rocker"]
+    reply = ask(page.session, "entry", place="links.crank", values=values, label="mass")[0]
+    assert state(reply).content["scene"]["mass_centers"] == ["crank", "coupler", "rocker"]
     assert not page.session.base().design.links["crank"].bodies  # given, and not assumed
     assert page.do("drive", link="crank") == "1 degree of freedom; crank turns fully"
     assert page.machine.links["crank"].mass == 0.2
@@ -421,8 +423,8 @@ def test_tables_of_a_file_are_added_while_a_machine_is_unfinished() -> None:
 
 def entered(page: Maker, place: str, **values: object) -> str:
     """Fill in a form, and return what is told of the machine."""
-    told = ask(page.session, "entry", place=place, values=values, label="x")[0]
-    return str(state(told).content["status"]["text"])
+    reply = ask(page.session, "entry", place=place, values=values, label="x")[0]
+    return str(state(reply).content["status"]["text"])
 
 
 def test_a_cylinder_pushes_from_where_it_is_drawn() -> None:
@@ -431,11 +433,11 @@ def test_a_cylinder_pushes_from_where_it_is_drawn() -> None:
     page.do("link", **{"from": at(0j, "frame"), "to": at(0.2 + 0.02j)})
     page.do("point", spot=at(0.05 - 0.1j))
     page.do("point", spot=at(0.12 + 0.01j), on="crank")
-    told = entered(page, "drive", link="crank", speed="6 rpm", between=["C", "D"])
-    assert told == "cylinder C to D from 130.4 to 143.4 mm and back, 6.000 cycles a minute"
+    entry = entered(page, "drive", link="crank", speed="6 rpm", between=["C", "D"])
+    assert entry == "cylinder C to D from 130.4 to 143.4 mm and back, 6.000 cycles a minute"
     assert eq.move(page.machine, np.zeros(1)).points["D"].place[0] == pytest.approx(0.12 + 0.01j)
-    told = entered(page, "drive.stroke", between=["130 mm", "150 mm"])
-    assert told == "cylinder C to D from 130.0 to 150.0 mm and back, 6.000 cycles a minute"
+    entry = entered(page, "drive.stroke", between=["130 mm", "150 mm"])
+    assert entry == "cylinder C to D from 130.0 to 150.0 mm and back, 6.000 cycles a minute"
     assert page.do("drive", link="crank") == "1 degree of freedom; crank turns fully"
     entered(page, "drive", link="crank", speed="6 rpm", between=["C", "D"])
     assert page.do("delete", what="point", name="C") == "no drive: choose the driven link (crank)"
@@ -448,8 +450,8 @@ def test_a_second_drive_goes_with_its_link() -> None:
         page.do("link", **{"from": at(start, "frame"), "to": at(end)})
     page.do("link", **{"from": spot("B"), "to": at(0.06 + 0.08j)})
     page.do("link", **{"from": spot("D"), "to": spot("E")})
-    told = page.do("drive", link="crank")
-    assert told.endswith("undetermined: add a link, a joint or another drive")
+    reply = page.do("drive", link="crank")
+    assert reply.endswith("undetermined: add a link, a joint or another drive")
     assert "rocker turns 2.000 times" in entered(page, "drives[1]", link="rocker", ratio=2)
     page.do("delete", what="link", name="rocker")
     assert page.session.base().design.rest["drives"] == ()
@@ -457,10 +459,10 @@ def test_a_second_drive_goes_with_its_link() -> None:
 
 def test_a_new_machine_takes_the_place_of_a_tool() -> None:
     desk = PageBackend()
-    told = [*desk.receive(message_of({"type": "open", "seq": 1, "example": "pole-saw"}))]
-    assert desk.tool is not None, told
-    (told,) = desk.receive(message_of({"type": "open", "seq": 2, "new": True}))
-    assert not told.content["status"]["finished"]
+    texts = [*desk.receive(message_of({"type": "open", "seq": 1, "example": "pole-saw"}))]
+    assert desk.tool is not None, texts
+    (texts,) = desk.receive(message_of({"type": "open", "seq": 2, "new": True}))
+    assert not texts.content["status"]["finished"]
     assert desk.tool is None
 
 
@@ -483,9 +485,9 @@ def test_whatever_names_a_point_or_a_link_gets_its_new_name(name: str) -> None:
         for old in names:
             page.do("rename", what=what, name=old, to=f"{old} new", at=0)
             assert page.seen.content["status"]["finished"], page.seen.content["status"]["text"]
-        told = eq.dumps(session.shown.design.own)
+        text = eq.dumps(session.shown.design.own)
         for old in names:
-            assert f'"{old}"' not in told.replace(f"{what} {old}", "")
+            assert f'"{old}"' not in text.replace(f"{what} {old}", "")
             page.do("rename", what=what, name=f"{old} new", to=old, at=0)
     back = session.shown.design.own
     assert replace(back, assembly=like.assembly, position=like.position) == like
@@ -502,13 +504,13 @@ def test_gears_of_varying_ratio_start_as_they_are_drawn(at: int) -> None:
     assert gear.start == pytest.approx(before.start, abs=1e-9)
 
 
-def test_what_goes_with_a_point_is_told() -> None:
+def test_what_goes_with_a_point_is_reported() -> None:
     session, _ = opened("spring-balanced-crank")
     page = Maker(session)
     spring = session.shown.design.own.springs[0]
     page.do("delete", what="point", name=spring.point, at=0)
-    told = "also deleted, because they refer to it: [[springs]]"
-    assert page.seen.content["notes"][0].startswith(told)
+    text = "also deleted, because they refer to it: [[springs]]"
+    assert page.seen.content["notes"][0].startswith(text)
     page = Maker(opened("knife-drive")[0])
     page.do("delete", what="link", name=page.machine.belts[0].driven)
     assert page.seen.content["notes"][0].endswith(": [[belts]], [balance]")
@@ -530,11 +532,11 @@ def test_couplings_have_teeth() -> None:
     maker = Maker(opened("knife-drive")[0])
     maker.do("delete", what="belts", name="shaft to crank")
     for teeth in ((20, 0), (0, 0), (-3, 20)):
-        told = f"got {list(teeth)}; give two positive numbers"
+        text = f"got {list(teeth)}; give two positive numbers"
         for tool in ("belt", "gears"):
             ends = {"driver": "shaft", "driven": "crank"}
             asked = {**ends, "teeth": teeth[0], "driven_teeth": teeth[1]}
-            assert told in maker.refused(tool, **asked)
+            assert text in maker.refused(tool, **asked)
 
 
 def test_a_step_that_the_program_cannot_draw_is_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -567,7 +569,7 @@ def test_a_drawn_link_is_a_steel_bar_that_is_marked_as_assumed() -> None:
     assert bar.assumed and bar.density == 7850
     assert bar.width and bar.thickness
     assert crank.mass == pytest.approx(7850 * bar.width * bar.thickness * length, rel=1e-12)
-    sections = {(one.bodies[0].width, one.bodies[0].thickness) for one in machine.links.values()}
+    sections = {(link.bodies[0].width, link.bodies[0].thickness) for link in machine.links.values()}
     assert len(sections) == 1  # that of the first bar
     text = eq.dumps(machine)
     assert text.count("assumed = true") == 3
@@ -577,13 +579,13 @@ def test_a_drawn_link_is_a_steel_bar_that_is_marked_as_assumed() -> None:
 def test_forces_of_what_is_drawn_are_there_at_once_and_a_note_says_what_is_assumed() -> None:
     page = moving()
     content = page.seen.content
-    assert any(one["name"].startswith("shaking_force") for one in content["figures"])
+    assert any(entry["name"].startswith("shaking_force") for entry in content["figures"])
     (note,) = [note for note in content["notes"] if "assumed" in note]
     assert note == (
         "the masses of crank, coupler, rocker are assumed, and with them all forces; give "
         "masses or bodies of these links, or their sections"
     )
-    assert note in [str(one) for one in eq.analyze(page.machine).notes]
+    assert note in [str(item) for item in eq.analyze(page.machine).notes]
 
 
 def test_a_section_slides_and_stays_assumed() -> None:

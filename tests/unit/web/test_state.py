@@ -21,7 +21,9 @@ def test_spectra_of_a_drag_are_those_of_its_last_whole_state(name: str) -> None:
     """Forces that jump need thousands of crank angles for them, and a page draws at every move."""
     session, first = opened(name)
     spectra = [array for array in first.content["arrays"] if array.startswith("spectrum.")]
-    path = next(one["path"] for one in first.content["fields"] if one["path"].endswith(".mass"))
+    path = next(
+        entry["path"] for entry in first.content["fields"] if entry["path"].endswith(".mass")
+    )
     change = {"set": path, "text": "5 kg"}
     session.brief = True
     moved = edit(session, change, commit=False)
@@ -54,7 +56,9 @@ def test_spectra_are_computed_anew_where_names_or_orders_are_others() -> None:
 def test_spectra_of_the_machine_before_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """It stays the same while another one is dragged."""
     session, first = opened("yamashita-1")
-    path = next(one["path"] for one in first.content["fields"] if one["path"].endswith(".mass"))
+    path = next(
+        entry["path"] for entry in first.content["fields"] if entry["path"].endswith(".mass")
+    )
     edit(session, {"set": path, "text": "5 kg"})
     ask(session, "compare", on=True)
     assert session.before is not None
@@ -101,10 +105,10 @@ def test_rows_add_up_as_their_phases_say() -> None:
     shown = edit(session, {"set": "rows[2].phase", "text": "75 deg"})
     rows = session.shown.design.machine.rows
     for name, read in (("shaking_force", shown.vector), ("drive_torque", shown.array)):
-        one = read(name)
-        ahead = [round(row.phase / (2 * np.pi) * len(one)) for row in rows]
-        total = sum(np.roll(one, -samples) for samples in ahead)
-        scale = np.max(np.abs(one))
+        first = read(name)
+        ahead = [round(row.phase / (2 * np.pi) * len(first)) for row in rows]
+        total = sum(np.roll(first, -samples) for samples in ahead)
+        scale = np.max(np.abs(first))
         np.testing.assert_allclose(read(f"rows.{name}"), total, atol=2e-5 * scale)
     assert shown.figure("drive_torque.rms")["label"] == "one row: drive torque, RMS"
 
@@ -118,13 +122,13 @@ def test_the_path_over_ground_advances_by_a_hill_a_turn() -> None:
     assert moved[-1] - moved[0] == pytest.approx(way * figures["hill_spacing"], rel=1e-5)
     assert shown.content["planting"]["surface"] == pytest.approx(figures["surface"])
     strokes, more = session.deferred_replies()
-    told = {one["name"]: one["value"] for one in more.content["figures"]}
-    assert told["soil.depth"] == pytest.approx(1e3 * figures["soil.depth"])
+    content = {entry["name"]: entry["value"] for entry in more.content["figures"]}
+    assert content["soil.depth"] == pytest.approx(1e3 * figures["soil.depth"])
     assert strokes.content["type"] == "strokes"
     assert not session.has_more
 
 
-def test_links_beside_each_other_are_told() -> None:
+def test_links_beside_each_other_are_reported() -> None:
     session, shown = opened("twin-engine")
     across = eq.analyze(eq.load("twin-engine")).forces.across
     assert shown.content["beside"]
@@ -132,46 +136,52 @@ def test_links_beside_each_other_are_told() -> None:
     assert peak == pytest.approx(np.max(np.abs(across.rocking_moment.x)))
     sent = shown.vector("rocking_moment")
     np.testing.assert_allclose(sent, across.rocking_moment.value, rtol=0, atol=1e-4)
-    drawn = next(one.content for one in session.deferred_replies() if one.content["type"] == "side")
+    drawn = next(
+        reply.content for reply in session.deferred_replies() if reply.content["type"] == "side"
+    )
     assert "piston-2" in drawn["svg"]
 
 
-def test_figures_of_sliders_and_rockers_are_told_in_the_units_of_tables() -> None:
+def test_figures_of_sliders_and_rockers_are_reported_in_the_units_of_tables() -> None:
     session, _ = opened("quick-return")
     (more,) = session.deferred_replies()
-    told = {one["label"]: one for one in more.content["figures"]}
-    assert told["ram on frame: stroke"]["text"] == "304.0"
-    assert told["ram on frame: stroke"]["unit"] == "mm"
-    assert told["lever: time ratio"]["text"] == "1.710"
-    assert told["lever: dwell"]["unit"] == "°"
-    assert "block on lever: least mechanical advantage" not in told
+    content = {entry["label"]: entry for entry in more.content["figures"]}
+    assert content["ram on frame: stroke"]["text"] == "304.0"
+    assert content["ram on frame: stroke"]["unit"] == "mm"
+    assert content["lever: time ratio"]["text"] == "1.710"
+    assert content["lever: dwell"]["unit"] == "°"
+    assert "block on lever: least mechanical advantage" not in content
     session, _ = opened("cam-pusher")
-    told = {
-        one["name"]: one for reply in session.deferred_replies() for one in reply.content["figures"]
+    content = {
+        entry["name"]: entry
+        for reply in session.deferred_replies()
+        for entry in reply.content["figures"]
     }
-    one = told["cams.crank to pusher.lift_off_speed"]
-    assert (one["label"], one["unit"]) == ("crank → pusher: lift-off speed of the crank", "rpm")
-    assert one["value"] == pytest.approx(583.6, rel=1e-3)
+    first = content["cams.crank to pusher.lift_off_speed"]
+    assert (first["label"], first["unit"]) == ("crank → pusher: lift-off speed of the crank", "rpm")
+    assert first["value"] == pytest.approx(583.6, rel=1e-3)
 
 
-def test_strokes_and_planting_are_told_before_and_after() -> None:
+def test_strokes_and_planting_are_reported_before_and_after() -> None:
     session, _ = opened("kim-chung-a")
-    assert not any(one.content["compared"] for one in session.deferred_replies())
+    assert not any(reply.content["compared"] for reply in session.deferred_replies())
     edit(session, {"set": "drive.speed", "text": "100 rpm"})
     strokes, planting = session.deferred_replies()
-    assert [one["was"] for one in strokes.content["figures"] if one["was"]] == []  # a path has none
-    was = {one["name"]: one["was"] for one in planting.content["figures"]}
+    assert [
+        entry["was"] for entry in strokes.content["figures"] if entry["was"]
+    ] == []  # a path has none
+    was = {entry["name"]: entry["was"] for entry in planting.content["figures"]}
     assert was["hill_spacing"] == "150.0 · +140.0 %"
     ask(session, "variant", do="pin")
     edit(session, {"set": "links.rocker.lengths.D-C", "text": "82 mm"})
-    for one in session.deferred_replies():
-        assert any(figure["was"] for figure in one.content["figures"])
+    for item in session.deferred_replies():
+        assert any(figure["was"] for figure in item.content["figures"])
     ask(session, "variant", do="against", to="nothing")
     assert session.has_more
-    assert not any(one.content["compared"] for one in session.deferred_replies())
+    assert not any(reply.content["compared"] for reply in session.deferred_replies())
 
 
-def test_no_more_is_told_of_what_is_unfinished_by_then() -> None:
+def test_no_more_is_reported_of_what_is_unfinished_by_then() -> None:
     session, _ = opened("slider-crank-engine")
     assert session.has_more
     more = session.deferred_replies()
@@ -189,41 +199,45 @@ def test_what_is_infinite_is_drawn_with_gaps() -> None:
     assert np.nanmax(np.abs(sent)) < 1e3
 
 
-def test_a_machine_on_a_support_tells_its_response() -> None:
+def test_a_machine_on_a_support_reports_its_response() -> None:
     session, _ = opened("yamashita-rig")
     _, _, reply = ask(session, "ready")
-    found = eq.respond(eq.load("yamashita-rig"))
-    told = next(
-        one.content for one in session.deferred_replies() if one.content["type"] == "gauges"
+    response = eq.respond(eq.load("yamashita-rig"))
+    reported = next(
+        item.content for item in session.deferred_replies() if item.content["type"] == "gauges"
     )["figures"]
-    (reading,) = found.gauges.values()
-    for one, value in zip(
-        told, (reading.displacement.peak_to_peak, reading.displacement.vibration_rms), strict=True
+    (reading,) = response.gauges.values()
+    for entry, value in zip(
+        reported,
+        (reading.displacement.peak_to_peak, reading.displacement.vibration_rms),
+        strict=True,
     ):
-        assert one["value"] == pytest.approx(1e3 * value)
-    assert [one["label"].rpartition(", ")[2] for one in told] == ["peak to peak", "RMS"]
+        assert entry["value"] == pytest.approx(1e3 * value)
+    assert [item["label"].rpartition(", ")[2] for item in reported] == ["peak to peak", "RMS"]
     (drawn,) = reply.content["charts"]
     (gauge,) = drawn["choices"]
     (curve,) = gauge["curves"]
     assert (gauge["unit"], gauge["factor"]) == ("mm", 1e3)
     offset, length = reply.content["arrays"][curve["array"]]
     sent = np.frombuffer(reply.buffer, "<f4")[offset : offset + length]
-    wanted = found.gauges[gauge["name"]].displacement.samples(length)
+    wanted = response.gauges[gauge["name"]].displacement.samples(length)
     np.testing.assert_allclose(sent, wanted, atol=1e-6 * np.max(np.abs(wanted)))
 
 
 def test_a_machine_without_masses_moves() -> None:
     session, _ = opened("yamashita-1")
     shown = ask(session, "open", name="bare.toml", text=massless())[0].content
-    told = "forces need mass, centre of mass and inertia of every link: give them, or bodies, at "
-    assert shown["lacking"] == f"{told}“Parts of the model” for crank, coupler and rocker"
+    text = "forces need mass, centre of mass and inertia of every link: give them, or bodies, at "
+    assert shown["lacking"] == f"{text}“Parts of the model” for crank, coupler and rocker"
     assert shown["lacking"] in shown["notes"]
     links = {
-        one["label"]: one["winds"] for one in shown["outputs"] if one["name"] == "links.crank.angle"
+        item["label"]: item["winds"]
+        for item in shown["outputs"]
+        if item["name"] == "links.crank.angle"
     }
     assert links and all(links.values())
     assert "shaking_force" not in shown["arrays"]
-    assert not [one for one in shown["fields"] if one["path"].startswith("counterweights")]
+    assert not [item for item in shown["fields"] if item["path"].startswith("counterweights")]
 
 
 def test_a_page_follows_the_units_of_its_file() -> None:
@@ -232,15 +246,15 @@ def test_a_page_follows_the_units_of_its_file() -> None:
         "[drive]", 'units = { length = "in", force = "lbf" }\n\n[drive]', 1
     )
     shown, response = ask(session, "open", name="inches.toml", text=text)[:2]
-    found = shown.content
-    assert plain.content["length"]["unit"] == "mm" and found["length"]["unit"] == "in"
-    force = next(one for one in found["figures"] if one["name"] == "shaking_force.rms")
+    content = shown.content
+    assert plain.content["length"]["unit"] == "mm" and content["length"]["unit"] == "in"
+    force = next(item for item in content["figures"] if item["name"] == "shaking_force.rms")
     old = plain.figure("shaking_force.rms")
     assert (force["unit"], old["unit"], force["value"]) == ("lbf", "N", old["value"])
     assert float(force["text"]) == pytest.approx(old["value"] / 4.4482216152605, rel=1e-3)
-    moment = next(one for one in found["charts"] if one["name"] == "shaking_moment")
+    moment = next(item for item in content["charts"] if item["name"] == "shaking_moment")
     assert moment["choices"][0]["unit"] == "lbf in"
-    field = next(one for one in found["fields"] if one["path"] == "links.crank.points.B.x")
+    field = next(item for item in content["fields"] if item["path"] == "links.crank.points.B.x")
     assert (field["text"], field["unit"]) == ("1.318898 in", "in")
     assert response.content["charts"][0]["choices"][0]["unit"] == "in"
     (model,) = ask(session, "download", kind="model")
@@ -253,17 +267,17 @@ def test_numbers_are_written_as_everywhere() -> None:
     session, _ = opened("yamashita-1")
     session.before = session.current_state
     shown = edit(session, {"set": "drive.speed", "text": "150 rpm"})
-    for one in shown.content["figures"]:
-        assert one["text"].lstrip("\N{MINUS SIGN}") == typeset(number(one["value"]))
-        faster = typeset(change(one["before"], one["value"]))
-        assert one["was"] == f"{typeset(number(one['before']))} · {faster}"
+    for item in shown.content["figures"]:
+        assert item["text"].lstrip("\N{MINUS SIGN}") == typeset(number(item["value"]))
+        faster = typeset(change(item["before"], item["value"]))
+        assert item["was"] == f"{typeset(number(item['before']))} · {faster}"
     slower = shown.figure("shaking_force.rms")["was"]
     assert slower.endswith("\N{MINUS SIGN}39.6 %")  # (150 / 193)^2
     speed, inertia = shown.field("drive.speed"), shown.field("links.coupler.inertia")
     assert (speed["shown"], speed["text"]) == ("150 rpm", "150 rpm")
     assert inertia["shown"].endswith(" kg mm²") and inertia["text"].endswith(" kg mm^2")
     assert speed["factor"] * speed["value"] == pytest.approx(150)
-    units = {one["name"]: one["unit"] for one in shown.content["outputs"]}
+    units = {entry["name"]: entry["unit"] for entry in shown.content["outputs"]}
     assert units["drive_torque"] == "N m" and units["joints.C"] == "N"
     (hello, *_) = ask(session, "ready")
     assert hello.content["numbers"] == display_rules()
@@ -272,7 +286,7 @@ def test_numbers_are_written_as_everywhere() -> None:
 def test_charts_are_those_of_the_outputs() -> None:
     """Every chart draws arrays that are there, with label and unit of the output that it shows."""
     _, shown = opened("four-row-transplanter")
-    outputs = {one["name"]: one for one in shown.content["outputs"]}
+    outputs = {entry["name"]: entry for entry in shown.content["outputs"]}
     drawn = {}
     for chart in shown.content["charts"]:
         for choice in chart["choices"]:
@@ -340,7 +354,7 @@ def test_a_six_bar_shows_what_its_output_does() -> None:
     assert shown.array("output.links.output.angle") == pytest.approx(angle, rel=1e-6)
     session.open(opened_example("quick-return"))
     (state_of_it, *_) = ask(session, "compare", on=False)
-    outputs = [one for one in state_of_it.content["arrays"] if one.startswith("output.")]
+    outputs = [entry for entry in state_of_it.content["arrays"] if entry.startswith("output.")]
     assert outputs == ["output.sliders.ram on frame.travel"]
 
 

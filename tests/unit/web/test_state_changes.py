@@ -20,10 +20,10 @@ ESBUILD = ROOT / "page" / "node_modules" / "esbuild"
 Values = dict[str, Any]
 
 
-def put_together(before: Values, told: Values) -> Values:
+def put_together(before: Values, text: Values) -> Values:
     """What `changed` of page/src/site/wire.ts does."""
-    now = {key: value for key, value in told.items() if key != "since"}
-    since = told["since"]
+    now = {key: value for key, value in text.items() if key != "since"}
+    since = text["since"]
     now |= {key: before[key] for key in since["same"]}
     for key, items in since["items"].items():
         now[key] = [*before[key]]
@@ -57,8 +57,8 @@ def states() -> tuple[list[Values], list[Values]]:
     for seq, (kind, values) in enumerate(asked):
         page.take(json.dumps({"type": kind, "seq": seq, **values}))
         while (reply := page.step()) is not None:
-            told = unpacked(reply)[0]
-            sent += [told] if told["type"] == "state" else []
+            reported = unpacked(reply)[0]
+            sent += [reported] if reported["type"] == "state" else []
     return whole, sent
 
 
@@ -66,8 +66,8 @@ def test_states_are_put_together_from_what_has_changed() -> None:
     whole, sent = states()
     assert len(whole) == len(sent) >= 6
     page: Values = {}
-    for full, told in zip(whole, sent, strict=True):
-        page = put_together(page, told)
+    for full, text in zip(whole, sent, strict=True):
+        page = put_together(page, text)
         assert page == full
     sizes = [[len(json.dumps(state)) for state in kind] for kind in (whole, sent)]
     assert sizes[1][1] < 0.3 * sizes[0][1]  # a mass that is tried
@@ -98,9 +98,9 @@ def test_the_page_puts_them_together_in_the_same_way(tmp_path: Path) -> None:
 
 
 def test_lists_are_sent_whole_where_most_of_them_differs() -> None:
-    told = changes({"a": [1, 2, 3], "b": [1, 2]}, {"a": [1, 2, 4], "b": [3, 4], "c": None})
+    reported = changes({"a": [1, 2, 3], "b": [1, 2]}, {"a": [1, 2, 4], "b": [3, 4], "c": None})
     since = {"same": [], "items": {"a": [[2, 4]]}, "inside": {}}
-    assert told == {"since": since, "b": [3, 4], "c": None}
+    assert reported == {"since": since, "b": [3, 4], "c": None}
 
 
 def test_other_messages_are_left_as_they_are() -> None:

@@ -61,24 +61,24 @@ def column(reply, name):
     return np.frombuffer(reply.buffer, "<f4")[offset : offset + length].astype(float)
 
 
-def test_a_store_is_told_design_by_design(path) -> None:
+def test_a_store_is_reported_design_by_design(path) -> None:
     desk = begun(path)()
-    hello, told = ask(desk, "ready")
+    hello, reply = ask(desk, "ready")
     assert hello.content["machine"] and hello.content["study"] == "lengths.zarr"
-    content = told.content
+    content = reply.content
     assert json.dumps(content, allow_nan=False)
-    assert [one["kind"] for one in content["columns"]] == ["number", "number", "output"]
-    assert [one["unit"] for one in content["columns"]] == ["mm", "rpm", "N"]
+    assert [entry["kind"] for entry in content["columns"]] == ["number", "number", "output"]
+    assert [entry["unit"] for entry in content["columns"]] == ["mm", "rpm", "N"]
     block = open_store(path).read(range(64))
     reasons = block.outcome.reason
-    np.testing.assert_array_equal(column(told, "number"), np.arange(64))
-    np.testing.assert_array_equal(column(told, "reason") == 0, reasons == 0)
-    lengths = column(told, "column.links.crank.points.B.x")
+    np.testing.assert_array_equal(column(reply, "number"), np.arange(64))
+    np.testing.assert_array_equal(column(reply, "reason") == 0, reasons == 0)
+    lengths = column(reply, "column.links.crank.points.B.x")
     np.testing.assert_allclose(lengths, block.values[:, 0], rtol=1e-6)
     inside = (reasons == 0) & (block.outcome.figures[:, 0] <= 20)
-    np.testing.assert_array_equal(column(told, "kept") == 1, inside)
+    np.testing.assert_array_equal(column(reply, "kept") == 1, inside)
     assert 0 < content["kept"] == np.sum(inside) < content["computed"] < content["size"] == 64
-    assert sum(one["count"] for one in content["refused"]) == 64 - content["computed"]
+    assert sum(entry["count"] for entry in content["refused"]) == 64 - content["computed"]
     assert content["best"] == best(open_store(path), 50).designs.tolist()
     force = eq.analyze(eq.load("yamashita-1")).forces.shaking_force.value
     rms = np.sqrt(np.mean(np.abs(force) ** 2))
@@ -98,22 +98,24 @@ def test_designs_nearest_to_limits_come_first_where_none_keeps_them_all(tmp_path
     """Two limits, of which one cannot be kept; with an aim and without."""
     text = STUDY.replace('make = "smallest"', aim).replace("designs = 64", "designs = 16")
     sweep(eq.loads(text + LIMITED), tmp_path / "two.zarr", workers=1)
-    told = ask(begun(str(tmp_path / "two.zarr"))(), "ready")[1]
-    good = column(told, "reason") == 0
-    numbers = column(told, "number")[good]
-    assert not column(told, "kept").any()
+    reply = ask(begun(str(tmp_path / "two.zarr"))(), "ready")[1]
+    good = column(reply, "reason") == 0
+    numbers = column(reply, "number")[good]
+    assert not column(reply, "kept").any()
     over = {"force": 20.0, "moment": 1e-3}
     lacking = sum(
-        np.maximum(column(told, f"column.{name}")[good] / most - 1, 0)
+        np.maximum(column(reply, f"column.{name}")[good] / most - 1, 0)
         for name, most in over.items()
     )
-    assert told.content["best"] == numbers[np.argsort(lacking)].tolist()
+    assert reply.content["best"] == numbers[np.argsort(lacking)].tolist()
 
 
 def test_a_design_is_opened_as_a_machine_and_left_again(path) -> None:
     desk = begun(path)()
     chosen = ask(desk, "ready")[1].content["best"][0]
-    (state,) = (one for one in ask(desk, "design", number=chosen) if one.content["type"] == "state")
+    (state,) = (
+        item for item in ask(desk, "design", number=chosen) if item.content["type"] == "state"
+    )
     assert state.content["name"] == f"lengths.zarr {chosen}"
     assert desk.session.shown.design.machine == machine_of(open_store(path), chosen)
     assert ask(desk, "edit", edits=[{"set": "drive.speed", "text": "90 rpm"}])[0].content["undo"]
@@ -125,7 +127,7 @@ def test_a_design_is_opened_as_a_machine_and_left_again(path) -> None:
     assert (again[0].content["study"], again[1].content["type"]) == ("lengths.zarr", "state")
 
 
-def test_what_cannot_be_opened_is_told(path, tmp_path) -> None:
+def test_what_cannot_be_opened_is_reported(path, tmp_path) -> None:
     desk = begun(path)()
     content = ask(desk, "ready")[1]
     failed = int(np.flatnonzero(column(content, "reason"))[0])
@@ -146,13 +148,15 @@ def test_stores_of_the_folder_are_opened_by_their_names_alone(path, tmp_path, mo
     (listed,) = ask(desk, "stores")
     assert (listed.content["folder"], listed.content["names"]) == (folder.name, ["lengths.zarr"])
     for name in ("../" + Path(path).name, str(path), "other", "link.zarr", ""):
-        told = ask(desk, "study", store=name)[0].content["message"]
-        assert told == f"{folder.name} has no store of the name {name!r}; choose one that is listed"
+        content = ask(desk, "study", store=name)[0].content["message"]
+        assert (
+            content == f"{folder.name} has no store of the name {name!r}; choose one that is listed"
+        )
     (shown,) = ask(desk, "study", store="lengths.zarr")
     assert shown.content["type"] == "study" and ask(desk, "ready")[0].content["study"]
     again = begun(None)()  # as after a reload
-    told = ask(again, "design", number=shown.content["best"][0], store="lengths.zarr")[0]
-    assert told.content["name"] == f"lengths.zarr {shown.content['best'][0]}"
+    content = ask(again, "design", number=shown.content["best"][0], store="lengths.zarr")[0]
+    assert content.content["name"] == f"lengths.zarr {shown.content['best'][0]}"
     model = folder / "model.toml"
     model.write_text(example_text("yamashita-1"), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
@@ -163,7 +167,7 @@ def test_stores_of_the_folder_are_opened_by_their_names_alone(path, tmp_path, mo
 
 def test_of_many_designs_some_are_drawn_and_the_best_among_them(path, monkeypatch) -> None:
     monkeypatch.setattr(stores, "MOST", 20)
-    told = ask(begun(path)(), "ready")[1]
-    drawn = column(told, "number")
-    assert 20 <= len(drawn) <= 64 and told.content["drawn"] == len(drawn)
-    assert {*told.content["best"]} <= {*drawn.astype(int).tolist()}
+    reply = ask(begun(path)(), "ready")[1]
+    drawn = column(reply, "number")
+    assert 20 <= len(drawn) <= 64 and reply.content["drawn"] == len(drawn)
+    assert {*reply.content["best"]} <= {*drawn.astype(int).tolist()}

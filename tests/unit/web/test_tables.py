@@ -29,9 +29,9 @@ BAR = {"shape": "bar", "between": ["A", "B"], "width": "20 mm", "thickness": "5 
 LOAD = "crank_angle [deg],torque [N m]\n0,1\n180,3\n360,1\n"
 
 
-def group(told: Content, where: str) -> Content:
-    (found,) = [one for one in told["groups"] if one["where"] == where]
-    return found
+def group(text: Content, where: str) -> Content:
+    (actual,) = [item for item in text["groups"] if item["where"] == where]
+    return actual
 
 
 def tables(session: Any) -> Content:
@@ -51,10 +51,10 @@ def enter(session: Any, place: str | list[Any], values: Content | None, **more: 
 @pytest.mark.parametrize("name", titles())
 def test_each_entry_put_back_as_its_form_has_it_leaves_the_machine_as_it_was(name: str) -> None:
     machine = opened_example(name).own
-    document, told = Document.of_machine(machine), tables_of(machine)
-    for one in told["groups"]:
-        known = {control["key"] for control in told["forms"][one["form"]]["controls"]}
-        for entry in one["entries"]:
+    document, text = Document.of_machine(machine), tables_of(machine)
+    for item in text["groups"]:
+        known = {control["key"] for control in text["forms"][item["form"]]["controls"]}
+        for entry in item["entries"]:
             assert known >= entry["values"].keys()
             place = KeyPath.parse(entry["place"]) if entry["place"] else KeyPath(())
             assert document.put(place, entry["values"]).machine() == machine
@@ -62,34 +62,34 @@ def test_each_entry_put_back_as_its_form_has_it_leaves_the_machine_as_it_was(nam
 
 def test_each_table_that_a_file_can_have_is_offered() -> None:
     """Or its place below one that is not there yet, which is told; below one of a list, with it."""
-    told = tables_of(opened_example("yamashita-1").own)
-    offered = {one["form"] for one in told["groups"]}
+    reported = tables_of(opened_example("yamashita-1").own)
+    offered = {item["form"] for item in reported["groups"]}
     waiting, known, listed_ones = [Machine], set(), set()
     while waiting:
         of = waiting.pop()
         known.add(of.__name__)
-        for one in tables_below(of).values():
-            inner = entry_of(one.kind)
+        for value in tables_below(of).values():
+            inner = entry_of(value.kind)
             assert inner is not None
-            listed = isinstance(one.kind, Tables | Named)
+            listed = isinstance(value.kind, Tables | Named)
             if inner.type.__name__ not in known:
                 waiting.append(inner.type)
             listed_ones |= {inner.type} if listed or of in listed_ones else set()
             if of is Machine or not (listed or of in listed_ones):
                 assert inner.type.__name__ in offered
-    assert known == told["forms"].keys()
-    assert group(told, "support.mounts")["needs"] == "support"
-    assert group(told, "planting.soil")["needs"] == "planting"
+    assert known == reported["forms"].keys()
+    assert group(reported, "support.mounts")["needs"] == "support"
+    assert group(reported, "planting.soil")["needs"] == "planting"
     for name, form in forms_of(Machine).items():
         needed = [control["required"] for control in form["controls"]]
         assert needed == sorted(needed, reverse=True), name
-    assert [one["key"] for one in told["forms"]["Spring"]["controls"]] == [
+    assert [item["key"] for item in reported["forms"]["Spring"]["controls"]] == [
         "link", "point", "to", "stiffness", "free_length", "preload", "lengths", "forces", "table",
         "on",
     ]  # fmt: skip
 
 
-def test_a_title_in_several_languages_is_told_in_the_one_that_is_spoken() -> None:
+def test_a_title_in_several_languages_is_shown_in_the_one_that_is_spoken() -> None:
     session, _ = opened("yamashita-1")
     english = group(tables(session), "")["entries"][0]["words"]
     ask(session, "speak", languages=["ja"])
@@ -99,20 +99,26 @@ def test_a_title_in_several_languages_is_told_in_the_one_that_is_spoken() -> Non
 
 
 def test_names_are_chosen_from_those_that_there_are() -> None:
-    told = tables_of(opened_example("yamashita-1").own)
-    controls = {one["key"]: one for one in told["forms"]["Spring"]["controls"]}
+    reported = tables_of(opened_example("yamashita-1").own)
+    controls = {item["key"]: item for item in reported["forms"]["Spring"]["controls"]}
     assert (controls["link"]["of"], controls["point"]["on"]) == ("link", "link")
     assert controls["to"]["on"] == "on"
-    rough = {one["key"]: one["by"] for one in told["forms"]["Position"]["controls"] if "by" in one}
+    rough = {
+        item["key"]: item["by"]
+        for item in reported["forms"]["Position"]["controls"]
+        if "by" in item
+    }
     assert rough["points"] == {"kind": "name", "of": "point", "on": "links"}
     assert rough["angles"]["of"] == "link"
-    (output,) = [one for one in told["forms"]["Objective"]["controls"] if one["key"] == "output"]
+    (output,) = [
+        item for item in reported["forms"]["Objective"]["controls"] if item["key"] == "output"
+    ]
     assert (output["kind"], output["of"]) == ("text", "output")
     rig = tables_of(opened_example("yamashita-rig").own)["outputs"]
     assert rig["shaking_moment"] == "shaking moment"
     assert [name for name in rig if name.startswith("gauges.")]
-    assert not [name for name in told["outputs"] if name.startswith("gauges.")]
-    assert told["bodies"]["frame"]["A"] == (0.0, 0.0)
+    assert not [name for name in reported["outputs"] if name.startswith("gauges.")]
+    assert reported["bodies"]["frame"]["A"] == (0.0, 0.0)
     assert own_keys(Machine).keys() == {
         "title", "description", "parameters", "gravity", "assembly",
     }  # fmt: skip
@@ -130,28 +136,28 @@ def test_names_are_chosen_from_those_that_there_are() -> None:
         ("ko", "프레임 또는 ‘상대 물체’ 위의 점", "‘"),
     ],
 )
-def test_what_a_key_means_is_told_in_the_words_of_its_form(
+def test_what_a_key_means_is_reported_in_the_words_of_its_form(
     language: str, to: str, law: str
 ) -> None:
     with speaking(language):
         forms = forms_of(Machine)
-    texts = {(name, one["key"]): one for name, form in forms.items() for one in form["controls"]}
+    texts = {(name, item["key"]): item for name, form in forms.items() for item in form["controls"]}
     assert texts["Spring", "to"]["text"] == to
     assert law in texts["AngleSegment", "law"]["text"]
     assert "point: " in texts["Body", "shape"]["text"] or language != "en"  # a value, not its key
-    words = {one["word"] for one in texts.values()}
+    words = {text["word"] for text in texts.values()}
     assert not words & {"to", "on", "at", "through"}
 
 
 @pytest.mark.parametrize("units", [{}, {"length": "in", "force": "lbf"}])
 def test_the_unit_beside_a_control_can_be_typed(units: Any) -> None:
     def look(of: type[Frozen]) -> None:
-        controls = {one["key"]: one for one in forms[of.__name__]["controls"]}
-        for name, one in own_keys(of).items():
-            if isinstance(one.kind, Quantity):
-                assert parse(f"1 {controls[name]['unit']}", one.kind.dimension) > 0
-        for one in tables_below(of).values():
-            inner = entry_of(one.kind)
+        controls = {form["key"]: form for form in forms[of.__name__]["controls"]}
+        for name, value in own_keys(of).items():
+            if isinstance(value.kind, Quantity):
+                assert parse(f"1 {controls[name]['unit']}", value.kind.dimension) > 0
+        for value in tables_below(of).values():
+            inner = entry_of(value.kind)
             assert inner is not None
             look(inner.type)
 
@@ -183,12 +189,12 @@ def test_a_spring_is_added_changed_and_deleted_each_as_one_step() -> None:
 def test_servo_motor_brake_and_run_are_changed_by_their_forms() -> None:
     """Of the example that has all three; the run of the machine on the page follows the file's."""
     session, _ = opened("carton-pusher")
-    told = tables(session)
-    (servo,) = group(told, "drive.motor.servo")["entries"]
+    reported = tables(session)
+    (servo,) = group(reported, "drive.motor.servo")["entries"]
     assert servo["values"]["torque_limit"] == "1.9 N m"
     changed = {**servo["values"], "torque_limit": "2.5 N m", "acceleration": "900 rad/s^2"}
     enter(session, ["drive", "motor", "servo"], changed)
-    (drive,) = group(told, "drive")["entries"]
+    (drive,) = group(reported, "drive")["entries"]
     assert drive["values"]["brake"] == "10 N m"
     enter(session, ["drive"], {**drive["values"], "brake": "12 N m"})
     enter(session, ["run"], {"turns": 3})
@@ -210,15 +216,15 @@ def test_mounts_have_names_which_can_change() -> None:
     renamed = session.shown.design.own.support.mounts  # type: ignore[union-attr]
     assert [*renamed] == ["front", *[*mounts][1:]]
     assert [*renamed.values()] == [*mounts.values()]
-    told = refusal(enter(session, ["support", "mounts", "front"], {}, name=[*mounts][1]))
-    assert "is taken already; give another name" in told
+    reported = refusal(enter(session, ["support", "mounts", "front"], {}, name=[*mounts][1]))
+    assert "is taken already; give another name" in reported
 
 
 def test_a_counterweight_leaves_with_the_mass_that_it_was_joined_to() -> None:
     session, _ = opened("yamashita-1")
     ask(session, "edit", seq=1, edits=[{"set": "counterweights.crank.mass", "text": "80 g"}])
-    (crank,) = [one for one in group(tables(session), "links")["entries"]
-                if one["where"] == "links.crank"]  # fmt: skip
+    (crank,) = [item for item in group(tables(session), "links")["entries"]
+                if item["where"] == "links.crank"]  # fmt: skip
     points = {"points": crank["values"]["points"]}
     shown = state(enter(session, ["links", "crank"], points)[0])
     assert shown.content["lacking"].endswith("for crank")
@@ -233,8 +239,8 @@ def test_masses_from_shapes() -> None:
     mass = 7850 * 0.0335 * 0.02 * 0.005
     assert link.mass == pytest.approx(mass)
     assert link.inertia == pytest.approx(mass * (0.0335**2 + 0.02**2) / 12)
-    told = group(tables(session), "links.crank.bodies")
-    assert told["result"].startswith("together 26.30 g; centre of mass at 16.75 mm, 0 mm;")
+    text = group(tables(session), "links.crank.bodies")
+    assert text["result"].startswith("together 26.30 g; centre of mass at 16.75 mm, 0 mm;")
     enter(session, ["links", "crank", "bodies", 1],
           {"shape": "disc", "at": "B", "radius": "10 mm", "mass": "50 g"})  # fmt: skip
     both = session.shown.design.machine.links["crank"].mass
@@ -273,7 +279,7 @@ def test_bearings_come_and_go_in_twos() -> None:
     crank = group(tables(session), "links")["entries"][0]
     enter(session, ["links", "crank"], {**crank["values"], "plane": "10 mm"})
     enter(session, ["bearings", "front"], {"link": "crank", "plane": "-20 mm"})
-    planes = {name: one.plane for name, one in session.shown.design.own.bearings.items()}
+    planes = {name: value.plane for name, value in session.shown.design.own.bearings.items()}
     assert planes == {"front": -0.02, "front2": pytest.approx(0.04)}
     enter(session, ["bearings", "front2"], {"link": "crank", "plane": "30 mm"}, name="back")
     assert session.shown.design.own.bearings["back"].plane == 0.03
@@ -289,7 +295,7 @@ def test_segments_of_a_law_fill_its_cycle() -> None:
     def segments() -> list[float]:
         law = session.shown.design.own.drive.motion
         assert law is not None and law.between is None
-        return [*np.degrees([(one.over, one.to) for one in law.segments]).flat]
+        return [*np.degrees([(segment.over, segment.to) for segment in law.segments]).flat]
 
     enter(session, [*way, "segments", 0], {"over": "100 deg", "to": "90 deg"})
     assert segments() == pytest.approx([100, 90, 260, 40])
@@ -312,7 +318,7 @@ def test_masses_that_balancing_adds_beside_a_link_are_listed_in_round_numbers() 
     *_, body = session.shown.design.own.links["crank"].bodies
     assert body.plane == 0.02  # and no counterweight in the plane of the link
     assert np.hypot(*body.at) == pytest.approx(0.03)
-    assert body.at == tuple(round(one, 10) for one in body.at)
+    assert body.at == tuple(round(item, 10) for item in body.at)
     *_, listed = group(tables(session), "links.crank.bodies")["entries"]
     assert all(len(number) < 11 for number in listed["words"].split()), listed["words"]
 
@@ -341,7 +347,7 @@ def test_masses_that_balancing_adds_beside_a_link_are_listed_in_round_numbers() 
         (["gears", 0], None, "gears[1]", "entry not found"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_is_told_at_its_key(
+def test_what_is_wrong_is_reported_at_its_key(
     place: list[Any], values: Content | None, path: str, what: str
 ) -> None:
     session, _ = opened("yamashita-1")
@@ -395,14 +401,14 @@ def test_nonsense_is_refused_in_a_sentence(asked: Content) -> None:
 def test_every_value_may_be_nonsense(junk: Any) -> None:
     """One after the other; what is refused leaves the machine, what is taken can be shown."""
     session, _ = opened("yamashita-rig")
-    for one in tables(session)["groups"]:
-        for entry in one["entries"]:
+    for table in tables(session)["groups"]:
+        for entry in table["entries"]:
             for key in entry["values"]:
                 enter(session, entry["place"], {**entry["values"], key: junk})
                 assert session.shown.design.own == eq.loads(eq.dumps(session.shown.design.own))
 
 
-def test_what_cannot_turn_is_told_and_nothing_changes() -> None:
+def test_what_cannot_turn_is_reported_and_nothing_changes() -> None:
     session, _ = opened("yamashita-1")
     before = session.shown
     points = {"points": {"A": ["0 mm", "0 mm"], "B": ["200 mm", "0 mm"]}}
@@ -429,7 +435,7 @@ def test_gears_make_one_motion_of_two() -> None:
     for name in first.content["arrays"]:
         if name.startswith("place."):
             assert shown.array(name) == pytest.approx(first.array(name), abs=1e-6)
-    assert [one.teeth for one in session.shown.design.own.gears] == [(40, 40), (40, 20)]
+    assert [gear.teeth for gear in session.shown.design.own.gears] == [(40, 40), (40, 20)]
 
 
 def test_a_link_that_is_drawn_gets_its_mass_by_bodies() -> None:
@@ -442,15 +448,15 @@ def test_a_link_that_is_drawn_gets_its_mass_by_bodies() -> None:
     name = KeyPath.parse(link["place"])[-1]
     bar = {**BAR, "between": [*link["values"]["points"]]}
     enter(session, ["links", name, "bodies", 0], bar)
-    told = group(tables(session), f"links.{name}.bodies")
-    assert told["result"].startswith("together 47.10 g")
+    text = group(tables(session), f"links.{name}.bodies")
+    assert text["result"].startswith("together 47.10 g")
 
 
 def test_rows_that_are_added_are_computed() -> None:
-    session, one = opened("yamashita-1")
+    session, first = opened("yamashita-1")
     for number, phase in enumerate(("0 deg", "180 deg")):
         enter(session, ["rows", number], {"phase": phase, "lateral": f"{300 * number} mm"})
     both = state(ask(session, "ready")[1])
     assert np.abs(both.vector("rows.shaking_force")).max() < np.abs(
-        2 * one.vector("shaking_force")
+        2 * first.vector("shaking_force")
     ).max()  # fmt: skip

@@ -34,13 +34,13 @@ def ask(desk: PageBackend, asked: str, /, **values):
 
 def shown(replies):
     """What the page is told of the tool."""
-    (found,) = [one for one in replies if one.content["type"] == "tool"]
-    assert json.dumps(found.content, allow_nan=False)
-    return found.content
+    (actual,) = [reply for reply in replies if reply.content["type"] == "tool"]
+    assert json.dumps(actual.content, allow_nan=False)
+    return actual.content
 
 
 def figures(content):
-    return {one["name"]: one for one in content["figures"]}
+    return {entry["name"]: entry for entry in content["figures"]}
 
 
 def setting(desk: PageBackend, text: str, commit=True, path=PATH):
@@ -50,17 +50,19 @@ def setting(desk: PageBackend, text: str, commit=True, path=PATH):
 
 @pytest.mark.exhaustive(but=["nagamine-irie"])
 @pytest.mark.parametrize("name", TOOLS)
-def test_a_tool_is_told_from_the_side_with_its_modes(name) -> None:
+def test_a_tool_is_reported_from_the_side_with_its_modes(name) -> None:
     desk = begun(name)()
-    hello, told = ask(desk, "ready")
+    hello, reply = ask(desk, "ready")
     assert hello.content["machine"]
-    assert {one["name"] for one in hello.content["tools"]} == set(TOOLS)
-    content, tool = told.content, eq.load(name)
-    assert [one["name"] for one in content["scene"]["stations"]] == [s.name for s in tool.stations]
+    assert {entry["name"] for entry in hello.content["tools"]} == set(TOOLS)
+    content, tool = reply.content, eq.load(name)
+    assert [entry["name"] for entry in content["scene"]["stations"]] == [
+        s.name for s in tool.stations
+    ]
     assert content["along"][-1] == tool.shaft.length
     modes = vibrate_tool(tool)
     elastic = [f for f in modes.planes[0].cycles_per_second if f > 0]
-    views = [one for one in content["views"] if one["name"].startswith("mode ")]
+    views = [entry for entry in content["views"] if entry["name"].startswith("mode ")]
     assert len(views) == 4
     for view, frequency in zip(views, elastic, strict=False):
         assert f"{frequency:.4g} Hz" in view["name"]
@@ -68,10 +70,13 @@ def test_a_tool_is_told_from_the_side_with_its_modes(name) -> None:
         assert np.max(np.abs(shape)) == pytest.approx(0.05 * tool.shaft.length, rel=1e-3)
     told_masses = float(figures(content)["mass"]["texts"][1])
     assert told_masses == pytest.approx(tool.mass, rel=1e-3)
-    assert {one["path"].partition(".")[0] for one in content["fields"]} >= {"shaft", "operation"}
+    assert {entry["path"].partition(".")[0] for entry in content["fields"]} >= {
+        "shaft",
+        "operation",
+    }
 
 
-def test_numbers_are_set_by_the_paths_of_studies_and_figures_told_before_and_after() -> None:
+def test_numbers_are_set_by_the_paths_of_studies_and_figures_reported_before_and_after() -> None:
     desk = begun("brush-cutter")()
     start = shown(ask(desk, "ready"))
     assert start["before"] is None
@@ -88,7 +93,7 @@ def test_numbers_are_set_by_the_paths_of_studies_and_figures_told_before_and_aft
     assert lowest["after"] == pytest.approx(vibrate_tool(wanted).planes[0].cycles_per_second[3])
     assert after["scene"]["tubes"][0][2] == 0.03 and after["before"]["tubes"][0][2] == 0.026
     assert [name for name in after["arrays"] if name.startswith("before.a_hv.")]
-    (field,) = [one for one in after["fields"] if one["path"] == PATH]
+    (field,) = [item for item in after["fields"] if item["path"] == PATH]
     assert (field["text"], field["label"]) == ("30 mm", "outer diameter")
     (file,) = ask(desk, "download", kind="model")
     assert eq.loads(file.buffer.decode()) == wanted
@@ -139,8 +144,8 @@ def test_tools_and_machines_are_opened_in_turn() -> None:
     assert desk.tool is None and desk.has_more
     spoken = ask(desk, "speak", languages=["ja"])[0].content
     assert spoken["language"] == "ja"
-    told = shown(ask(desk, "open", example="pole-saw"))
-    assert figures(told)["mass"]["label"] != "mass of the tool"
+    reported = shown(ask(desk, "open", example="pole-saw"))
+    assert figures(reported)["mass"]["label"] != "mass of the tool"
 
 
 @pytest.fixture
@@ -156,19 +161,23 @@ def path(tmp_path: Path) -> Path:
 @pytest.mark.exhaustive
 def test_the_file_of_a_tool_is_saved_in_place(path: Path) -> None:
     begin = begun(str(path))
-    one, other = begin(), begin()
-    assert shown(ask(one, "ready"))["file"] == {"name": path.name, "saved": True, "comments": True}
-    base = one.hello().content["base"]
-    assert shown(setting(one, "30 mm"))["file"]["saved"] is False
+    single, other = begin(), begin()
+    assert shown(ask(single, "ready"))["file"] == {
+        "name": path.name,
+        "saved": True,
+        "comments": True,
+    }
+    base = single.hello().content["base"]
+    assert shown(setting(single, "30 mm"))["file"]["saved"] is False
     setting(other, "31 mm")
-    told, saved = ask(one, "save")
-    assert shown([told])["file"] == {"name": path.name, "saved": True, "comments": False}
-    assert saved.content["base"] == one.hello().content["base"] != base
-    assert eq.load(path) == one.tool.now.tool != other.tool.now.tool
+    reply, saved = ask(single, "save")
+    assert shown([reply])["file"] == {"name": path.name, "saved": True, "comments": False}
+    assert saved.content["base"] == single.hello().content["base"] != base
+    assert eq.load(path) == single.tool.now.tool != other.tool.now.tool
     (refused,) = ask(other, "save")
     assert "by another page or program" in refused.content["message"]
     again = begin()
-    assert again.tool.now.tool == one.tool.now.tool
+    assert again.tool.now.tool == single.tool.now.tool
     first = {"name": path.name, "text": saved.content["text"], "file": True}
     assert shown(ask(again, "open", **first))["file"]["saved"] is False
     ask(again, "save")

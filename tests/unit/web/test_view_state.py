@@ -15,9 +15,9 @@ from equipoise.web.replies import Reply
 from unit.web.pages import ask, edit, opened, refusal, state
 
 
-def told(replies, kind):
+def contents(replies, kind):
     """The contents of one kind among replies."""
-    return [one.content for one in replies if one.content["type"] == kind]
+    return [reply.content for reply in replies if reply.content["type"] == kind]
 
 
 ROWS = (f"{45 * k},{k % 3}" for k in range(8))
@@ -40,13 +40,13 @@ def test_a_page_keeps_the_response_over_speed(asked: tuple[str, dict[str, Any]])
         """Whatever is told of the response takes the place of all that was."""
         for reply in replies:
             if reply.content["type"] == "response":
-                shown[:] = [one["name"] for one in reply.content["charts"]]
+                shown[:] = [entry["name"] for entry in reply.content["charts"]]
 
     hear(session.deferred_replies())
     assert shown == ["response", "sweep"]
     kind, values = asked
     replies = [*session.receive(message_of({"type": kind, "seq": 1, **values}))]
-    assert not told(replies, "refused")
+    assert not contents(replies, "refused")
     hear(replies)
     hear(session.deferred_replies())
     assert shown == ["response", "sweep"]
@@ -66,12 +66,12 @@ def test_arrows_are_the_vectors_at_a_point() -> None:
         "acceleration": (whole.motion.points["C"].acceleration_vector, "m/s²"),
         "force": (whole.forces.joints["C"].value, "N"),
     }
-    assert [one["kind"] for one in shown.content["arrows"]] == [*wanted]
-    for one in shown.content["arrows"]:
-        values, unit = wanted[one["kind"]]
-        sent = shown.vector(one["array"])
+    assert [item["kind"] for item in shown.content["arrows"]] == [*wanted]
+    for entry in shown.content["arrows"]:
+        values, unit = wanted[entry["kind"]]
+        sent = shown.vector(entry["array"])
         np.testing.assert_allclose(sent, values, atol=1e-6 * np.max(np.abs(values)))
-        assert one["unit"] == unit
+        assert entry["unit"] == unit
     force = shown.content["arrows"][-1]["label"]
     assert force == f"force in joint C, on {whole.forces.joints['C'].on}"
     moved = edit(session, {"set": "drive.speed", "text": "386 rpm"})
@@ -86,15 +86,15 @@ def test_arrows_of_a_frame_point_and_of_a_slider() -> None:
     session, _ = opened("slider-crank-engine")
     machine = eq.load("slider-crank-engine")
     fixed = state(ask(session, "arrows", point=next(iter(machine.frame)))[0]).content["arrows"]
-    assert {one["kind"] for one in fixed} == {"force"}
+    assert {item["kind"] for item in fixed} == {"force"}
     (slider,) = machine.sliders
     block = state(ask(session, "arrows", point=slider.point)[0]).content["arrows"]
-    forces = [one["array"] for one in block if one["kind"] == "force"]
+    forces = [item["array"] for item in block if item["kind"] == "force"]
     assert f"arrow.force.{slider.name}" in forces
     assert len(forces) == 2  # in the pin, and on the guide
 
 
-def test_figures_are_told_before_and_after_every_change() -> None:
+def test_figures_are_reported_before_and_after_every_change() -> None:
     session, first = opened("yamashita-1")
     assert not first.content["compared"]
     name = "shaking_force.rms"
@@ -110,11 +110,11 @@ def test_figures_are_told_before_and_after_every_change() -> None:
     shown = state(against[0])
     assert shown.figure(name)["before"] == start
     assert shown.content["before"] and "before.shaking_force" in shown.content["arrays"]
-    (ghost,) = told(against, "ghost")
+    (ghost,) = contents(against, "ghost")
     assert ghost["scene"]["signs"] and "place.P" in ghost["arrays"]
     alone = ask(session, "variant", do="against", to="nothing")
     assert not state(alone[0]).content["compared"]
-    assert told(alone, "ghost")[0]["scene"] is None
+    assert contents(alone, "ghost")[0]["scene"] is None
 
 
 def test_variants_are_kept_named_compared_and_gone_back_to() -> None:
@@ -123,7 +123,7 @@ def test_variants_are_kept_named_compared_and_gone_back_to() -> None:
     ask(session, "variant", do="pin")
     edit(session, {"set": "links.crank.mass", "text": "0.1 kg"})
     pinned = ask(session, "variant", do="pin")
-    (table,) = told(pinned, "variants")
+    (table,) = contents(pinned, "variants")
     assert table["kept"] == ["A", "B"] and table["against"] == "variant:B"
     rows = {row["label"]: row for row in table["rows"]}
     mass = rows["mass of the links"]
@@ -131,19 +131,19 @@ def test_variants_are_kept_named_compared_and_gone_back_to() -> None:
     heavy, light, now = (float(text) for text in mass["texts"])
     assert heavy - light == pytest.approx(99, abs=0.6) and now == light
     gauge = rows["reading at gauge, peak to peak"]
-    found = eq.respond(eq.load("yamashita-rig")).gauges["gauge"].displacement.peak_to_peak
-    assert float(gauge["texts"][0]) == pytest.approx(1e3 * found, rel=1e-3)
+    peak_to_peak = eq.respond(eq.load("yamashita-rig")).gauges["gauge"].displacement.peak_to_peak
+    assert float(gauge["texts"][0]) == pytest.approx(1e3 * peak_to_peak, rel=1e-3)
     renamed = ask(session, "variant", do="rename", name="A", to="as built")
-    assert told(renamed, "variants")[0]["kept"] == ["as built", "B"]
+    assert contents(renamed, "variants")[0]["kept"] == ["as built", "B"]
     gone = ask(session, "variant", do="go", name="as built")
     assert session.shown.design.machine == before.machine
     assert state(gone[0]).content["undo"] == "go to as built"
     dropped = ask(session, "variant", do="drop", name="B")
-    assert told(dropped, "variants")[0]["against"] == "step"
+    assert contents(dropped, "variants")[0]["against"] == "step"
     ask(session, "undo")
     assert session.shown.design.machine != before.machine
     ask(session, "open", example="yamashita-1")
-    assert told(ask(session, "variant", do="pin"), "variants")[0]["kept"] == ["A"]
+    assert contents(ask(session, "variant", do="pin"), "variants")[0]["kept"] == ["A"]
 
 
 @pytest.mark.parametrize(
@@ -167,20 +167,20 @@ def test_what_cannot_be_done_with_variants_is_refused(asked, said) -> None:
 def test_no_more_than_twelve_variants_are_kept() -> None:
     session, _ = opened("yamashita-1")
     for _ in range(12):
-        assert not told(ask(session, "variant", do="pin"), "refused")
+        assert not contents(ask(session, "variant", do="pin"), "refused")
     assert "12 variants are kept already" in refusal(ask(session, "variant", do="pin"))
 
 
 @pytest.mark.parametrize("name", ["yamashita-rig", "sieve", "riding-transplanter"])
-def test_a_support_is_told_how_it_moves(name) -> None:
+def test_a_support_is_reported_how_it_moves(name) -> None:
     session, shown = opened(name)
-    (found,) = [one for one in ask(session, "ready") if one.content["type"] == "response"]
-    arrays = found.content["arrays"]
-    block = np.frombuffer(found.buffer, "<f4").astype(float)
+    (actual,) = [item for item in ask(session, "ready") if item.content["type"] == "response"]
+    arrays = actual.content["arrays"]
+    block = np.frombuffer(actual.buffer, "<f4").astype(float)
     _, length = arrays["support.place"]
     assert length == 2 * shown.content["angles"]
-    assert found.content["swing"]
-    modes = found.content["modes"]
+    assert actual.content["swing"]
+    modes = actual.content["modes"]
     assert len(modes) == len(eq.modes(eq.load(name)).modes)
     scene = shown.content["scene"]
     (x0, y0, x1, y1), (rx, ry) = scene["box"], scene["reference"]
@@ -191,20 +191,24 @@ def test_a_support_is_told_how_it_moves(name) -> None:
             dx, dy, turn = (complex(*mode["shape"][i : i + 2]) for i in (0, 2, 4))
             assert abs(dx) + abs(dy) + arm * abs(turn) >= 0.5 * LARGEST * size
             assert max(abs(dx), abs(dy)) <= 2 * LARGEST * size + arm * abs(turn)
-    held = [one["hold"] for one in scene["signs"] if one["hold"] and "mount" in one["hold"]]
-    assert held and all(abs(complex(*one["ground"])) == pytest.approx(50) for one in held)
-    assert any(one["still"] for one in scene["signs"])
+    held = [item["hold"] for item in scene["signs"] if item["hold"] and "mount" in item["hold"]]
+    assert held and all(abs(complex(*item["ground"])) == pytest.approx(50) for item in held)
+    assert any(item["still"] for item in scene["signs"])
     assert np.all(np.isfinite(block))
 
 
 def test_balancing_can_be_held_to_what_gauges_read() -> None:
     session, _ = opened("sieve")
-    free = told(ask(session, "balance"), "balanced")[0]
-    stand = {one["label"]: one for one in free["figures"]}["reading at stand, RMS about the mean"]
+    free = contents(ask(session, "balance"), "balanced")[0]
+    stand = {item["label"]: item for item in free["figures"]}[
+        "reading at stand, RMS about the mean"
+    ]
     assert free["gauges_worse"] and stand["way"] == "worse"
     assert any("gauges: reading at stand" in sentence for sentence in free["worse"])
     ask(session, "undo")
-    held = told(ask(session, "balance", hold=True), "balanced")[0]
-    stand = {one["label"]: one for one in held["figures"]}["reading at stand, RMS about the mean"]
+    held = contents(ask(session, "balance", hold=True), "balanced")[0]
+    stand = {item["label"]: item for item in held["figures"]}[
+        "reading at stand, RMS about the mean"
+    ]
     assert not held["gauges_worse"] and stand["way"] != "worse"
     assert held["aims"][0]["way"] == "better"

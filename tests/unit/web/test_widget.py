@@ -28,7 +28,7 @@ def test_a_widget_answers_as_the_server_does(monkeypatch: pytest.MonkeyPatch) ->
     kinds = [content["type"] for content, _ in sent]
     assert kinds.count("strokes") == 2
     rest = {"strokes", "told"}
-    hello, first, second, refused = (one for one in sent if one[0]["type"] not in rest)
+    hello, first, second, refused = (item for item in sent if item[0]["type"] not in rest)
     assert hello[0]["type"] == "hello"
     assert len(first[1][0]) == 4 * max(sum(place) for place in first[0]["arrays"].values())
     assert (second[0]["seq"], second[0]["undo"]) == (2, "edit")
@@ -37,7 +37,7 @@ def test_a_widget_answers_as_the_server_does(monkeypatch: pytest.MonkeyPatch) ->
     widget.close()
 
 
-def test_what_is_missing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_missing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(documents, "files", lambda _: __import__("pathlib").Path("nowhere"))
     with refused(UsageError, by="asset"):
         eq.view("yamashita-1")

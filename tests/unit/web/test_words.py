@@ -28,10 +28,10 @@ from unit.web.pages import ask, opened, refusal, state
 )
 def test_the_first_language_there_is_is_spoken(wishes: list[str], spoken: str) -> None:
     session, _ = opened("yamashita-1")
-    told = ask(session, "speak", seq=1, languages=wishes)[0].content
-    assert (told["type"], told["language"]) == ("spoken", spoken)
-    assert told["languages"] == LANGUAGES
-    labels = {one["signal"] for one in state(ask(session, "ready")[1]).content["figures"]}
+    content = ask(session, "speak", seq=1, languages=wishes)[0].content
+    assert (content["type"], content["language"]) == ("spoken", spoken)
+    assert content["languages"] == LANGUAGES
+    labels = {entry["signal"] for entry in state(ask(session, "ready")[1]).content["figures"]}
     force = catalogue(spoken).get("shaking force", "shaking force")
     assert force in labels
 
@@ -83,19 +83,21 @@ def english(values: object, names: set[str]) -> Iterator[str]:
     few(["yamashita-1", "transplanter", "sieve", "riding-transplanter"],
         {"yamashita-1", "transplanter", "sieve"}),
 )  # fmt: skip
-def test_what_a_page_is_told_is_in_its_language(name: str) -> None:
+def test_what_a_page_is_sent_is_in_its_language(name: str) -> None:
     session, _ = opened(name)
     ask(session, "speak", languages=["ja"])
     machine = session.shown.design.machine
     held = {} if machine.support is None else {**machine.support.mounts, **machine.support.gauges}
-    parts = {part for one in (*machine.links, *held) for part in (one, *one.split("_"))}
+    parts = {part for item in (*machine.links, *held) for part in (item, *item.split("_"))}
     names = parts | {part.capitalize() for part in parts}
     replies = [*session.state_replies(None), *session.deferred_replies()]
     contents = [reply.content for reply in replies]
-    found = [text for content in contents for text in english(content, names)]
-    fields = next(one["fields"] for one in contents if "fields" in one)
-    found += [text for one in fields for text in english([one["heading"], one["label"]], names)]
-    assert found == []
+    actual = [text for content in contents for text in english(content, names)]
+    fields = next(item["fields"] for item in contents if "fields" in item)
+    actual += [
+        text for field in fields for text in english([field["heading"], field["label"]], names)
+    ]
+    assert actual == []
 
 
 @pytest.mark.parametrize("language", few(["en", "ja", "ko"], {"ja"}))
@@ -106,15 +108,15 @@ def test_a_page_speaks_of_cycles_where_no_crank_turns(language: str) -> None:
     contents = [
         reply.content for reply in (*session.state_replies(None), *session.deferred_replies())
     ]
-    (wording,) = (one["wording"] for one in contents if "wording" in one)
+    (wording,) = (item["wording"] for item in contents if "wording" in item)
     cycle = {"en": "Any output over the cycle", "ja": "1周期の任意の出力"}
     if language in cycle:
         assert wording["words"]["Any output over crank angle"] == cycle[language]
-    labels = [one["label"] for content in contents for one in content.get("fields", ())]
-    told = [*labels, *wording["words"].values(), *wording["explained"].values()]
-    told += [text for content in contents for text in english(content, set())]
+    labels = [item["label"] for content in contents for item in content.get("fields", ())]
+    texts = [*labels, *wording["words"].values(), *wording["explained"].values()]
+    texts += [text for content in contents for text in english(content, set())]
     cranks = ("crank", "クランク", "크랭크")
-    assert told and not [text for text in told if any(one in text for one in cranks)]
+    assert texts and not [text for text in texts if any(crank in text for crank in cranks)]
     turned = {text for text in said_by_page() if "crank angle" in text and text in OF_CYCLES}
     assert turned and turned <= wording["words"].keys()
 
@@ -124,5 +126,5 @@ def test_a_page_speaks_of_cranks_again_with_the_next_machine() -> None:
     session.open(opened_example("yamashita-1"))
     (first, *_) = session.state_replies(None)
     assert first.content["wording"] == {"words": {}, "explained": {}}
-    labels = {one["label"] for one in first.content["fields"]}
+    labels = {entry["label"] for entry in first.content["fields"]}
     assert "speed" in labels and "speed of the cycle" not in labels

@@ -90,8 +90,8 @@ def test_an_edit_that_was_only_tried_makes_way(page: Foreground) -> None:
 def test_a_balance_is_computed_beside_while_the_page_answers(page: Foreground) -> None:
     assert kinds(asked(page, "balance")) == ["busy"]
     assert "state" in kinds(asked(page, "outputs", names=["drive_torque"]))
-    told = kinds(done_beside(page))
-    assert told[:2] == ["balanced", "state"]
+    reported = kinds(done_beside(page))
+    assert reported[:2] == ["balanced", "state"]
     assert page.desk.session.history is not None
     assert page.desk.session.history.undo == "balance"
 
@@ -99,19 +99,19 @@ def test_a_balance_is_computed_beside_while_the_page_answers(page: Foreground) -
 def test_a_balance_of_a_machine_that_was_changed_is_refused(page: Foreground) -> None:
     asked(page, "balance")
     asked(page, "edit", label="mass", edits=[MASS])
-    (refusal,) = [one for one in done_beside(page) if one["type"] == "refused"]
+    (refusal,) = [item for item in done_beside(page) if item["type"] == "refused"]
     assert "was changed while it was balanced" in refusal["message"]
 
 
 def test_a_run_is_computed_beside_of_the_design_that_was_shown(page: Foreground) -> None:
     assert kinds(asked(page, "run")) == ["busy"]
     shown = asked(page, "outputs", names=["drive_torque"])[0]
-    (run,) = [one for one in done_beside(page) if one["type"] == "run"]
+    (run,) = [item for item in done_beside(page) if item["type"] == "run"]
     assert run["design"] == page.desk.session.number_of(page.desk.session.current()) > 0
     assert shown["type"] == "state"
     asked(page, "run")
     asked(page, "edit", label="mass", edits=[MASS])
-    (old,) = [one for one in done_beside(page) if one["type"] == "run"]
+    (old,) = [item for item in done_beside(page) if item["type"] == "run"]
     assert old["design"] == run["design"]
     assert old["design"] != page.desk.session.number_of(page.desk.session.current())
 
@@ -144,8 +144,8 @@ def test_what_takes_long_can_be_cancelled(page: Foreground, what: str) -> None:
     page.cancel()
     assert not page.tasks
     *refusals, last = texts(page)
-    assert {one["message"] for one in refusals} == {"cancelled; nothing was changed"}
-    assert [one["seq"] for one in refusals] == [one["seq"] for one in busy]
+    assert {refusal["message"] for refusal in refusals} == {"cancelled; nothing was changed"}
+    assert [refusal["seq"] for refusal in refusals] == [item["seq"] for item in busy]
     assert last == {"type": "told", "seq": busy[-1]["seq"]}
     assert kinds(asked(page, "edit", label="mass", edits=[MASS]))[0] == "state"
 
@@ -165,7 +165,7 @@ def test_what_follows_from_a_design_comes_after_a_cancel_all_the_same() -> None:
 
 def test_downloads_come_from_beside(page: Foreground) -> None:
     assert asked(page, "download", kind="csv") == []
-    (file, *_) = [one for one in done_beside(page) if one["type"] == "file"]
+    (file, *_) = [item for item in done_beside(page) if item["type"] == "file"]
     assert file["name"].endswith(".csv")
 
 
@@ -190,9 +190,9 @@ def test_memory_that_is_used_up_is_a_sentence_here_and_beside(
     replies = done_beside(page)
     monkeypatch.setattr(page.desk, "receive", large)
     replies += asked(page, "edit", label="mass", edits=[MASS])
-    told = [reply["message"] for reply in replies if reply["type"] == "refused"]
-    assert len(told) == 2
-    assert all(one.startswith("not enough memory: needs more, and ") for one in told)
+    reported = [reply["message"] for reply in replies if reply["type"] == "refused"]
+    assert len(reported) == 2
+    assert all(item.startswith("not enough memory: needs more, and ") for item in reported)
 
 
 def test_a_package_is_asked_for_and_the_message_begun_again(
@@ -212,7 +212,7 @@ def test_a_package_is_asked_for_and_the_message_begun_again(
     assert kinds(texts(page))[0] == "state"
     monkeypatch.setattr(page.desk, "receive", lacking)
     page.lacks("scipy")
-    (refusal,) = [one for one in asked(page, "undo") if one["type"] == "refused"]
+    (refusal,) = [item for item in asked(page, "undo") if item["type"] == "refused"]
     assert "this needs scipy" in refusal["message"]
 
 
@@ -223,8 +223,8 @@ def test_numbers_follow_a_drag_more_seldom_and_in_full_where_it_pauses(
         edit = {"set": "links.crank.mass", "text": text}
         return asked(page, "edit", label="mass", edits=[edit], **more)[0]
 
-    def changed(told: dict[str, Any]) -> set[str]:
-        return {*told, *told["since"]["items"]} & {"fields", "figures"}
+    def changed(reported: dict[str, Any]) -> set[str]:
+        return {*reported, *reported["since"]["items"]} & {"fields", "figures"}
 
     numbers = {"fields", "figures"}
     monkeypatch.setattr(worker, "SELDOM", 0.0)
@@ -234,7 +234,7 @@ def test_numbers_follow_a_drag_more_seldom_and_in_full_where_it_pauses(
     assert not changed(moved)
     assert "arrays" in moved["since"]["same"]  # which are as long; the drawing is in them
     assert page.rest()
-    (paused,) = [one for one in texts(page) if one["type"] == "state"]
+    (paused,) = [item for item in texts(page) if item["type"] == "state"]
     assert changed(paused) == numbers
     assert not page.rest()
     assert not changed(dragged("330 g", commit=False))
@@ -256,12 +256,12 @@ def test_a_language_is_spoken_once_its_texts_are_loaded(
     assert page.step() is None
     assert page.missing == "equipoise-ja"
     page.lacks("equipoise-ja")
-    (refusal,) = [one for one in texts(page) if one["type"] == "refused"]
+    (refusal,) = [text for text in texts(page) if text["type"] == "refused"]
     assert "this needs equipoise-ja" in refusal["message"]
     assert asked(page, "undo")[0]["message"] == "there is nothing to undo"
     monkeypatch.undo()
     (spoken,) = [
-        one for one in asked(page, "speak", languages=["ja-JP"]) if one["type"] == "spoken"
+        item for item in asked(page, "speak", languages=["ja-JP"]) if item["type"] == "spoken"
     ]
     assert spoken["words"]["Undo"] == catalogue("ja")["Undo"]
     assert asked(page, "undo")[0]["message"] == catalogue("ja")["there is nothing to undo"]

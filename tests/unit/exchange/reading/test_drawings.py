@@ -33,8 +33,8 @@ DEGREES = 0.4 * 180 / np.pi
 def places(machine: Machine, angle: float = AT) -> dict[str, complex]:
     """Points of a machine in its frame, m."""
     motion = move(machine, [angle])
-    found = {name: complex(point.place[0]) for name, point in motion.points.items()}
-    return found | {name: complex(*place) for name, place in machine.frame.items()}
+    actual = {name: complex(point.place[0]) for name, point in motion.points.items()}
+    return actual | {name: complex(*place) for name, place in machine.frame.items()}
 
 
 def as_dxf(path: Path, machine: Machine, at: dict[str, complex]) -> Path:
@@ -52,7 +52,7 @@ def as_dxf(path: Path, machine: Machine, at: dict[str, complex]) -> Path:
         flat = [(z.real / 0.0254, z.imag / 0.0254) for z in corners]
         layout.add_lwpolyline(flat, close=len(flat) > 2, dxfattribs={"layer": name})
     for place in machine.frame.values():
-        x, y = (one / 0.0254 for one in place)
+        x, y = (item / 0.0254 for item in place)
         space.add_circle((x, y), 0.01, dxfattribs={"layer": FRAME})
     document.saveas(path.with_suffix(".dxf"))
     return path.with_suffix(".dxf")
@@ -86,21 +86,21 @@ def test_a_machine_that_is_drawn_comes_back(name: str, draw: Draw, tmp_path: Pat
     """Shapes of all links to 1e-9, and so does what they do: places a fifth of a turn later."""
     machine = load_linkage(name)
     at = places(machine)
-    found = import_machine(draw(tmp_path / name, machine, at), crank=machine.drive.link)
-    assert found.machine is not None, found.missing
-    assert found.machine == loads_linkage(found.text())
-    assert [*found.machine.links] == [*machine.links]
+    imported = import_machine(draw(tmp_path / name, machine, at), crank=machine.drive.link)
+    assert imported.machine is not None, imported.missing
+    assert imported.machine == loads_linkage(imported.text())
+    assert [*imported.machine.links] == [*machine.links]
     size = max(map(abs, at.values()))
-    drawn = places(found.machine, found.outline.crank_angle)
-    new = {point: min(at, key=lambda one: abs(at[one] - drawn[point])) for point in drawn}
+    drawn = places(imported.machine, imported.outline.crank_angle)
+    new = {point: min(at, key=lambda item: abs(at[item] - drawn[point])) for point in drawn}
     for link in machine.links:
-        own = {new[one]: complex(*z) for one, z in found.machine.links[link].points.items()}
+        own = {new[key]: complex(*z) for key, z in imported.machine.links[link].points.items()}
         assert own.keys() == machine.links[link].points.keys()
-        for one, other in combinations(own, 2):
-            length = abs(at[one] - at[other])
-            assert abs(own[one] - own[other]) == pytest.approx(length, abs=1e-9 * size)
+        for first, other in combinations(own, 2):
+            length = abs(at[first] - at[other])
+            assert abs(own[first] - own[other]) == pytest.approx(length, abs=1e-9 * size)
     later = places(machine, AT + 1.2)
-    for point, place in places(found.machine, found.outline.crank_angle + 1.2).items():
+    for point, place in places(imported.machine, imported.outline.crank_angle + 1.2).items():
         assert abs(place - later[new[point]]) < 1e-8 * size
 
 
@@ -117,15 +117,15 @@ PIVOT = '<circle id="base" cx="0" cy="0" r="2"/>'
 
 def test_what_is_named_a_guide_carries_a_block(tmp_path: Path) -> None:
     guide = '<line class="guide" x1="90" y1="0" x2="150" y2="0"/>'
-    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, guide), speed=3.0)
-    machine = found.machine
+    imported = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, guide), speed=3.0)
+    machine = imported.machine
     assert machine is not None
     assert machine.drive.link == "crank"
     assert machine.drive.speed == 3.0
     (slider,) = machine.sliders
     assert (slider.on, slider.direction) == (FRAME, 0.0)
-    assert found.outline.mobility == 1
-    assert any("masses" in one and "rod" in one for one in found.missing)
+    assert imported.outline.mobility == 1
+    assert any("masses" in item and "rod" in item for item in imported.missing)
 
 
 def test_circles_at_free_ends_are_pivots_where_nothing_marks_the_frame(tmp_path: Path) -> None:
@@ -133,11 +133,11 @@ def test_circles_at_free_ends_are_pivots_where_nothing_marks_the_frame(tmp_path:
     rocker = '<line x1="70" y1="-8.9" x2="70" y2="60"/>'
     rings = [f'<circle cx="{x}" cy="{y}" r="1.2"/>' for x, y in ((0, 0), (70, -10), (70, 60))]
     rod = '<line id="rod" x1="20" y1="-20" x2="120" y2="0"/>'
-    found = import_machine(drawing(tmp_path / "a.svg", CRANK, rod, rocker, *rings))
-    assert found.outline.mobility == 1
-    assert len(found.outline.frame) == 2
-    assert len(found.outline.links["rod"].points) == 3
-    assert found.machine is not None
+    imported = import_machine(drawing(tmp_path / "a.svg", CRANK, rod, rocker, *rings))
+    assert imported.outline.mobility == 1
+    assert len(imported.outline.frame) == 2
+    assert len(imported.outline.links["rod"].points) == 3
+    assert imported.machine is not None
 
 
 def test_a_circle_about_a_whole_link_is_no_pivot(tmp_path: Path) -> None:
@@ -149,12 +149,12 @@ def test_a_circle_about_a_whole_link_is_no_pivot(tmp_path: Path) -> None:
     rocker = '<line id="rocker" x1="120" y1="0" x2="150" y2="-60"/>'
     gear = '<g id="gears rod"><circle cx="24" cy="-20" r="18"/></g>'
     path = drawing(tmp_path / "a.svg", border, wheel, CRANK, ROD, PIVOT, rocker, hub, mark, gear)
-    found = import_machine(path)
-    assert [*found.outline.links][1:] == ["crank", "rod", "rocker"]
-    assert [len(link.points) for link in found.outline.links.values()][1:] == [2, 2, 2]
-    _, (length, _) = found.outline.links["crank"].points.values()
+    imported = import_machine(path)
+    assert [*imported.outline.links][1:] == ["crank", "rod", "rocker"]
+    assert [len(link.points) for link in imported.outline.links.values()][1:] == [2, 2, 2]
+    _, (length, _) = imported.outline.links["crank"].points.values()
     assert length == pytest.approx(0.02 * 2**0.5)
-    assert any("lie wholly in a circle" in one for one in found.notes)
+    assert any("lie wholly in a circle" in note for note in imported.notes)
 
 
 @pytest.mark.parametrize(("guide", "on"), [("guide on rod", "rod"), ("guide", FRAME)])
@@ -169,10 +169,10 @@ def test_a_guide_moves_with_the_link_that_it_names(guide: str, on: str, tmp_path
     assert outline.mobility == (2 if on == "rod" else 1)
 
 
-def test_a_guide_on_no_link_is_told(tmp_path: Path) -> None:
+def test_a_guide_on_no_link_is_reported(tmp_path: Path) -> None:
     slot = '<line id="guide on rood" x1="90" y1="0" x2="150" y2="0"/>'
-    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, slot))
-    assert "'guide on rood' is taken to stand still: no link is called 'rood'" in found.notes
+    imported = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, slot))
+    assert "'guide on rood' is taken to stand still: no link is called 'rood'" in imported.notes
 
 
 @pytest.mark.parametrize("end", [(80, 50, 40), (80, 50, 10)])
@@ -201,9 +201,9 @@ def test_lines_under_one_name_are_one_link(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("unit", "length"), [(None, 1e-3), (0.5e-3, 0.5e-3)])
-def test_a_unit_can_be_told(unit: float | None, length: float, tmp_path: Path) -> None:
-    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT), unit=unit)
-    _, (x, _) = found.outline.links["crank"].points.values()
+def test_a_unit_can_be_reported(unit: float | None, length: float, tmp_path: Path) -> None:
+    imported = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT), unit=unit)
+    _, (x, _) = imported.outline.links["crank"].points.values()
     assert x == pytest.approx(20 * 2**0.5 * length, rel=1e-9)
 
 
@@ -221,8 +221,8 @@ def test_the_scale_of_an_svg_is_that_at_which_it_is_shown(
     more: str, length: float, tmp_path: Path
 ) -> None:
     head = f'width="200mm" viewBox="0 0 200 100" {more}'
-    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, head=head))
-    _, (x, _) = found.outline.links["crank"].points.values()
+    imported = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, head=head))
+    _, (x, _) = imported.outline.links["crank"].points.values()
     assert x == pytest.approx(20 * 2**0.5 * length, rel=1e-9)
 
 
@@ -245,8 +245,8 @@ def test_only_texts_of_the_layer_names_are_names(tmp_path: Path) -> None:
 
 
 def test_the_table_of_links_has_units_in_its_head(tmp_path: Path) -> None:
-    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT))
-    table = next(one for one in found.blocks() if isinstance(one, Table))
+    imported = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT))
+    table = next(block for block in imported.blocks() if isinstance(block, Table))
     assert table.columns[-1].dimension == "mass"
     assert [row[-1] for row in table.rows] == ["open", "open"]
 
@@ -254,11 +254,11 @@ def test_the_table_of_links_has_units_in_its_head(tmp_path: Path) -> None:
 def test_ends_within_a_tolerance_meet(tmp_path: Path) -> None:
     sloppy = '<line id="rod" x1="20.05" y1="-20" x2="120" y2="0"/>'
     path = drawing(tmp_path / "a.svg", CRANK, sloppy, PIVOT)
-    found = import_machine(path)
-    assert found.outline.mobility == 4
-    told = "two ends nearly meet, 0.05 mm apart; --tolerance '0.1 mm' would join them"
-    assert told in found.notes
-    assert any("'rod' is joined to nothing" in one for one in found.notes)
+    imported = import_machine(path)
+    assert imported.outline.mobility == 4
+    text = "two ends nearly meet, 0.05 mm apart; --tolerance '0.1 mm' would join them"
+    assert text in imported.notes
+    assert any("'rod' is joined to nothing" in note for note in imported.notes)
     assert import_machine(path, tolerance=0.1e-3).outline.mobility == 2
 
 
@@ -299,7 +299,7 @@ def test_a_hatching_marks_the_frame(tmp_path: Path) -> None:
         (["<g>" * 120 + "</g>" * 120], {}, {"deepest": 100}),
     ],
 )
-def test_what_cannot_be_read_is_told(
+def test_what_cannot_be_read_is_reported(
     shapes: list[str], told: dict[str, object], expected: dict[str, Any], tmp_path: Path
 ) -> None:
     path = drawing(tmp_path / "a.svg", *shapes)
@@ -315,9 +315,9 @@ def test_entities_are_refused(tmp_path: Path) -> None:
 
 
 def test_unfinished_drawings_leave_lines_to_fill_in(tmp_path: Path) -> None:
-    found: Imported = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT))
-    assert found.machine is None
-    text = found.text()
+    imported: Imported = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT))
+    assert imported.machine is None
+    text = imported.text()
     assert '# link = "crank or rod"' in text
     assert "# missing: joints: the mobility is 2" in text
     whole = text.replace("# [drive]", "[drive]").replace("crank or rod", "crank")
@@ -335,10 +335,10 @@ def test_a_drawing_that_export_wrote_comes_back(name: str, tmp_path: Path) -> No
     """
     machine = load_linkage(name)
     export(machine, tmp_path / "a.dxf", crank_angle=AT)
-    found = import_machine(tmp_path / "a.dxf", crank=machine.drive.link)
-    assert found.machine is not None, found.missing
+    imported = import_machine(tmp_path / "a.dxf", crank=machine.drive.link)
+    assert imported.machine is not None, imported.missing
     size = max(map(abs, places(machine).values()))
     later = places(machine, AT + 0.9)
-    moved = places(found.machine, found.outline.crank_angle + 0.9)
+    moved = places(imported.machine, imported.outline.crank_angle + 0.9)
     for point in later.keys() - machine.frame.keys():
         assert abs(moved[point] - later[point]) < 1e-9 * size

@@ -23,10 +23,10 @@ BEGIN, END = "<!-- readers -->\n", "<!-- /readers -->"
 def table() -> str:
     """Every format, a row each."""
     rows = ["| kind | endings | what is read | options besides |", "|---|---|---|---|"]
-    for one in FORMATS.values():
-        endings = ", ".join(f"`{ending}`" for ending in one.endings)
-        options = ", ".join(f"`--{name}`" for name in one.takes)
-        rows.append(f"| {one.title} | {endings} | {one.holds} | {options} |")
+    for value in FORMATS.values():
+        endings = ", ".join(f"`{ending}`" for ending in value.endings)
+        options = ", ".join(f"`--{name}`" for name in value.takes)
+        rows.append(f"| {value.title} | {endings} | {value.holds} | {options} |")
     return "\n".join(rows) + "\n"
 
 
@@ -79,13 +79,13 @@ PIECES = ['"[^"]*"', r"-?\d+\.?\d*", "<[^>]*>", "[^<>]"]
 
 def worse(text: str, luck: random.Random) -> str:
     """With a value, a number or a few signs otherwise, or an element gone or doubled."""
-    kind = luck.choice([one for one in PIECES if re.search(one, text)])
-    found = luck.choice([*re.finditer(kind, text)])
+    kind = luck.choice([piece for piece in PIECES if re.search(piece, text)])
+    result = luck.choice([*re.finditer(kind, text)])
     other = luck.choice([*re.finditer(kind, text)]).group()
-    new = luck.choice([other, luck.choice(JUNK), found.group() * 2, ""])
+    new = luck.choice([other, luck.choice(JUNK), result.group() * 2, ""])
     if kind[0] == '"':
         new = f'"{new.strip(chr(34))}"'
-    return text[: found.start()] + new + text[found.end() :]
+    return text[: result.start()] + new + text[result.end() :]
 
 
 @pytest.mark.exhaustive(but=["a.xml", "a.linkage2", "a.urdf"])
@@ -103,12 +103,12 @@ def test_a_sample_is_read_and_none_that_is_damaged_ends_otherwise_than_in_a_sent
             text = worse(text, luck)
         path.write_text(signed(name, text), encoding="utf-8")
         try:
-            found = eq.import_machine(path)
+            imported = eq.import_machine(path)
         except eq.EquipoiseError:
             continue
         whole += 1
-        if found.machine is not None:
-            assert eq.loads(found.text()) == found.machine
+        if imported.machine is not None:
+            assert eq.loads(imported.text()) == imported.machine
     assert whole
 
 
@@ -181,7 +181,7 @@ def test_other_files_are_refused(
 def test_a_library_that_is_not_installed(
     name: str, expected: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in [one for one in sys.modules if one.partition(".")[0] == expected["library"]]:
+    for module in [item for item in sys.modules if item.partition(".")[0] == expected["library"]]:
         monkeypatch.setitem(sys.modules, module, None)
     monkeypatch.setitem(sys.modules, expected["library"], None)
     (tmp_path / name).write_text("<svg/>" if name == "a.svg" else "ENTITIES")

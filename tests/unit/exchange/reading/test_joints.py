@@ -39,7 +39,7 @@ def linkage2(rod: str = "", more: str = "") -> str:
         at = f'x="{x * 96 / 25.4!r}" y="{y * 96 / 25.4!r}"'
         lines.append(f'<connector id="{ids[name]}" name="{name}" layer="16" {at}{anchor}{driven}/>')
     for number, (name, points) in enumerate(LINKS.items()):
-        parts = "".join(f'<connector id="{ids[one]}"/>' for one in points)
+        parts = "".join(f'<connector id="{ids[point]}"/>' for point in points)
         lines.append(f'<Link id="{number}" name="{name}" layer="16" {rod}>{parts}</Link>')
     lines.append('<Link id="7"><connector id="0"/><connector id="3"/></Link>')
     lines.append('<Link id="8" layer="1"><connector id="0"/><connector id="4"/></Link>')
@@ -50,13 +50,13 @@ def test_a_file_of_linkage_is_read(tmp_path: Path) -> None:
     """Its lengths to 1e-9, and its input turns clockwise."""
     path = tmp_path / "a.linkage2"
     path.write_text(linkage2())
-    found = import_machine(path)
-    machine = found.machine
+    imported = import_machine(path)
+    machine = imported.machine
     assert machine is not None
-    assert machine == loads_linkage(found.text())
+    assert machine == loads_linkage(imported.text())
     assert machine.drive.speed == pytest.approx(-15 * pi / 30)
     assert {name: "".join(link.points) for name, link in machine.links.items()} == LINKS
-    drawn = move(machine, [found.outline.crank_angle]).points
+    drawn = move(machine, [imported.outline.crank_angle]).points
     for name, (x, y) in PLACES.items():
         place = complex(*machine.frame[name]) if name in "AD" else drawn[name].place[0]
         assert abs(place - complex(x, y) / 1e3) < 1e-10
@@ -71,10 +71,12 @@ def test_connectors_that_slide_have_blocks(tmp_path: Path) -> None:
     end = '<connector id="9" anchor="true" x="500" y="0"/></linkage2>'
     path = tmp_path / "a.linkage2"
     path.write_text(text.replace(line, new).replace("</linkage2>", end))
-    found = import_machine(path)
-    (slider,) = found.outline.sliders
+    imported = import_machine(path)
+    (slider,) = imported.outline.sliders
     assert (slider.point, slider.on, slider.through, slider.direction) == ("D", FRAME, "A", 0.0)
-    assert found.outline.mobility == 2  # the rocker is free about D, and the block along the line
+    assert (
+        imported.outline.mobility == 2
+    )  # the rocker is free about D, and the block along the line
 
 
 @pytest.mark.parametrize(
@@ -126,15 +128,15 @@ def pmks(slider: bool = False, forces: str = "") -> str:
 def test_a_file_or_address_of_pmks_is_read(prefix: str, tmp_path: Path) -> None:
     path = tmp_path / ("a.txt" if prefix else "a.pmks")
     path.write_text(prefix + pmks())
-    found = import_machine(path)
-    machine = found.machine
+    imported = import_machine(path)
+    machine = imported.machine
     assert machine is not None
-    assert machine == loads_linkage(found.text())
+    assert machine == loads_linkage(imported.text())
     assert machine.drive.link == "crank"
     assert machine.drive.speed == pytest.approx(-20 * pi / 30)
     assert {name: "".join(link.points) for name, link in machine.links.items()} == LINKS
     assert machine.frame["D"] == pytest.approx((0.11, 0.0))
-    assert any("masses are left out" in one for one in found.notes)
+    assert any("masses are left out" in note for note in imported.notes)
 
 
 def test_a_piston_of_pmks_slides_on_the_frame(tmp_path: Path) -> None:

@@ -80,7 +80,7 @@ def four_bar() -> str:
 
 
 def _row(values: np.ndarray) -> str:
-    return " ".join(repr(float(one)) for one in values)
+    return " ".join(repr(float(value)) for value in values)
 
 
 SLIDER = """
@@ -106,9 +106,9 @@ SLIDER = """
 """
 
 
-def imported(path: Path, text: str, **told: object) -> Imported:
+def imported(path: Path, text: str, **reported: object) -> Imported:
     path.write_text(text)
-    return import_machine(path, **told)  # type: ignore[arg-type]
+    return import_machine(path, **reported)  # type: ignore[arg-type]
 
 
 def angles(motion: Motion, link: str) -> np.ndarray:
@@ -116,20 +116,22 @@ def angles(motion: Motion, link: str) -> np.ndarray:
     count = motion.crank_angle.size
     if link == FRAME:
         return np.zeros((count, 3))
-    one = motion.links[link]
-    parts = (one.angle, one.angular_velocity, one.angular_acceleration)
+    first = motion.links[link]
+    parts = (first.angle, first.angular_velocity, first.angular_acceleration)
     return np.column_stack([np.broadcast_to(part, count) for part in parts])
 
 
-def coordinates(machine: Machine, found: Imported, tree: dict[str, str], sign: float) -> np.ndarray:
+def coordinates(
+    machine: Machine, result: Imported, tree: dict[str, str], sign: float
+) -> np.ndarray:
     """Hinges of a tree, link by its parent, (N, links, 3), from where it is drawn."""
     motion = move(machine, 12)
-    drawn = {name: pose.angle for name, pose in found.outline.poses.items()} | {FRAME: 0.0}
+    drawn = {name: pose.angle for name, pose in result.outline.poses.items()} | {FRAME: 0.0}
     columns = []
     for link, parent in tree.items():
-        one = angles(motion, link) - angles(motion, parent)
-        one[:, 0] -= drawn[link] - drawn[parent]
-        columns.append(sign * one)
+        first = angles(motion, link) - angles(motion, parent)
+        first[:, 0] -= drawn[link] - drawn[parent]
+        columns.append(sign * first)
     return np.stack(columns, 1)
 
 
@@ -137,27 +139,29 @@ def torque_by_mujoco(text: str, states: np.ndarray, speed: float) -> tuple[np.nd
     """Torque of the drive by the work of the open tree, and by how much loops stand open, m."""
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
-    found, gap = [], 0.0
-    for one in states:
-        data.qpos[:], data.qvel[:], data.qacc[:] = one.T
+    actual, gap = [], 0.0
+    for state in states:
+        data.qpos[:], data.qvel[:], data.qacc[:] = state.T
         data.eq_active[:] = 1
         mujoco.mj_fwdPosition(model, data)
         gap = max(gap, float(np.abs(data.efc_pos).max()))
         data.eq_active[:] = 0
         mujoco.mj_inverse(model, data)
-        found.append(data.qfrc_inverse @ data.qvel / speed)
-    return np.array(found), gap
+        actual.append(data.qfrc_inverse @ data.qvel / speed)
+    return np.array(actual), gap
 
 
 def test_a_standing_four_bar_of_shapes_does_what_mujoco_does(tmp_path: Path) -> None:
     text = four_bar()
-    found = imported(tmp_path / "a.xml", text)
-    machine = found.machine
-    assert machine is not None, found.missing
+    result = imported(tmp_path / "a.xml", text)
+    machine = result.machine
+    assert machine is not None, result.missing
     assert (machine.drive.link, machine.drive.speed) == ("crank", pytest.approx(5.0))
-    assert machine == loads_linkage(found.text())
+    assert machine == loads_linkage(result.text())
     assert machine.gravity == pytest.approx((0.3, -9.7))
-    states = coordinates(machine, found, {"crank": FRAME, "coupler": "crank", "rocker": FRAME}, 1.0)
+    states = coordinates(
+        machine, result, {"crank": FRAME, "coupler": "crank", "rocker": FRAME}, 1.0
+    )
     states[:, 1:] *= -1  # their axes are reversed
     torque, gap = torque_by_mujoco(text, states, machine.drive.speed)
     ours = forces(move(machine, 12)).drive_torque
@@ -167,14 +171,14 @@ def test_a_standing_four_bar_of_shapes_does_what_mujoco_does(tmp_path: Path) -> 
 
 def test_a_body_on_a_slide_and_a_hinge_does_what_mujoco_does(tmp_path: Path) -> None:
     """Lies flat: gravity acts across the plane.  A body without joints is part of its parent."""
-    found = imported(tmp_path / "a.xml", SLIDER, speed=8.0)
-    machine = found.machine
-    assert machine is not None, found.missing
+    result = imported(tmp_path / "a.xml", SLIDER, speed=8.0)
+    machine = result.machine
+    assert machine is not None, result.missing
     assert machine.gravity == (0.0, 0.0)
     assert [*machine.links] == ["crank", "rod", "slide carrier"]
     assert machine.links["rod"].mass == pytest.approx(0.32)
     tree = {"crank": FRAME, "slide carrier": FRAME, "rod": FRAME}
-    states = coordinates(machine, found, tree, 1.0)
+    states = coordinates(machine, result, tree, 1.0)
     motion = move(machine, 12)
     point = motion.points[machine.sliders[0].point]
     parts = (point.place - 0.1, point.velocity, point.acceleration_vector)
@@ -214,25 +218,25 @@ ROBOT = """
 """
 
 
-def test_a_robot_whose_loop_is_told_does_what_pinocchio_does(tmp_path: Path) -> None:
+def test_a_robot_whose_loop_is_exported_does_what_pinocchio_does(tmp_path: Path) -> None:
     pin = pytest.importorskip("pinocchio")
-    found = imported(tmp_path / "a.urdf", ROBOT, pin=["rod_end = rocker_end"], speed=6.0)
-    machine = found.machine
-    assert machine is not None, found.missing
+    result = imported(tmp_path / "a.urdf", ROBOT, pin=["rod_end = rocker_end"], speed=6.0)
+    machine = result.machine
+    assert machine is not None, result.missing
     assert machine.drive.link == "crank"
     tree = {"crank": FRAME, "rod": "crank", "rocker": FRAME}
-    states = coordinates(machine, found, tree, 1.0)
+    states = coordinates(machine, result, tree, 1.0)
     states[:, 1] *= -1
     model = pin.buildModelFromXML(ROBOT)
     data = model.createData()
     model.gravity.linear = np.array([0, 0, -9.80665])
     ours = forces(move(machine, 12)).drive_torque
     assert [*model.names][1:] == ["a", "b", "d"]
-    for one, torque in zip(states, ours, strict=True):
-        q = np.concatenate([[cos(one[0, 0]), sin(one[0, 0])], one[1, :1],
-                            [cos(one[2, 0]), sin(one[2, 0])]])  # fmt: skip
-        needs = pin.rnea(model, data, q, one[:, 1], one[:, 2])
-        assert needs @ one[:, 1] / 6.0 == pytest.approx(torque, rel=1e-9, abs=1e-12)
+    for state, torque in zip(states, ours, strict=True):
+        q = np.concatenate([[cos(state[0, 0]), sin(state[0, 0])], state[1, :1],
+                            [cos(state[2, 0]), sin(state[2, 0])]])  # fmt: skip
+        needs = pin.rnea(model, data, q, state[:, 1], state[:, 2])
+        assert needs @ state[:, 1] / 6.0 == pytest.approx(torque, rel=1e-9, abs=1e-12)
 
 
 GEARED = """
@@ -271,13 +275,13 @@ def test_joints_that_are_tied_are_gears(tmp_path: Path) -> None:
 WRIST = '<joint name="wrist"/>'
 
 
-def test_masses_that_are_not_told_stay_open(tmp_path: Path) -> None:
+def test_masses_that_are_not_given_stay_open(tmp_path: Path) -> None:
     """Of a mesh without an inertial; what hangs fixed on a link of URDF weighs nothing then."""
     rod = '</body>\n    <body name="rod"'
     mesh = changed(rod, f'<body><geom mesh="m"/></body>{rod}')
-    found = imported(tmp_path / "a.xml", mesh)
-    assert found.massless == ["crank"]
-    assert any("meshes" in one for one in found.notes)
+    result = imported(tmp_path / "a.xml", mesh)
+    assert result.massless == ["crank"]
+    assert any("meshes" in note for note in result.notes)
     looks = "<visual><geometry><sphere radius='1'/></geometry></visual>"
     seen = ROBOT.replace('<link name="rod_end"/>', f'<link name="rod_end">{looks}</link>')
     assert imported(tmp_path / "a.urdf", seen).massless == []
@@ -343,38 +347,38 @@ def test_what_export_wrote_for_mujoco_comes_back(name: str, tmp_path: Path) -> N
     """All figures to 1e-9, with gears, sliders and springs; axes and names are the file's."""
     machine = load_linkage(name)
     export(machine, tmp_path / "a.xml", crank_angle=0.3)
-    found = import_machine(tmp_path / "a.xml").machine
-    assert found is not None
-    assert found.drive.speed == pytest.approx(machine.drive.speed, rel=1e-12)
-    assert found.links.keys() == machine.links.keys()
-    old, new = forces(move(machine)), forces(move(found))
+    actual = import_machine(tmp_path / "a.xml").machine
+    assert actual is not None
+    assert actual.drive.speed == pytest.approx(machine.drive.speed, rel=1e-12)
+    assert actual.links.keys() == machine.links.keys()
+    old, new = forces(move(machine)), forces(move(actual))
     least = 10 * machine.mass * size_of(machine.links[machine.drive.link].points)  # some are 0
-    for one, other in (
+    for first, other in (
         (old.drive_torque, new.drive_torque),
         (old.shaking_force.x, new.shaking_force.x),
         (old.shaking_force.y, new.shaking_force.y),
         (old.shaking_moment, new.shaking_moment),
     ):
-        assert np.abs(other - one).max() <= 1e-9 * max(np.abs(one).max(), least)
+        assert np.abs(other - first).max() <= 1e-9 * max(np.abs(first).max(), least)
 
 
 def test_a_support_can_be_held_still(tmp_path: Path) -> None:
     """Rows on one shaft are linkages of one crank then, whose masses add up."""
     machine = load_linkage("riding-transplanter")
     export(machine, tmp_path / "a.xml")
-    found = import_machine(tmp_path / "a.xml", frame=["support"]).machine
-    assert found is not None
-    assert len(found.links) == 1 + len(machine.rows) * (len(machine.links) - 1)
-    assert found.mass == pytest.approx(len(machine.rows) * machine.mass, rel=1e-9)
+    actual = import_machine(tmp_path / "a.xml", frame=["support"]).machine
+    assert actual is not None
+    assert len(actual.links) == 1 + len(machine.rows) * (len(machine.links) - 1)
+    assert actual.mass == pytest.approx(len(machine.rows) * machine.mass, rel=1e-9)
 
 
-def test_a_support_that_is_not_held_still_is_told(tmp_path: Path) -> None:
+def test_a_support_that_is_not_held_still_is_reported(tmp_path: Path) -> None:
     export(load_linkage("sieve"), tmp_path / "a.xml")
-    told = "'support' moves freely in the plane; --frame 'support' holds it still"
-    assert told in import_machine(tmp_path / "a.xml").notes
+    text = "'support' moves freely in the plane; --frame 'support' holds it still"
+    assert text in import_machine(tmp_path / "a.xml").notes
     held = import_machine(tmp_path / "a.xml", frame=["support"])
     assert held.machine is not None
-    assert told not in held.notes
+    assert text not in held.notes
 
 
 @pytest.mark.parametrize("name", ["slider-crank-engine", "yamashita-1"])
@@ -383,16 +387,16 @@ def test_what_export_wrote_as_urdf_comes_back(name: str, tmp_path: Path) -> None
     machine = load_linkage(name)
     left = export(machine, tmp_path / "a.urdf", crank_angle=0.3)
     cut = import_machine(tmp_path / "a.urdf")
-    assert any(one.startswith("no loop is closed; --pin") for one in cut.notes)
-    pins = [one.split('"')[1] for one in left if "--pin" in one]
-    found = import_machine(tmp_path / "a.urdf", pin=pins, crank=machine.drive.link).machine
-    assert found is not None
-    assert found.links.keys() == machine.links.keys()
-    assert found.mass == pytest.approx(machine.mass, rel=1e-12)
-    for link in found.links:
-        lengths, before = (_lengths(each, link) for each in (found, machine))
+    assert any(note.startswith("no loop is closed; --pin") for note in cut.notes)
+    pins = [item.split('"')[1] for item in left if "--pin" in item]
+    actual = import_machine(tmp_path / "a.urdf", pin=pins, crank=machine.drive.link).machine
+    assert actual is not None
+    assert actual.links.keys() == machine.links.keys()
+    assert actual.mass == pytest.approx(machine.mass, rel=1e-12)
+    for link in actual.links:
+        lengths, before = (_lengths(each, link) for each in (actual, machine))
         for length in lengths:
-            assert min(abs(length - one) for one in before) <= 1e-9 * max(before)
+            assert min(abs(length - item) for item in before) <= 1e-9 * max(before)
 
 
 def _lengths(machine: Machine, link: str) -> list[float]:
