@@ -31,11 +31,13 @@ from equipoise.i18n import Note, in_english, localized, say, speaking, spoken
 class Paste:
     """Lines that can be pasted into the file.
 
-    lines : as they stand in the file.  leading : a template that leads from the ``{sentence}`` of
-    the error to these lines, where they stand below it.  values : of its other placeholders.
+    lines : as they stand in the file, those with remarks as Notes.
+    leading : a template that leads from the ``{sentence}`` of the error to these lines, where they
+        stand below it.
+    values : of its other placeholders.
     """
 
-    lines: tuple[str, ...]
+    lines: tuple[Note | str, ...]
     leading: str
     values: Mapping[str, Any] = field(default_factory=dict)
 
@@ -75,8 +77,8 @@ class EquipoiseError(Exception):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """Lines that can be pasted into the file."""
-        return () if self.paste is None else self.paste.lines
+        """Lines that can be pasted into the file, with remarks in the language that is spoken."""
+        return () if self.paste is None else tuple(map(localized, self.paste.lines))
 
     @property
     def topic(self) -> str:

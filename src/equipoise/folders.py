@@ -53,6 +53,8 @@ def reason(error: Exception) -> Note | str:
         return error.note
     if isinstance(error, FileNotFoundError) and is_nowhere():
         return NOWHERE
+    if error.args and isinstance(error.args[0], Note):
+        return error.args[0]
     message = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return message[:1].lower() + message[1:]  # names in it stay as they are
 
@@ -127,7 +129,7 @@ class Folder:
         descriptor = self.open(name, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
         with open(descriptor, "rb") as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                raise OSError(errno.EINVAL, f"{name} is no regular file")
+                raise OSError(Note("{name} is no regular file", name=name))
             return file.read()
 
     def entries(self) -> Iterator[tuple[str, os.stat_result]]:
@@ -231,5 +233,5 @@ def _parts(name: str) -> list[str]:
     parts = name.split("/")
     for part in parts:
         if part in {"", ".", ".."} or "\0" in part or (not RELATIVE and set(part) & set("\\:")):
-            raise ValueError(f"{name!r:.60} is not the name of a file in a folder")
+            raise ValueError(Note("{name!r:.60} is not the name of a file in a folder", name=name))
     return parts

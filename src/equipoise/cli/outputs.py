@@ -174,7 +174,7 @@ def wrote_pictures(number: int, folder: str) -> str:
     return say("wrote {count} pictures to {folder}", count=number, folder=folder)
 
 
-def boxes(signs: str, otherwise: str) -> list[str]:
+def boxes(signs: str, otherwise: Note) -> list[str]:
     """Which signs no font of this computer has, if there are any, and what to do."""
     letters = "".join(dict.fromkeys(signs))[:20]
     if not signs:
@@ -183,7 +183,7 @@ def boxes(signs: str, otherwise: str) -> list[str]:
         "note: no font has {signs}, so boxes are drawn; install one such as Noto Sans CJK, "
         "or {cure}",
         signs=letters,
-        cure=otherwise,
+        cure=localized(otherwise),
     )
     return [missing]
 
@@ -197,7 +197,7 @@ def write_pictures(
 
     write_all(folder, {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()})
     signs = "" if kind == "svg" else "".join(map(unwritten, figures.values()))
-    return [*boxes(signs, "give --format svg"), wrote_pictures(len(figures), folder)]
+    return [*boxes(signs, Note("give --format svg")), wrote_pictures(len(figures), folder)]
 
 
 def write_model(
@@ -245,7 +245,7 @@ FILE_ENDINGS = frozenset((*PICTURE_ENDINGS, ".csv", ".json", ".toml", ".html"))
 """Of names that nobody means for a folder that is to be made."""
 
 
-def refuse_file_name(option: str, path: str, what: str) -> None:
+def refuse_file_name(option: str, path: str, what: Note) -> None:
     """Refuse the name of a file for a folder that is not there.
 
     what : goes into the folder.
@@ -266,7 +266,8 @@ def refuse_file_name(option: str, path: str, what: str) -> None:
 
 def check_folder(option: str, path: str) -> None:
     """Pictures need a folder, or a place where one can be made."""
-    refuse_file_name(option, path, "into which all pictures go, and their kind by --format")
+    content = Note("into which all pictures go, and their kind by --format")
+    refuse_file_name(option, path, content)
     above = os.path.abspath(path)
     while not os.path.lexists(above) and os.path.dirname(above) != above:
         above = os.path.dirname(above)

@@ -293,7 +293,7 @@ def report(
         for path in paths:
             yield wrote(path)
             if kind_of(path) == "pdf":
-                yield from boxes(boxed_in_pdf(document), "read the report as .html")
+                yield from boxes(boxed_in_pdf(document), Note("read the report as .html"))
 
     return CommandResult(save=lines)
 

@@ -48,7 +48,7 @@ def site(
     from equipoise.web.site import write_site
 
     folder = out or "site"
-    refuse_file_name("--out", folder, "into which all files of the site go")
+    refuse_file_name("--out", folder, Note("into which all files of the site go"))
     try:
         node = None if no_compile else find_node()
         written = write_site(folder, runtime or "node_modules/pyodide", wheels, docs, node)

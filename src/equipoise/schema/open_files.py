@@ -183,10 +183,10 @@ TABLES: dict[FileKind, set[str]] = {
     "study": {"model", "outputs", "sampling"},
 }
 """Kind of file -> tables and keys by which it is recognized."""
-OTHERS: dict[FileKind, str] = {
-    "linkage": "the file of a linkage, without a table [shaft]; use `equipoise analyze FILE`",
-    "tool": "the file of a tool, with a table [shaft]; use `equipoise tool FILE`",
-    "study": "a study, with tables [[vary]] and [[outputs]]; use `equipoise sweep FILE`",
+OTHERS: dict[FileKind, Note] = {
+    "linkage": Note("the file of a linkage, without a table [shaft]; use `equipoise analyze FILE`"),
+    "tool": Note("the file of a tool, with a table [shaft]; use `equipoise tool FILE`"),
+    "study": Note("a study, with tables [[vary]] and [[outputs]]; use `equipoise sweep FILE`"),
 }
 """What is said of a file where one of another kind is wanted."""
 

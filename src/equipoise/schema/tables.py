@@ -409,7 +409,7 @@ def _is_number(cell: str) -> bool:
 
 TABLES = CsvTable.kinds
 """The class of each sort of table."""
-OF_TIME = (
+OF_TIME = Note(
     "a load goes with the crank, at whatever speed that turns; give crank_angle [deg] instead, "
     "of which 100 rpm make 600 in a second"
 )

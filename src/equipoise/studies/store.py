@@ -345,24 +345,28 @@ def _opened(path: Path, folder: Folder, group: Any) -> Store:
     arrays = {name: group[name] for name in (*numbers, *outputs, REASON)}
     size, chunk = arrays[REASON].shape[0], arrays[REASON].chunks[0]
     if any((a.shape, a.chunks) != ((size,), (chunk,)) for a in arrays.values()):
-        raise ValueError("its arrays differ in their number of designs or in their chunks")
+        raise ValueError(Note("its arrays differ in their number of designs or in their chunks"))
     agreed = {"chunk": chunk, "numbers": [*numbers], "outputs": [*outputs]}
     agreed["title"] = worded(study["title"])
     for name, wanted in agreed.items():
         if about[name] != wanted:
-            raise ValueError(f"{name}: got {about[name]!r:.60}, and its study has {wanted!r:.60}")
+            sentence = "{name}: got {given!r:.60}, and its study has {wanted!r:.60}"
+            raise ValueError(Note(sentence, name=name, given=about[name], wanted=wanted))
     designs = study["sampling"]["designs"]
     if designs not in (None, size):
-        raise ValueError(f"it has places for {size} designs, and its study has {designs!r:.60}")
+        sentence = "it has places for {size} designs, and its study has {designs!r:.60}"
+        raise ValueError(Note(sentence, size=size, designs=designs))
     for wish in wishes:
         if any(wish.wrong_asks()):
-            raise ValueError(f"output {wish.name} has no limits or aims that can be read")
+            raise ValueError(
+                Note("output {name} has no limits or aims that can be read", name=wish.name)
+            )
     content = loads(folder.read(ABOUT))
     if about[MARK] == LAYOUT or CHECKSUM in about:
         if about[CHECKSUM] != checksum_of(content):
-            raise ValueError(f"{ABOUT} is not as it was written")
+            raise ValueError(Note("{name} is not as it was written", name=ABOUT))
         if not all(CODEC in _codecs(array) for array in arrays.values()):
-            raise ValueError("its chunks have no checksums")
+            raise ValueError(Note("its chunks have no checksums"))
     return Store(
         path=path,
         size=size,
@@ -405,7 +409,7 @@ def _texts(packed: str) -> dict[str, str]:
     """Texts by name, from JSON."""
     texts = loads(packed)
     if not all(isinstance(text, str) for text in texts.values()):
-        raise ValueError("what is kept of the study or of the versions is no text")
+        raise ValueError(Note("what is kept of the study or of the versions is no text"))
     return dict(texts)
 
 

@@ -42,7 +42,7 @@ from support.own_kinds import (
     designs_by_numbers,
     drawn,
     exported,
-    found_in_the_gallery,
+    is_searched_in_the_gallery,
     machine_with,
     on_the_page,
     own_outputs,
@@ -262,7 +262,7 @@ def test_a_page_has_its_tool() -> None:
 
 
 def test_the_gallery_is_searched_by_its_word() -> None:
-    found_in_the_gallery(MACHINE, "rollers")
+    is_searched_in_the_gallery(MACHINE, "rollers")
     assert sections(Rolled)[2].lower() == "gears, belts, racks, cams, rollers"
 
 

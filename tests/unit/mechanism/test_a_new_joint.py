@@ -30,7 +30,7 @@ from support.own_kinds import (
     designs_by_numbers,
     drawn,
     exported,
-    found_in_the_gallery,
+    is_searched_in_the_gallery,
     machine_with,
     on_the_page,
     own_outputs,
@@ -178,7 +178,7 @@ def test_the_page_has_its_form_and_its_numbers() -> None:
 
 
 def test_the_gallery_is_searched_by_its_word() -> None:
-    found_in_the_gallery(MACHINE, "straight slots")
+    is_searched_in_the_gallery(MACHINE, "straight slots")
 
 
 def test_formats_without_it_say_so(tmp_path: Path) -> None:

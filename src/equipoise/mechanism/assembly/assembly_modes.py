@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.errors import EquipoiseError, ModelError, Paste
+from equipoise.errors import EquipoiseError, ModelError, Paste, noted
 from equipoise.i18n import Note, series, to_say
 from equipoise.mechanism.assembly.builder import Builder, Group, Outer
 from equipoise.mechanism.assembly.joints import Structure
@@ -49,7 +49,8 @@ SMALL = 1e4
 BARE = re.compile("[A-Za-z0-9_-]+")
 
 LEADING = to_say("{sentence}, such as")
-TURNS = "the crank turns fully with this side alone"
+TURNS = Note("the crank turns fully with this side alone")
+IN_POSITION, AS_DRAWN = Note("as in [position]"), Note("as drawn")
 
 
 @dataclass
@@ -58,18 +59,18 @@ class Choice:
 
     inner : name of the inner joint.  words : of the two sides.  meaning : what they say.
     given : what the file has.
-    side : the number of the word that is taken.  why : what decides it, empty where nothing does.
-    gives : what each side leads to, empty where the links cannot be joined.
+    side : the number of the word that is taken.  why : what decides it; None where nothing does.
+    gives : what each side leads to; None where the links cannot be joined.
     group : with the side that is taken.
     """
 
     inner: str
     words: tuple[str, str]
-    meaning: str
+    meaning: Note
     given: str | None
     side: int
-    why: str
-    gives: tuple[str, ...]
+    why: Note | None
+    gives: tuple[Note | None, ...]
     group: Group
 
     @property
@@ -88,16 +89,24 @@ class Choice:
             return Note("{joint} is missing", joint=self.joint)
         return Note("{joint} got {given!r}", joint=self.joint, given=self.given)
 
-    def lines(self, taken: str) -> Iterator[str]:
+    def lines(self, taken: str) -> Iterator[Note]:
         """Lines for the table of sides; both sides where the assembly mode is undetermined.
 
         taken : entries of earlier joints on which what these sides give depends.
         """
-        yield f"# {self.meaning}"
+        yield Note("# {remark}", remark=self.meaning)
         for k in (self.side,) if self.why else (0, 1):
-            given = self.gives[k] and f"{self.gives[k]}{taken and f', with {taken}'}"
-            text = "; ".join(filter(None, [given, self.why]))
-            yield f"{'' if k == self.side else '# or '}{self.entry(k)}{text and f'  # {text}'}"
+            entry: Note | str = self.entry(k)
+            if k != self.side:
+                entry = Note("# or {entry}", entry=entry)
+            remark = self.gives[k]
+            if remark and taken:
+                remark = Note("{place}, with {entries}", place=remark, entries=taken)
+            if remark and self.why:
+                remark = Note("{first}; {second}", first=remark, second=self.why)
+            if remark := remark or self.why:
+                entry = Note("{entry}  # {remark}", entry=entry, remark=remark)
+            yield noted(entry)
 
     def entry(self, k: int) -> str:
         """In the table of sides, with one of the words."""
@@ -109,15 +118,15 @@ def key_text(name: str) -> str:
     return name if BARE.fullmatch(name) else json.dumps(name, ensure_ascii=False)
 
 
-def chosen(builder: Builder, group: Group, assumed: Mapping[str, tuple[int, str]]) -> Choice:
+def chosen(
+    builder: Builder, group: Group, assumed: Mapping[str, tuple[int, Note | None]]
+) -> Choice:
     """The side of a group that fits, and else the one that is assumed, or the first."""
     both = [_with_side(group, word) for word in (1.0, -1.0)]
-    side, why = assumed.get(group.joint, (0, ""))
+    side, why = assumed.get(group.joint, (0, None))
     position = builder.machine.position
-    evidence = (
-        [] if position is None else [(position.crank_angle, "as in [position]", _in_position)]
-    )
-    for theta, text, distances in (*evidence, (0.0, "as drawn", _as_drawn)):
+    evidence = [] if position is None else [(position.crank_angle, IN_POSITION, _in_position)]
+    for theta, text, distances in (*evidence, (0.0, AS_DRAWN, _as_drawn)):
         states = [_state(builder, item, theta) for item in both]
         gives = tuple(_given_by(builder, group, state, theta) for state in states)
         off = [max(distances(builder, group, state), default=np.inf) for state in states]
@@ -151,29 +160,33 @@ def _state(builder: Builder, group: Group, theta: float) -> State:
     return {name: np.ravel(value)[-1] for name, value in state.items()}
 
 
-def _given_by(builder: Builder, group: Group, state: State, theta: float) -> str:
-    """Where the joint is, or how a guide stands; nothing where the links cannot be joined."""
+def _given_by(builder: Builder, group: Group, state: State, theta: float) -> Note | None:
+    """Where the joint is, or how a guide stands; None where the links cannot be joined."""
     assert group.margin is not None
     if not state[group.margin] > STRETCHED:
-        return ""
-    at = _pose(builder.machine, theta)
+        return None
+    pose = _pose(builder.machine, theta)
     name = f"p({group.joint})"
     if name in group.motion[-1].outputs:  # type: ignore[attr-defined]
         x, y = (number(1e3 * part, SMALL * 1e3 * builder.size()) for part in _parts(state[name]))
-        return f"at ({x}, {y}) mm {at}"
+        return Note("at ({x}, {y}) mm {pose}", x=x, y=y, pose=pose)
     turn = degrees(np.angle(state[f"u({group.links[-1]})"]))
-    return f"{group.links[-1]} at {number(turn, 360.0)} deg {at}"
+    link = group.links[-1]
+    return Note("{link} at {angle} deg {pose}", link=link, angle=number(turn, 360.0), pose=pose)
 
 
-def _pose(machine: Machine, theta: float) -> str:
+def _pose(machine: Machine, theta: float) -> Note:
     """What poses the driven links: of those that are pushed the angle at which they are looked at,
     since what their strokes make of it is known only once the linkage is assembled.
     """
     if machine.turning is None:
-        return f"at crank angle {number(degrees(theta))} deg"
+        return Note("at crank angle {angle} deg", angle=number(degrees(theta)))
     angles = {link: float(angle) for link, (angle, *_) in machine.turning.moved(theta).items()}
-    posed = (f"{link} at {number(degrees(angle), 360.0)} deg" for link, angle in angles.items())
-    return f"with {', '.join(posed)}"
+    posed = [
+        Note("{link} at {angle} deg", link=link, angle=number(degrees(angle), 360.0))
+        for link, angle in angles.items()
+    ]
+    return Note("with {links}", links=series(posed))
 
 
 def _parts(place: complex) -> tuple[float, float]:
@@ -211,7 +224,7 @@ def _as_drawn(builder: Builder, group: Group, state: State) -> Iterator[float]:
 
 def decided(
     choices: Sequence[Choice], turns_fully: Callable[[Mapping[str, str]], Any]
-) -> dict[str, tuple[int, str]]:
+) -> dict[str, tuple[int, Note | None]]:
     """By inner joint, the sides without which the crank cannot turn fully, where nothing else
     decides.
 
@@ -232,7 +245,7 @@ def decided(
     pairs = {}
     for entry, taken_sides in zip(undecided, zip(*good, strict=True), strict=False):
         alone = len(set(taken_sides)) == 1 and len(good) < 2 ** len(undecided)
-        pairs[entry.inner] = (taken_sides[0], TURNS if alone else "")
+        pairs[entry.inner] = (taken_sides[0], TURNS if alone else None)
     return pairs
 
 

@@ -137,7 +137,7 @@ class Builder:
     points: set[str] = field(default_factory=set)
     motion: list[Step] = field(default_factory=list)
     sides: set[str] = field(default_factory=set)
-    missing: dict[str, tuple[tuple[str, str], str, str | None]] = field(default_factory=dict)
+    missing: dict[str, tuple[tuple[str, str], Note, str | None]] = field(default_factory=dict)
     running: set[str] = field(default_factory=set)
     given_state: State = field(default_factory=dict)
     mode: str | None = None
@@ -213,7 +213,7 @@ class Builder:
         names = self.pinned.union(slider.name for slider in self.machine.sliders)
         return "" if slider.point in names else slider.point
 
-    def side(self, joint: str, words: tuple[str, str], meaning: str, point: str = "") -> float:
+    def side(self, joint: str, words: tuple[str, str], meaning: Note, point: str = "") -> float:
         """+1 or -1 for the side on which the file assembles a dyad; +1 where that is missing.
 
         point : stands for the joint where the file has no entry of the joint's own name.

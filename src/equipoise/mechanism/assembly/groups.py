@@ -16,7 +16,7 @@ import numpy as np
 
 from equipoise.decompositions import lstsq
 from equipoise.errors import MobilityError, ModelError, MotionError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.assembly_modes import Closed, closed_by, parallel_by, pointed
 from equipoise.mechanism.assembly.builder import (
     Builder,
@@ -43,6 +43,9 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.machine import Position, Slider
 
 AHEAD = ("forward", "backward")
+AHEAD_OR_BEHIND = to_say(
+    "{joint} lies ahead of or behind {point}, seen along the direction of the guide"
+)
 NEAR_PIVOT = 1e-3
 """Distance, over the size of the machine, at which a block counts as near its guide's pivot."""
 
@@ -100,7 +103,12 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     link, other = first.link, second.link
     if closed := parallel_by(builder, first, second, pin):
         return _through(builder, first, second, pin, closed)
-    meaning = f"{pin} lies left or right of the line from {first.point} to {second.point}"
+    meaning = Note(
+        "{joint} lies left or right of the line from {first} to {second}",
+        joint=pin,
+        first=first.point,
+        second=second.point,
+    )
     side = builder.side(pin, ("left", "right"), meaning)
     arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
     places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
@@ -120,7 +128,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
 def _through(builder: Builder, first: Outer, second: Outer, pin: str, closed: Closed) -> Group:
     """Two links and three pins that close a four-bar of equal opposite sides."""
     link, other, pivot = first.link, second.link, closed.pivot
-    meaning = f"opposite links at {pin} stay parallel, or the four-bar is crossed"
+    meaning = Note("opposite links at {joint} stay parallel, or the four-bar is crossed", joint=pin)
     side = builder.side(pin, MODES, meaning)
     arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
     reach = builder.reach(closed.here, pivot)
@@ -140,7 +148,7 @@ def _through(builder: Builder, first: Outer, second: Outer, pin: str, closed: Cl
 def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
     """A pinned link and a link on a known guide, joined by a pin."""
     link, other, guide = pinned.link, sliding.link, sliding.rail
-    meaning = f"{pin} lies ahead of or behind {pinned.point}, seen along the guide's direction"
+    meaning = Note(AHEAD_OR_BEHIND, joint=pin, point=pinned.point)
     side = builder.side(pin, AHEAD, meaning)
     arm = builder.arm(link, pinned.point, pin)
     shift = guide.turn * builder.arm(other, guide.point, pin)
@@ -160,7 +168,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
     """Two pinned links, of which the first slides on the second."""
     link, on = block.link, other.link
     guide = Guide.seen_from(slider, on)
-    meaning = f"{block.point} lies ahead of or behind {other.point}, along the guide's direction"
+    meaning = Note(AHEAD_OR_BEHIND, joint=block.point, point=other.point)
     short = builder.short(slider)
     side = builder.side(slider.name, AHEAD, meaning, short)
     from_pivot = builder.arm(on, other.point, guide.base) / guide.along

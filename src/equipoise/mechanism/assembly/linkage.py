@@ -345,7 +345,7 @@ def _grouped(
     machine: Machine,
     joints: Structure,
     start: Mapping[str, Any] = NOTHING,
-    assumed: Mapping[str, tuple[int, str]] = NOTHING,
+    assumed: Mapping[str, tuple[int, Note | None]] = NOTHING,
     tried: Mapping[str, str] = NOTHING,
 ) -> Grouping:
     """What the drives determine.

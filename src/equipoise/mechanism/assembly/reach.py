@@ -545,7 +545,7 @@ def with_cures(linkage: Assembled, error: MotionError) -> MotionError:
     if reach.is_point:
         return error
     swing = swing_within(linkage, reach)
-    lines = [motion_line(swing.law)]
+    motion = motion_line(swing.law)
     cure: Note = SWING_ALONE if machine.drive.motor or machine.drive.flywheel else SWING
     if not isinstance(error, ChangePointError):
         message = Note(WITH_CURE, reason=reach.note, cure=cure)
@@ -556,15 +556,17 @@ def with_cures(linkage: Assembled, error: MotionError) -> MotionError:
             stuck: MotionError = RangeError(message, error.ranges, reason=reach.note)
         else:
             stuck = type(error)(message, reason=reach.note)
-        return stuck.with_paste(_paste(lines, swing))
+        return stuck.with_paste(_paste([motion], swing))
+    lines: list[Note | str] = [motion]
     if error.joint:
         cure = MODE_OR_SWING
         entry = key_text(error.joint)
         given = machine.assembly.get(error.joint, "")
+        instead = Note('in [assembly], instead of "{given}"', given=given)
         lines = [
-            f'{entry} = "{MODES[0]}"  # in [assembly], instead of "{given}"',
-            f'# or {entry} = "{MODES[1]}"',
-            f"# or, in [drive]: {lines[0]}",
+            Note("{entry}  # {remark}", entry=f'{entry} = "{MODES[0]}"', remark=instead),
+            Note("# or {entry}", entry=f'{entry} = "{MODES[1]}"'),
+            Note("# or, in [drive]: {entry}", entry=motion),
         ]
     message = Note(WITH_CURE, reason=error.reason, cure=cure)
     stuck = ChangePointError(message, error.crank_angle, error.joint, reason=error.reason)
@@ -580,7 +582,7 @@ def _in_its_slot(machine: Machine, error: MotionError) -> MotionError:
     return BranchError(at_place(place, Note(BEYOND, crank_angle=degrees(error.crank_angle))))
 
 
-def _paste(lines: Sequence[str], swing: SwingWithin) -> Paste:
+def _paste(lines: Sequence[Note | str], swing: SwingWithin) -> Paste:
     return Paste(tuple(lines), LEADING, {"room": swing.room})
 
 
