@@ -32,7 +32,6 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import MassError
 from equipoise.keys import with_fields
 from equipoise.mechanism.assembly.contacts import Displacement, RelationCall, RollingCall
-from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loopgroup import LoopForces
 from equipoise.mechanism.assembly.loops import LoopGroup
@@ -49,7 +48,15 @@ from equipoise.mechanism.assembly.steps import (
     u,
 )
 from equipoise.mechanism.dynamics.forces import inertia_moved, massless
-from equipoise.mechanism.dynamics.loads import against_soil, load_at
+from equipoise.mechanism.dynamics.loads import (
+    axis_of,
+    load_at,
+    load_on_links,
+    own_axis,
+    preload_on_links,
+    preload_rate,
+    soil_at,
+)
 from equipoise.mechanism.dynamics.out_of_plane import contacts, statics
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.indicators import loads_of
@@ -75,31 +82,20 @@ def trace_load(trace: Trace, number: int, load: Load) -> Iterator[HoldingWrench]
     """What holds the load of this number, from 1 on, at each of its ends on a link: first that on
     the loaded one.
     """
-    parts = (
+    x, y, torque = (
         trace.row(f"load {number} {key}", partial(_part_of_load, load, key))
         for key in ("x", "y", "torque")
     )
-    x, y, torque = parts
-    force = VectorTerm(x, y)
-    acts_at = None if load.point is None else trace.point(load.link, load.point)[0]
-    if load.toward is not None:
-        end = TracedBodies(trace, f"loads[{number}]").point(load.reaction or FRAME, load.toward)
-        force = force * ((end - acts_at) * (1 / kernels.length(end - acts_at)))
-        acts_at = end
-    if load.axes is not None:
-        force = force * trace.state[u(load.link)[0]]
+    own = 1.0 + 0j
     if load.axes == "slider":
 
         def turn(linkage: Linkage) -> Any:
-            machine = linkage.machine
-            return np.exp(1j * machine.loads[number - 1].axes_angle(machine.sliders))
+            return own_axis(linkage.machine.loads[number - 1], linkage.machine)
 
-        force = force * trace.slot(f"load {number} axes", turn, vector=True)
-    yield holding_wrench(trace, load.link, load.point, force, torque)
-    if (other := load.reaction_link) is not None:
-        anchor = trace.body(other)[0]
-        at = anchor if acts_at is None else acts_at
-        yield other, *kernels.load_demand(anchor, at, -force, -torque)
+        own = trace.slot(f"load {number} axes", turn, vector=True)
+    axis = axis_of(load, TracedBodies(trace, f"loads[{number}]"), own)
+    for acting in load_on_links(load, VectorTerm(x, y) * axis, torque):
+        yield holding_wrench(trace, *acting)
 
 
 def _part_of_load(load: Load, key: str, theta: Array) -> Array:
@@ -116,11 +112,10 @@ def trace_soil(trace: Trace) -> Iterator[tuple[str, str, HoldingWrench]]:
     forward = trace.slot("forward", _forward)
     given = {part: trace.slot(f"soil {part}", partial(_of_soil, part)) for part in PARTS}
     soil = with_fields(planting.soil, **given)
+    at = TracedBodies(trace, "planting")
     for arm in planting.every_arm:
         link = tip_link(trace.machine, arm.tip)
-        place, first, _ = trace.point(link, arm.tip)
-        over_ground = first * trace.rate("speed") + forward
-        force = against_soil(soil, surface - place.imag, over_ground)
+        force = soil_at(soil, at, (link, arm.tip), surface, forward)
         yield link, arm.tip, holding_wrench(trace, link, arm.tip, force, 0.0)
 
 
@@ -216,26 +211,25 @@ def trace_preload(trace: Trace, number: int) -> Iterator[HoldingWrench]:
     coupling = trace.machine.couplings[number]
     if not coupling.preload:
         return
-    driver, driven = coupling_pins(trace.linkage.joints, coupling)
 
     def rate(linkage: Linkage) -> Any:
-        points = linkage.machine.points_of(coupling.carrier)
-        distance = abs(planar(points[driven]) - planar(points[driver]))
-        return linkage.machine.couplings[number].preload_rate(distance)
+        return preload_rate(linkage, linkage.machine.couplings[number])
 
-    ends = [trace.point(coupling.carrier, pin)[0] for pin in (driver, driven)]
-    force = (ends[1] - ends[0]) * trace.slot(f"preload rate({number})", rate)
-    for link, pin, pulled in ((coupling.driver, driver, force), (coupling.driven, driven, -force)):
-        if link != FRAME:
-            yield holding_wrench(trace, link, pin, pulled, 0.0)
+    at = TracedBodies(trace, coupling.name)
+    rate_term = trace.slot(f"preload rate({number})", rate)
+    for acting in preload_on_links(trace.linkage, coupling, rate_term, at):
+        yield holding_wrench(trace, *acting)
 
 
 def holding_wrench(
     trace: Trace, link: str, point: str | None, force: Any, torque: Any
 ) -> HoldingWrench:
     """What holds a force at a point of a link, and a torque on it."""
-    anchor = trace.body(link)[0]
-    at = anchor if point is None else trace.point(link, point)[0]
+    at = anchor = trace.body(link)[0]
+    if point is not None:
+        bodies = trace.machine.bodies
+        body = link if point in bodies[link] else next(b for b in bodies if point in bodies[b])
+        at = TracedBodies(trace, point).point(body, point)
     return link, *kernels.load_demand(anchor, at, force, torque)
 
 

@@ -12,14 +12,16 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.joints import coupling_pins
-from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import u
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.assembly.steps import planar
 from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
+from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.field import Soil
 from equipoise.mechanism.parts.loads import MEETING as LOAD_MEETING
 from equipoise.mechanism.parts.loads import ROUNDING
@@ -75,11 +77,31 @@ def load_axis(motion: Motion, where: str, load: Load | TimedLoad) -> Any:
     ModelError : the points between which it acts meet.
     """
     if load.toward is not None and load.point is not None:
-        ends = load.link, load.point, load.toward
-        return direction_between(motion, where, ends, LOAD_MEETING)
-    if load.axes is None:
-        return 1.0
-    return motion.state[u(load.link)[0]] * np.exp(1j * load.axes_angle(motion.machine.sliders))
+        check_apart(motion, where, (load.link, load.point, load.toward), LOAD_MEETING)
+    return axis_of(load, PlacedBodies(motion, where), own_axis(load, motion.machine))
+
+
+def own_axis(load: Load | TimedLoad, machine: Machine) -> Any:
+    """Unit vector of the x axis of a load in the axes of its link; 1 where that does not matter."""
+    return np.exp(1j * load.axes_angle(machine.sliders)) if load.axes else 1.0
+
+
+def axis_of(load: Load | TimedLoad, at: Placed, own: Any) -> Any:
+    """Unit vector of the x axis of a load in the frame; own : in its link's axes, by `own_axis`."""
+    if load.toward is not None and load.point is not None:
+        along = at.point(load.bearer or FRAME, load.toward) - at.point(load.link, load.point)
+        return along * (1 / kernels.length(along))
+    return 1.0 if load.axes is None else at.turn(load.link) * own
+
+
+def load_on_links(load: Load, force: Any, torque: Any) -> Iterator[Acting]:
+    """Link, point, force and torque of a load at each of its ends on a link.
+
+    force, torque : on the loaded link, in the frame, by arrays or terms.
+    """
+    yield load.link, load.point, force, torque
+    if load.reaction_link is not None:  # in the same line, so at the same place where no other
+        yield load.reaction_link, load.toward or load.point, -force, -torque
 
 
 def _interpolated(load: Load, table: LoadTable, crank_angle: Array) -> list[Array]:
@@ -259,11 +281,31 @@ def acting_preloads(motion: Motion) -> Iterator[tuple[str, list[Acting]]]:
     """
     for coupling in motion.machine.couplings:
         if coupling.preload:
-            driver, driven = coupling_pins(motion.linkage.joints, coupling)
-            apart = motion.point(driven).place - motion.point(driver).place
-            pull = apart * coupling.preload_rate(abs(apart))
-            ends = (coupling.driver, driver, pull), (coupling.driven, driven, -pull)
-            yield coupling.driven, [(*end, 0.0) for end in ends if end[0] != FRAME]
+            rate = preload_rate(motion.linkage, coupling)
+            at = PlacedBodies(motion, coupling.name)
+            yield coupling.driven, [*preload_on_links(motion.linkage, coupling, rate, at)]
+
+
+def preload_rate(linkage: Linkage, coupling: Coupling) -> float:
+    """Force of a coupling's preload over the distance of its pins, N/m."""
+    points = linkage.machine.points_of(coupling.carrier)
+    driver, driven = (planar(points[pin]) for pin in coupling_pins(linkage.joints, coupling))
+    rate: float = coupling.preload_rate(abs(driven - driver))
+    return rate
+
+
+def preload_on_links(
+    linkage: Linkage, coupling: Coupling, rate: Any, at: Placed
+) -> Iterator[Acting]:
+    """Link, point, force and torque of a coupling's preload at each of its ends on a link.
+
+    rate : as of `preload_rate`.
+    """
+    driver, driven = coupling_pins(linkage.joints, coupling)
+    pull = (at.point(coupling.carrier, driven) - at.point(coupling.carrier, driver)) * rate
+    for link, pin, force in ((coupling.driver, driver, pull), (coupling.driven, driven, -pull)):
+        if link != FRAME:
+            yield link, pin, force, 0.0
 
 
 def inner_demands(motion: Motion) -> dict[str, Demand]:
@@ -318,10 +360,7 @@ def _acting(motion: Motion, counts: Callable[[Load], bool]) -> Iterator[Acting]:
     for where, load in numbered("loads", loads_of(motion.linkage)):
         if not counts(load):
             continue
-        force, torque = acting_load(motion, where, load)
-        yield load.link, load.point, force, torque
-        if load.reaction_link is not None:  # in the same line, so at the same place where no other
-            yield load.reaction_link, load.toward or load.point, -force, -torque
+        yield from load_on_links(load, *acting_load(motion, where, load))
 
 
 def soil_force(motion: Motion, tip: str | None = None, crank_speed: Array | None = None) -> Array:
@@ -339,11 +378,20 @@ def soil_force(motion: Motion, tip: str | None = None, crank_speed: Array | None
     planting = motion.machine.planting
     if planting is None or planting.soil is None:
         return np.zeros(len(motion.crank_angle), complex)
-    point = motion.point(tip or planting.tip)
-    depth = surface_of(motion.machine) - point.y
     speed = motion.speed if crank_speed is None else crank_speed
-    over_ground = point.velocity + planting.forward(speed)
-    return np.asarray(against_soil(planting.soil, depth, over_ground))
+    surface, forward = surface_of(motion.machine), planting.forward(speed)
+    at, name = PlacedBodies(motion, "planting"), tip or planting.tip
+    of_link = tip_link(motion.machine, name), name
+    return np.asarray(soil_at(planting.soil, at, of_link, surface, forward))
+
+
+def soil_at(soil: Soil, at: Placed, tip: tuple[str, str], surface: Any, forward: Any) -> Any:
+    """Force of the soil on a tip, N, complex, by arrays (N,) or terms.
+
+    tip : its link and its name.  surface : height of the soil in the frame, m.
+    forward : velocity of the machine over ground, m/s.
+    """
+    return against_soil(soil, surface - at.point(*tip).imag, at.velocity(*tip) + forward)
 
 
 def against_soil(soil: Soil, depth: Any, over_ground: Any) -> Any:
