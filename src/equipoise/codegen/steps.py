@@ -57,7 +57,14 @@ from equipoise.mechanism.dynamics.loads import (
     preload_rate,
     soil_at,
 )
-from equipoise.mechanism.dynamics.out_of_plane import contacts, statics
+from equipoise.mechanism.dynamics.out_of_plane import (
+    contacts,
+    held_across,
+    held_between,
+    held_preload,
+    statics,
+)
+from equipoise.mechanism.dynamics.reactions import Acting
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import ROUNDING, StateBodies, track_of
@@ -78,10 +85,8 @@ HoldingWrench = tuple[str, Any, Any]
 """Link, and force and moment that hold something against it."""
 
 
-def trace_load(trace: Trace, number: int, load: Load) -> Iterator[HoldingWrench]:
-    """What holds the load of this number, from 1 on, at each of its ends on a link: first that on
-    the loaded one.
-    """
+def trace_load(trace: Trace, number: int, load: Load) -> list[Acting]:
+    """What the load of this number, from 1 on, exerts at each of its ends on a link."""
     x, y, torque = (
         trace.row(f"load {number} {key}", partial(_part_of_load, load, key))
         for key in ("x", "y", "torque")
@@ -94,8 +99,7 @@ def trace_load(trace: Trace, number: int, load: Load) -> Iterator[HoldingWrench]
 
         own = trace.slot(f"load {number} axes", turn, vector=True)
     axis = axis_of(load, TracedBodies(trace, f"loads[{number}]"), own)
-    for acting in load_on_links(load, VectorTerm(x, y) * axis, torque):
-        yield holding_wrench(trace, *acting)
+    return [*load_on_links(load, VectorTerm(x, y) * axis, torque)]
 
 
 def _part_of_load(load: Load, key: str, theta: Array) -> Array:
@@ -103,8 +107,8 @@ def _part_of_load(load: Load, key: str, theta: Array) -> Array:
     return np.asarray({"x": force.real, "y": force.imag, "torque": torque}[key] + 0.0 * theta)
 
 
-def trace_soil(trace: Trace) -> Iterator[tuple[str, str, HoldingWrench]]:
-    """Link and tip of each planting arm, with what holds the soil's force there."""
+def trace_soil(trace: Trace) -> Iterator[Acting]:
+    """What the soil exerts on the tip of each planting arm."""
     planting = trace.machine.planting
     if planting is None or planting.soil is None:
         return
@@ -116,7 +120,7 @@ def trace_soil(trace: Trace) -> Iterator[tuple[str, str, HoldingWrench]]:
     for arm in planting.every_arm:
         link = tip_link(trace.machine, arm.tip)
         force = soil_at(soil, at, (link, arm.tip), surface, forward)
-        yield link, arm.tip, holding_wrench(trace, link, arm.tip, force, 0.0)
+        yield link, arm.tip, force, 0.0
 
 
 def _forward(linkage: Linkage) -> Any:
@@ -183,15 +187,14 @@ def trace_limits(trace: Trace) -> None:
             element.values(at)
 
 
-def trace_element(trace: Trace, table: str, number: int) -> Iterator[HoldingWrench]:
-    """What holds a force element at each of its ends on a link.
+def trace_element(trace: Trace, table: str, number: int) -> Iterator[Acting]:
+    """What a force element exerts at each of its ends on a link.
 
     table, number : its list in the file, and its place there from 0.
     """
     element, at = traced_element(trace, table, number)
     assert isinstance(element, ForceElement)
-    for link, point, force, torque in element.on_links(at):
-        yield holding_wrench(trace, link, point, force, torque)
+    yield from element.on_links(at)
 
 
 def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, TracedBodies]:
@@ -206,8 +209,8 @@ def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, Trac
     return element, TracedBodies(trace, name)
 
 
-def trace_preload(trace: Trace, number: int) -> Iterator[HoldingWrench]:
-    """What holds the preload of the coupling of this number, if it has one."""
+def trace_preload(trace: Trace, number: int) -> Iterator[Acting]:
+    """What the preload of the coupling of this number exerts on its links, if it has one."""
     coupling = trace.machine.couplings[number]
     if not coupling.preload:
         return
@@ -217,8 +220,7 @@ def trace_preload(trace: Trace, number: int) -> Iterator[HoldingWrench]:
 
     at = TracedBodies(trace, coupling.name)
     rate_term = trace.slot(f"preload rate({number})", rate)
-    for acting in preload_on_links(trace.linkage, coupling, rate_term, at):
-        yield holding_wrench(trace, *acting)
+    yield from preload_on_links(trace.linkage, coupling, rate_term, at)
 
 
 def holding_wrench(
@@ -233,17 +235,52 @@ def holding_wrench(
     return link, *kernels.load_demand(anchor, at, force, torque)
 
 
-def trace_across(
-    trace: Trace,
-    loads: Sequence[Any],
-    soil: Sequence[tuple[str, str, HoldingWrench]],
-    springs: Sequence[Any],
-) -> None:
+@dataclass(frozen=True)
+class TracedForces:
+    """What acts on the links of a linkage beside its joints, in terms.
+
+    loads : each with what it exerts at its ends.
+    soil, elements : what the soil, and what force elements exert.
+    preloads : driven link of each coupling, with what its preload exerts.
+    """
+
+    loads: Sequence[tuple[Load, list[Acting]]]
+    soil: Sequence[Acting]
+    elements: Sequence[Acting]
+    preloads: Sequence[tuple[str, list[Acting]]]
+
+    @classmethod
+    def of(cls, trace: Trace) -> TracedForces:
+        machine = trace.machine
+        loads = enumerate(loads_of(trace.linkage), 1)
+        couplings = enumerate(machine.couplings)
+        return cls(
+            [(load, trace_load(trace, k, load)) for k, load in loads],
+            [*trace_soil(trace)],
+            [
+                acting
+                for table, number, _ in machine.force_elements
+                for acting in trace_element(trace, table, number)
+            ],
+            [(coupling.driven, [*trace_preload(trace, k)]) for k, coupling in couplings],
+        )
+
+    @property
+    def outer(self) -> list[Acting]:
+        """What comes from outside of the machine."""
+        loads = (acting for load, acting in self.loads if load.reaction is None)
+        return [*chain(*loads), *self.soil]
+
+    @property
+    def every(self) -> list[Acting]:
+        """All of it, on every link."""
+        loads, preloads = (acting for _, acting in self.loads), (ends for _, ends in self.preloads)
+        return [*chain(*loads, self.soil, self.elements, *preloads)]
+
+
+def trace_across(trace: Trace, acting: TracedForces) -> None:
     """Add ``Q(link)``, the sum of planes times forces that each link needs, and ``rocking
     moment`` and ``frame rocking moment`` of all of them.
-
-    loads : the force that holds each on the loaded link.  springs : that of force elements and then
-        of preloads of couplings, at each end on a link.  soil : as of `trace_soil`.
     """
     machine, state = trace.machine, trace.state
     moving, needed = [], {}
@@ -260,37 +297,16 @@ def trace_across(
         moving.append(inertia)
         needed[link] = [inertia, weight]
     state["rocking moment"] = _about(moving)
-    of_links = [*chain(*needed.values())]
-    acting = [
-        (load, _plane(trace, load.link, load.point) * force)
-        for force, load in zip(loads, machine.loads, strict=True)
-    ]
-    outer = [force for load, force in acting if load.reaction is None]
-    for link, tip, (_, force, _) in soil:
-        outer.append(_plane(trace, link, tip) * force)
-        needed[link].append(outer[-1])
+    of_links, plane = [*chain(*needed.values())], partial(_plane, trace)
+    outer = (value for _, value in held_across(acting.outer, plane))
     state["frame rocking moment"] = _about((*of_links, *outer))
-    for load, force in acting:
-        needed[load.link].append(force)
-        if load.reaction_link is not None:
-            needed[load.reaction_link].append(-force)
-    ends: list[tuple[str, str, str | None]]
-    ends = [
-        (body, body, dict(element.points).get(body))
-        for *_, element in machine.force_elements
-        for body in element.bodies
-        if body != FRAME
-    ]
-    ends += [
-        (link, coupling.driven, None)
-        for coupling in machine.couplings
-        for link in (coupling.driver, coupling.driven)
-        if coupling.preload and link != FRAME
-    ]
-    for force, (link, on, point) in zip(springs, ends, strict=True):
-        needed[link].append(_plane(trace, on, point) * force)
-    for link, forces in needed.items():
-        state[f"Q({link})"] = sum(forces)
+    held = [held_across(acting.soil, plane), held_across(acting.elements, plane)]
+    held += [held_between(load, ends, plane) for load, ends in acting.loads]
+    held += [held_preload(driven, ends, plane) for driven, ends in acting.preloads]
+    for link, value in chain(*held):
+        needed[link].append(value)
+    for link, values in needed.items():
+        state[f"Q({link})"] = sum(values)
 
 
 def _about(forces: Iterable[Any]) -> Any:
@@ -495,31 +511,15 @@ def trace_demands(trace: Trace) -> None:
         raise MassError(missing)
     machine, state = trace.machine, trace.state
     moving, weights = trace_inertia(trace)
-    every = enumerate(loads_of(trace.linkage), 1)
-    ends_of_loads = [[*trace_load(trace, k, load)] for k, load in every]
-    loads = [ends[0] for ends in ends_of_loads]
-    opposite = [wrench for ends in ends_of_loads for wrench in ends[1:]]
-    springs = [
-        wrench
-        for table, number, _ in machine.force_elements
-        for wrench in trace_element(trace, table, number)
-    ]
-    springs += [wrench for k in range(len(machine.couplings)) for wrench in trace_preload(trace, k)]
-    in_soil = [*trace_soil(trace)]
+    acting = TracedForces.of(trace)
     if machine.has_planes:
-        element_forces = ([force for _, force, _ in wrenches] for wrenches in (loads, springs))
-        trace_across(trace, next(element_forces), in_soil, next(element_forces))
+        trace_across(trace, acting)
     _on_frame(trace, "shaking", moving)
-    each = zip(machine.loads, loads, strict=True)
-    soil = [wrench for *_, wrench in in_soil]
-    outer = [wrench for load, wrench in each if load.reaction is None] + soil
+    outer = [holding_wrench(trace, *item) for item in acting.outer]
     _on_frame(trace, "frame", [*moving, *weights, *outer])
+    wrenches = [*moving, *weights, *(holding_wrench(trace, *item) for item in acting.every)]
     for link in trace.linkage.joints.bodies[1:]:
-        parts = [
-            wrench
-            for wrench in (*moving, *weights, *loads, *opposite, *soil, *springs)
-            if wrench[0] == link
-        ]
+        parts = [wrench for wrench in wrenches if wrench[0] == link]
         force, moment = demand_names(link)
         state[force] = sum(force for _, force, _ in parts)
         state[moment] = sum(moment for _, _, moment in parts)

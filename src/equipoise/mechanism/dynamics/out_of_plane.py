@@ -15,9 +15,10 @@ are.  Everything here is linear in the demands, as the forces in the plane are.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,8 @@ from equipoise.mechanism.dynamics.loads import (
     acting_elements,
     acting_load,
     acting_preloads,
-    outer_loads,
+    load_on_links,
+    soil_loads,
 )
 from equipoise.mechanism.dynamics.reactions import (
     PUSH,
@@ -260,7 +262,9 @@ def _flat(machine: Any, link: str, joints: Sequence[BodyContact]) -> bool:
         body.plane_of(item.point) for item in machine.loads if item.link == link and item.point
     }
     planes |= {
-        load_plane(machine, item) for item in machine.loads if item.reaction == link and item.point
+        plane_in(machine, item.link, item.point)
+        for item in machine.loads
+        if item.reaction == link and item.point
     }
     ends = (end for *_, element in machine.force_elements for end in element.points)
     planes |= {body.plane_of(point) for on, point in ends if on == link}
@@ -386,42 +390,61 @@ def masses_across(motion: Motion) -> tuple[dict[str, Any], dict[str, Any]]:
     return inertia, weights
 
 
+PlaneOf = Callable[[str, str | None], Any]
+"""The plane of a link's point, m, or of the link: a number, or a term."""
+HeldAcross = Iterable[tuple[str, Any]]
+"""Links with what holds a force in its plane: minus the plane times the force, N m, complex."""
+
+
+def held_across(acting: Iterable[Acting], plane: PlaneOf) -> HeldAcross:
+    """What holds forces at points of links, each in the plane of its point."""
+    for link, point, force, _ in acting:
+        yield link, -(plane(link, point) * force)
+
+
+def held_between(load: Load, acting: Iterable[Acting], plane: PlaneOf) -> HeldAcross:
+    """What holds a load at both of its ends, in the plane of the loaded point."""
+    return held_across(acting, lambda link, point: plane(load.link, load.point))
+
+
+def held_preload(driven: str, acting: Iterable[Acting], plane: PlaneOf) -> HeldAcross:
+    """What holds a coupling's preload at both of its ends, in the plane of the driven link."""
+    return held_across(acting, lambda link, point: plane(driven, None))
+
+
+def _summed(*held: HeldAcross) -> dict[str, Any]:
+    values = dict[str, Any]()
+    for link, value in chain(*held):
+        values[link] = values.get(link, 0.0) + value
+    return values
+
+
+def plane_in(machine: Any, link: str, point: str | None) -> float:
+    """Plane of a link's point, m, or of the link."""
+    plane: float = machine.links[link].plane_of(point)
+    return plane
+
+
 def pushes_across(motion: Motion, acting: Iterable[Acting]) -> dict[str, Any]:
     """What holds forces at points of links."""
-    links, values = motion.machine.links, dict[str, Any]()
-    for link, point, force, _ in acting:
-        values[link] = values.get(link, 0.0) - links[link].plane_of(point) * force
-    return values
+    return _summed(held_across(acting, partial(plane_in, motion.machine)))
 
 
 def loads_across(motion: Motion) -> dict[str, Any]:
     """What holds loads and the soil: both ends of a load between links in its own plane."""
-    values = pushes_across(motion, outer_loads(motion))
+    plane = partial(plane_in, motion.machine)
+    held = [held_across(soil_loads(motion), plane)]
     for where, load in numbered("loads", loads_of(motion.linkage)):
-        if load.reaction is None:
-            continue
-        plane, (force, _) = load_plane(motion.machine, load), acting_load(motion, where, load)
-        values[load.link] = values.get(load.link, 0.0) - plane * force
-        if load.reaction_link is not None:
-            other = load.reaction_link
-            values[other] = values.get(other, 0.0) + plane * force
-    return values
-
-
-def load_plane(machine: Any, load: Load) -> float:
-    """Plane of the line of a load, m."""
-    plane: float = machine.links[load.link].plane_of(load.point)
-    return plane
+        ends = load_on_links(load, *acting_load(motion, where, load))
+        held.append(held_between(load, ends, plane))
+    return _summed(*held)
 
 
 def springs_across(motion: Motion) -> dict[str, Any]:
     """What holds force elements, and preloads of couplings, in the plane of their driven link."""
-    values = pushes_across(motion, acting_elements(motion))
-    for driven, ends in acting_preloads(motion):
-        plane = motion.machine.links[driven].plane
-        for link, _, force, _ in ends:
-            values[link] = values.get(link, 0.0) - plane * force
-    return values
+    plane = partial(plane_in, motion.machine)
+    preloads = (held_preload(driven, ends, plane) for driven, ends in acting_preloads(motion))
+    return _summed(held_across(acting_elements(motion), plane), *preloads)
 
 
 def apart(
