@@ -17,7 +17,7 @@ from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.joints import pin_radii
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
-from equipoise.quantities import DIGITS, clean, display, format_exact
+from equipoise.quantities import DIGITS, clean, format_exact
 from equipoise.symbols.constraints import constraint_marks
 from equipoise.symbols.part_signs import Surroundings, in_order, load_line_marks, signs_of
 from equipoise.symbols.scene import DriveSign, GuideSign, Scene, Wheel, bodies_of, wheels_of
@@ -29,7 +29,7 @@ from equipoise.web.fields import Field, Measure, Scale, constrained_place, measu
 from equipoise.web.messages import DraftEdit, Entry, JsonObject, Setting
 from equipoise.web.replies import FloatBlock
 from equipoise.web.sketch import Sketch, lacking
-from equipoise.web.state import turning
+from equipoise.web.state import state_content, turning
 from equipoise.web.structure_edits import moved, with_constraints_met
 from equipoise.web.tables import entered
 
@@ -361,28 +361,9 @@ def state_of_sketch(incomplete: Incomplete, scale: Scale) -> tuple[JsonObject, b
     sketch, block = incomplete.design, FloatBlock()
     scene = scene_of(sketch)
     moves_of(scene, block)
-    length = display("length", [sketch.size])
-    content: JsonObject = {
-        "name": sketch.name,
-        "title": sketch.rest["title"],
-        "description": sketch.rest.get("description", ""),
-        "angles": 1,
-        "turns": 1,
-        "speed": 0,
-        "length": {"unit": length.name, "factor": length.factor},
-        "lacking": incomplete.lacks,
-        "scene": stage_of(scene, [*sketch.places]),
-        "first": "squares",
-        "least": 0,
-        "before": False,
-        "compared": False,
-        "points": [],
-        "record": None,
-        "arrows_at": None,
-        "arrows": [],
-        "status": status_of_sketch(incomplete),
-        "fields": [scale.field_message(item) for item in fields_of_sketch(sketch).values()],
-        **{key: [] for key in ("traced", "figures", "outputs", "charts", "orders", "notes")},
-    }
+    status, stage = status_of_sketch(incomplete), stage_of(scene, [*sketch.places])
+    content = state_content(sketch.name, sketch.rest, sketch.size, status, stage)
+    content["fields"] = [scale.field_message(item) for item in fields_of_sketch(sketch).values()]
+    content["figures"] = []
     content["arrays"] = block.placement
     return content, block.data

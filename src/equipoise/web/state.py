@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +29,39 @@ from equipoise.web.view_state import arrows_of, points_of, record_values
 
 MOST_ORDER = 20
 """Highest order of the spectra."""
+
+
+def state_content(
+    name: str, texts: Mapping[str, Any], size: float, status: JsonObject, scene: JsonObject
+) -> JsonObject:
+    """What a page draws of any machine, with nothing yet in what only a computed one has.
+
+    name : of the file.  texts : `title` and `description` of the machine.  size : m.
+    scene : as of `stage_of`.
+    """
+    length = display("length", [size])
+    nothing: JsonObject = {
+        key: [] for key in ("traced", "outputs", "charts", "orders", "notes", "points", "arrows")
+    }
+    return {
+        "name": name,
+        "title": localized(texts["title"]),
+        "description": localized(texts.get("description", "")),
+        "length": {"unit": length.name, "factor": length.factor},
+        "status": status,
+        "scene": scene,
+        "lacking": status["text"],
+        "angles": 1,
+        "turns": 1,
+        "speed": 0,
+        "first": "squares",
+        "least": 0,
+        "before": False,
+        "compared": False,
+        "record": None,
+        "arrows_at": None,
+        **nothing,
+    }
 
 
 def state_of(
@@ -61,19 +95,17 @@ def state_of(
         _add_signals(block, old, before.analysis, _spectra_before(before), "before.")
         _add_outputs(block, before.analysis, wanted, "before.")
     against = against or before
-    length = display("length", [extent_of(machine)])
     lacking = forces_lack(machine)
+    texts = {"title": machine.title, "description": machine.description}
+    stage = stage_of(scene, movable(machine), circles_of(machine, motion.linkage.joints))
+    size, status = extent_of(machine), status_of(computed)
     content: JsonObject = {
-        "name": computed.design.name,
-        "title": localized(machine.title),
-        "description": localized(machine.description),
+        **state_content(computed.design.name, texts, size, status, stage),
         "angles": len(scene.crank_angle),
         "turns": motion.turns,
         "speed": motion.speed,
-        "length": {"unit": length.name, "factor": length.factor},
         "lacking": lacking,
         "shaken": machine.support is not None and not lacking,
-        "scene": stage_of(scene, movable(machine), circles_of(machine, motion.linkage.joints)),
         "traced": traced(motion),
         "first": first_of(machine)[0],
         "outputs": outputs_of(analysis),
@@ -87,7 +119,6 @@ def state_of(
         ],
         "held": localized(computed.limit_note) if computed.limit_note else None,
         "before": before is not None,
-        "status": status_of(computed),
         "compared": against is not None,
         "beside": machine.has_planes,
         "points": points_of(analysis),

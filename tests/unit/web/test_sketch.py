@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.i18n import Worded
 from equipoise.web.desk import PageBackend
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
@@ -323,6 +324,16 @@ def test_one_slider_or_pair_of_gears_is_deleted() -> None:
     count = len(maker.machine.gears)
     maker.do("delete", what="gears", name=name)
     assert len(maker.session.base().design.rest["gears"]) == count - 1
+
+
+def test_an_unfinished_machine_has_its_title_in_the_language_of_the_page() -> None:
+    maker = Maker()
+    maker.session = opened("slider-crank-engine")[0]
+    maker.session.language = "ja"
+    maker.do("delete", what="slider", name="piston on frame")
+    title = eq.load("slider-crank-engine").title
+    assert isinstance(title, Worded) and title.texts["ja"] != title
+    assert maker.seen.content["title"] == title.texts["ja"]
 
 
 def test_a_belt_and_a_rack_are_added_as_they_are_drawn() -> None:
