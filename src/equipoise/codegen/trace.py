@@ -277,11 +277,9 @@ def _followed(trace: Trace) -> tuple[set[str], set[str]]:
 
 
 def _begun_elsewhere(machine: Machine, varied: set[KeyPath]) -> Iterator[str]:
-    """Followers of cams whose laws designs begin at angles of their own."""
+    """Followers whose laws designs begin at angles of their own."""
     for where, item in numbered(machine):
-        if item.contact == "surface" and any(
-            path.begin(2) == where and path[-1] == "phase" for path in varied
-        ):
+        if any(path.begin(2) == where and path[-1] == item.shifted_by for path in varied):
             yield item.driven
 
 

@@ -65,6 +65,7 @@ class Cam(Coupling):
     counted = to_say("{count} cams")
     most = 100
     start: ClassVar[float] = 0.0
+    shifted_by: ClassVar[str] = "phase"
     switches: ClassVar[bool] = False
     speed_ratio: ClassVar[float] = 0.0
     exact_ratio: ClassVar[Fraction] = Fraction(0)

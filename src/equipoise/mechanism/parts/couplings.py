@@ -135,6 +135,7 @@ class Coupling(PartKind):
     curves : outputs that have a picture of their own, what this shows, and its caption; None where
         there is none.
     columns : numbers that columns of designs may have, by what of the table holds them.
+    shifted_by : key of its law at which that begins elsewhere in the cycle; empty where none does.
     driver, driven, carrier : names of bodies.
     start : angle of the driven body in the frame at crank angle 0, rad.
     switches : whether another flank, or another strand, bears where the force changes its sense, so
@@ -153,6 +154,7 @@ class Coupling(PartKind):
     contact_values: ClassVar[str] = ""
     curves: ClassVar[tuple[tuple[str, ...], str, str] | None] = None
     columns: ClassVar[Mapping[PathPattern, Set[str]]] = {}
+    shifted_by: ClassVar[str] = ""
 
     if TYPE_CHECKING:  # fields of some kinds, and properties of others
 
