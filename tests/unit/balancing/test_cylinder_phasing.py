@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing import balanced as outcome
 from equipoise.balancing.box_bounds import CLOSE
 from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.effects import Effects
@@ -23,6 +24,7 @@ from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objecti
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic
 from support.refusals import refused
+from support.sentences import notes_by
 
 Array = np.ndarray[Any, Any]
 
@@ -102,7 +104,7 @@ def test_roll_is_balanced_by_what_is_free() -> None:
         np.sqrt(np.mean(in_time(balanced.machine, "roll_moment", 0j) ** 2))
     )
     assert after < 0.7 * before
-    assert any("masses are those of one row" in str(note) for note in balanced.notes)
+    assert notes_by(outcome._notes, balanced.notes, "rows")
 
 
 TRANSPLANTER = eq.load("four-row-transplanter")

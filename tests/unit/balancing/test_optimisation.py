@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.design_variables import AddedWeight
 from equipoise.balancing.pareto import Front, trade_off
 from equipoise.errors import UsageError
 from equipoise.mechanism.parts.balance import (
@@ -29,6 +30,7 @@ from equipoise.mechanism.parts.balance import (
 from equipoise.mechanism.parts.links import Bearing
 from support.chosen import EXHAUSTIVE, few
 from support.refusals import refused
+from support.sentences import notes_by
 
 MACHINE = eq.load("yamashita-1")
 PLATE = {"thickness": 0.02, "density": 7850.0}
@@ -142,7 +144,7 @@ def test_what_was_stopped_is_reported() -> None:
     plan = Balance(geared=(geared,), objectives=(Objective("shaking_moment"),))
     balanced = eq.balance(eq.load("lee-kim-a"), plan)
     assert [*map(str, balanced.scope)] == ["within where it was stopped"]
-    assert any("ten times the mass of the links" in str(note) for note in balanced.notes)
+    assert notes_by(AddedWeight.stopped, balanced.notes, "link")
 
 
 def test_a_spring_without_free_length() -> None:

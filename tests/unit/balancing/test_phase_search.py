@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing import phase_search
 from equipoise.balancing.box_bounds import CLOSE
 from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.patterns import (
@@ -34,6 +35,7 @@ from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic, present
 from support.printing import printed, words
 from support.refusals import refused
+from support.sentences import notes_by
 
 MACHINE = eq.load("yamashita-2")
 
@@ -275,7 +277,7 @@ def test_combined_value(combine: str) -> None:
 def test_objective_that_is_0_before_counts_over_all_rows_alone() -> None:
     phasing = choose_phases(rows(2), [FORCE, ROLL])
     assert phasing.before[ROLL.name] == 0.0
-    assert any("rms of roll_moment is 0 before" in str(note) for note in phasing.notes)
+    assert notes_by(phase_search._notes, phasing.notes, name="rms of roll_moment")
     first = choose_phases(rows(2, 0.7), [ROLL]).before[ROLL.name]
     assert phasing.after[ROLL.name] >= 0.0
     assert first > 0

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.balanced import _over_pins
 from equipoise.balancing.cylinder_phasing import PhasedRows
 from equipoise.balancing.objectives import signals_of
 from equipoise.balancing.outcome import freedoms
@@ -17,7 +18,7 @@ from equipoise.balancing.problem import Problem
 from equipoise.balancing.workshop import covers
 from equipoise.errors import ModelError
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.dynamics.out_of_plane import statics
+from equipoise.mechanism.dynamics.out_of_plane import Statics, statics
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.parts.bodies import Body
 from equipoise.mechanism.parts.links import Bearing, Slider
@@ -28,6 +29,7 @@ from equipoise.results.blocks import Notes
 from equipoise.results.remarks import linkage_remarks
 from equipoise.vibration.forced import respond
 from support.refusals import refused
+from support.sentences import notes_by
 from unit.vibration.build import cart
 
 UNBALANCES = ((8.0, 0.3, 0.0, 0.0), (6.0, 0.2, 90.0, 0.4), (5.0, 0.4, 200.0, 0.9))
@@ -177,7 +179,7 @@ def test_what_statics_leaves_open_is_reported_without_masses_too() -> None:
     assert analysis.solved is None
     notes = [note for block in analysis_blocks(analysis) if isinstance(block, Notes)
              for note in block.notes]  # fmt: skip
-    assert sum("tilting moments" in str(note) for note in notes) == 1
+    assert len(notes_by(Statics.notes, notes, "joints")) == 1
 
 
 def test_a_plan_reports_two_counterweights_on_one_shaft_apart() -> None:
@@ -226,7 +228,7 @@ def test_plates_beside_the_planes_of_pins_do_not_lie_over_them() -> None:
     balanced = eq.balance(two_cylinders(-0.06, 0.06))
     for change, pin in zip(balanced.changes, (-0.03, 0.03), strict=True):
         assert any(covers(piece, 0j, complex(pin)) for piece in change.values["pieces"])
-    assert not any("lies over" in str(note) for note in balanced.notes)
+    assert not notes_by(_over_pins, balanced.notes, "link", "pins", "moment", "at")
 
 
 @pytest.mark.parametrize(("z", "count"), [(0.0, 1), (0.004, 1), (-0.1, 0), (0.1, 0)])
@@ -234,7 +236,7 @@ def test_a_plate_lies_over_a_pin_whose_plane_it_takes_up(z: float, count: int) -
     """A plate about z = 0 on a crank with its pin at z."""
     machine = eq.load("four-stroke-engine")
     balanced = eq.balance(machine.with_link("crank", planes={"B": z}))
-    assert len([note for note in balanced.notes if "lies over pin B" in str(note)]) == count
+    assert len(notes_by(_over_pins, balanced.notes, "link", "moment", "at", pins="B")) == count
 
 
 def test_what_was_nothing_has_no_speed_at_which_it_is_as_before() -> None:

@@ -10,6 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.advice import advise
+from equipoise.balancing.balanced import _over_pins
 from equipoise.balancing.beyond_masses import Counterbalance
 from equipoise.balancing.outcome import benefit_sentences, why_not
 from equipoise.balancing.policy import OVER_SOIL
@@ -21,6 +22,7 @@ from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.results.blocks import Facts, Text
 from support.findings import advice_for
+from support.sentences import notes_by
 from unit.balancing.test_beyond_masses import beyond, said
 
 
@@ -159,15 +161,14 @@ def test_a_weight_that_passes_a_slot_has_a_plane_of_its_own() -> None:
 def test_a_plan_of_the_file_is_reported_of_the_pin_that_its_plate_covers() -> None:
     """The pin of a crank is 27 mm from its pivot, in the sector from 15 to 34 mm towards it."""
     result = eq.balance(eq.load("four-stroke-engine"))
-    (note,) = (str(item) for item in result.notes if "lies over" in str(item))
-    assert note.startswith("the plate on crank lies over pin B: put it in a plane of its own, or")
-    assert "take 2256 g mm off crank on the other side of A" in note
+    values = {"link": "crank", "pins": "B", "moment": "2256 g mm", "at": "A"}
+    assert len(notes_by(_over_pins, result.notes, **values)) == 1
     (change,) = result.changes
     (piece,) = change.values["pieces"]
     assert covers(piece, 0j, 0.027 + 0j) and not covers(piece, 0j, -0.027 + 0j)
     assert not covers(piece, 0j, 0.036 + 0j) and not covers(piece, 0j, 0.014 + 0j)
     balanced = eq.balance(eq.load("balance-shafts"))
-    assert not any("lies over" in str(item) for item in balanced.notes)
+    assert not notes_by(_over_pins, balanced.notes, "link", "pins", "moment", "at")
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,11 @@ import pytest
 from scipy.signal import lfilter
 
 import equipoise as eq
-from equipoise.measured.decay import Decay, identify_decay
+from equipoise.measured.decay import Decay, _on_fit, identify_decay
 from equipoise.measured.fits import line_of_swings
 from equipoise.measured.turning import find_turns
 from support.chosen import EXHAUSTIVE, few
+from support.sentences import notes_by
 from unit.measured.samples import OMEGA, simulated
 
 RUNS, FEW = 80, 30
@@ -128,7 +129,7 @@ def test_a_large_record_is_fitted_by_means() -> None:
     record = simulated(count=200_000, noise=0.02)
     decay = identify_decay(record)
     assert 10_000 < len(decay.whole.time) <= 20_000
-    assert any("means of" in note for note in decay.notes)
+    assert notes_by(_on_fit, decay.notes, "count", "samples")
     for name, value in zip(NAMES, (OMEGA, 0.03, 0.02), strict=True):
         quantity = decay.by_record[name]
         assert quantity.value == pytest.approx(value, rel=0.01)

@@ -16,9 +16,11 @@ from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.mechanism.parts.field import PlantingArm, Soil
 from equipoise.planting.figures import machine_figures
 from equipoise.planting.names import TURNING, dimension_of, figure_named
+from equipoise.planting.stroke import nearly_alike
 from equipoise.planting.summary import PlantingFigures, plant, table
 from support.chosen import few
 from support.refusals import refused
+from support.sentences import notes_by
 from unit.planting.build import TURN, apart, planetary, two_arms
 
 SOIL = Soil(resistance=3.0, per_depth=200.0)
@@ -104,9 +106,6 @@ def test_soil_acts_on_every_tip() -> None:
     )
 
 
-NOT_ALIKE = "arm 2 does not do what arm 1 does: for that gears[4] would start at "
-
-
 def with_start(machine: eq.Machine, start: float, **shape: float) -> eq.Machine:
     """The last of the gears starts elsewhere, deg; numbers of its shape."""
     *others, last = machine.gears
@@ -124,16 +123,16 @@ def test_an_arm_that_only_starts_elsewhere_gets_its_start(begun: float) -> None:
     gears = tuple(replace(g, shape=s) for g, s in zip(rotary.gears, shapes, strict=True))
     machine = with_start(replace(rotary, gears=gears), begun)
     deep = machine.with_planting(depth=0.15)
-    (text,) = (str(note) for note in plant(deep).notes if "does not do" in str(note))
-    start = text.removeprefix(NOT_ALIKE).removesuffix(" deg")
-    alike = plant(with_start(machine, float(start)))
-    assert not any("does not do" in str(note) for note in alike.notes)
+    values = {"link": "arm 2", "mate": "arm 1", "number": 4}
+    (note,) = notes_by(nearly_alike, plant(deep).notes, "start", **values)
+    alike = plant(with_start(machine, note.values["start"]))
+    assert not notes_by(nearly_alike, alike.notes, "start", "link", "mate", "number")
     assert alike["arms.Q.curve.height"] == pytest.approx(alike["curve.height"], abs=1e-7)
 
 
 def test_an_arm_that_turns_otherwise_gets_no_start() -> None:
     machine = with_start(eq.load("rotary-transplanter"), -44.0, eccentricity=0.1)
-    assert not any("does not do" in str(note) for note in plant(machine).notes)
+    assert not notes_by(nearly_alike, plant(machine).notes, "start", "link", "mate", "number")
 
 
 def test_a_depth_that_one_arm_misses_is_refused_with_the_start_that_is_wrong() -> None:

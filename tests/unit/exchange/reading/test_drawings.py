@@ -15,11 +15,13 @@ from equipoise.errors import EquipoiseError
 from equipoise.exchange.export import export
 from equipoise.exchange.reading.formats import import_machine
 from equipoise.exchange.reading.imported import Imported
+from equipoise.exchange.reading.strokes import _Skeleton
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.results.blocks import Table
 from equipoise.schema.models import load_linkage, loads_linkage
 from support.refusals import refused
+from support.sentences import notes_by
 
 Draw = Callable[[Path, Machine, dict[str, complex]], Path]
 AT = 0.7
@@ -154,7 +156,7 @@ def test_a_circle_about_a_whole_link_is_no_pivot(tmp_path: Path) -> None:
     assert [len(link.points) for link in imported.outline.links.values()][1:] == [2, 2, 2]
     _, (length, _) = imported.outline.links["crank"].points.values()
     assert length == pytest.approx(0.02 * 2**0.5)
-    assert any("lie wholly in a circle" in note for note in imported.notes)
+    assert notes_by(_Skeleton._bodies, imported.notes)
 
 
 @pytest.mark.parametrize(("guide", "on"), [("guide on rod", "rod"), ("guide", FRAME)])
@@ -258,7 +260,7 @@ def test_ends_within_a_tolerance_meet(tmp_path: Path) -> None:
     assert imported.outline.mobility == 4
     text = "two ends nearly meet, 0.05 mm apart; --tolerance '0.1 mm' would join them"
     assert text in imported.notes
-    assert any("'rod' is joined to nothing" in note for note in imported.notes)
+    assert notes_by(_Skeleton._hints, imported.notes, name="rod")
     assert import_machine(path, tolerance=0.1e-3).outline.mobility == 2
 
 
