@@ -257,9 +257,7 @@ BY_KIND = {
     "balancing/geared.py": "counterweights on gears that balancing adds",
     "design/lifts.py": "parameters of the gears of a planting arm",
     "exchange/reading/imported.py": "gears of imported files",
-    "figures/changes.py": "springs that balancing added",
     "planting": "arms on a carrier, which gears turn",
-    "symbols/scene.py": "springs, which are stretched between points",
 }
 """Files beside those that kinds of parts name, in which lists of one kind are read, and why."""
 

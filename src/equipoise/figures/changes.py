@@ -120,7 +120,8 @@ def changes(balanced: Balanced) -> Chart:
     are new springs, at that at which links keep apart from them, too.
     """
     machine, original = balanced.machine, balanced.original
-    clearest = machine if len(machine.springs) > len(original.springs) else original
+    with_springs = len([*machine.force_elements]) > len([*original.force_elements])
+    clearest = machine if with_springs else original
     posed = Posed(machine, clear_angle(Scene.of(move(clearest, ANGLES))))
     every = _with_labels_apart([*additions(posed, balanced.changes, balanced.plan)])
     new = [addition.in_meters() for addition in every]

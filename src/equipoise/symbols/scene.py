@@ -21,6 +21,7 @@ from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.bodies import BodyOutline, outlines, place_of
 from equipoise.mechanism.parts.couplings import Coupling, DerivedLaw
+from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Link
 from equipoise.signals import Array
 from equipoise.symbols.carrier import MOUNT, Carrier, SupportSwing
@@ -318,7 +319,7 @@ class Scene:
             {name: center.place for name, center in motion.mass_centers.items()},
             tuple(wheels_of(joints, machine.bodies, angles)),
             tuple(_guides(motion)),
-            springs := tuple((spring.point, spring.to) for spring in machine.springs),
+            springs := stretched(element for _, _, element in machine.elements),
             {name: link.angle for name, link in motion.links.items()},
             DriveSign.each(motion),
             tuple(
@@ -519,6 +520,11 @@ def _field(motion: Motion) -> FieldSign | None:
     lowest = float(np.min(places))
     depth = surface - lowest if planting.depth is None else planting.depth
     return FieldSign(surface, max(depth, 0.0), tuple(complex(*end) for end in planting.tray or ()))
+
+
+def stretched(elements: Iterable[Element]) -> tuple[tuple[str, str], ...]:
+    """Ends of the elements that are drawn as springs."""
+    return tuple(element.route for element in elements if element.drawn_as_spring)
 
 
 def bodies_of(links: Mapping[str, Link]) -> Iterator[LinkOutline]:

@@ -20,7 +20,15 @@ from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, clean, format_exact
 from equipoise.symbols.constraints import constraint_marks
 from equipoise.symbols.part_signs import Surroundings, in_order, load_line_marks, signs_of
-from equipoise.symbols.scene import DriveSign, GuideSign, Scene, Wheel, bodies_of, wheels_of
+from equipoise.symbols.scene import (
+    DriveSign,
+    GuideSign,
+    Scene,
+    Wheel,
+    bodies_of,
+    stretched,
+    wheels_of,
+)
 from equipoise.symbols.shapes import BodyMark
 from equipoise.web.design import Design
 from equipoise.web.drawing import moves_of, stage_of
@@ -296,7 +304,6 @@ def scene_of(sketch: Sketch) -> Scene:
         for name, link in sketch.links.items()
         if link.center_of_mass is not None
     }
-    springs = tuple((item.point, item.to) for item in sketch.rest.get("springs", ()))
     joints, drive = sketch.joints, _sense(sketch)
     return Scene(
         sketch.pose(drive.link).angle * values if drive.link else 0 * values,
@@ -308,7 +315,7 @@ def scene_of(sketch: Sketch) -> Scene:
         centers,
         tuple(_wheels(sketch)),
         guides,
-        springs,
+        stretched(sketch.elements),
         {name: pose.angle * values for name, pose in sketch.poses.items()},
         (drive,),
         marks=in_order(

@@ -73,6 +73,7 @@ class PartKind(Frozen):
         surroundings to marks; empty where it has no sign of its own.
     dragged : ``module:function`` of the room of symbols that gives the circle by which a number of
         the part is dragged on a drawing; empty where none is.
+    drawn_as_spring : whether it is drawn as a spring, stretched between two points.
     page_tool : ``module:NAME`` of the tool by which a page adds one between two links; empty where
         only its form does.
     tables : ``module:function`` that shows what an analysis says of all parts of the kind, by the
@@ -92,6 +93,7 @@ class PartKind(Frozen):
     group: ClassVar[str]
     sign: ClassVar[str] = ""
     dragged: ClassVar[str] = ""
+    drawn_as_spring: ClassVar[bool] = False
     page_tool: ClassVar[str] = ""
     tables: ClassVar[Mapping[str, str]] = {}
     figures: ClassVar[str] = ""

@@ -74,6 +74,7 @@ class Spring(BetweenPoints, RowLaw, ForceElement):
 
     called = to_say("{what} of spring {number}")
     list_name = "springs"
+    drawn_as_spring = True
     list_text = "springs between links, or links and frame"
     order = 1
     file_order = ("link", "point", "to", "stiffness", "free_length", "preload", "lengths", "forces",
