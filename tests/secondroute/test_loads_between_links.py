@@ -18,6 +18,7 @@ import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
 from equipoise.errors import ModelError
+from equipoise.exchange.tree import constant_loads
 from equipoise.mechanism import Load, Machine, Slider
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.loads import work_in_cycle
@@ -26,6 +27,7 @@ from equipoise.mechanism.parts.loads import IndicatorDiagram
 from equipoise.schema.writing import Writer, toml_text
 from support.own_kinds import scripted
 from support.refusals import refused
+from support.sentences import notes_by
 
 CRANK, DISTANCE, BORE, SPEED = 0.03, 0.11, 0.05, 60.0
 AREA, BAR = pi / 4 * BORE**2, 1e5
@@ -195,7 +197,7 @@ def test_a_body_that_cannot_bear_it() -> None:
 @pytest.mark.parametrize("name", ["model.xml", "model.py"])
 def test_formats_that_cannot_hold_both_ends_leave_it_out(name: str, tmp_path: Path) -> None:
     notes = eq.export(engine(PUSH), tmp_path / name)
-    assert any("load 1, whose opposite 'cylinder' bears" in str(note) for note in notes)
+    assert notes_by(constant_loads, notes, number=1, link="cylinder")
 
 
 def test_modelica_has_both_ends(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from inspect import unwrap
 from string import Formatter
 from types import CodeType
 from typing import Any
@@ -38,7 +39,9 @@ def notes_by(
     function has the same, so that another one is never taken for it.
     """
     wanted = {*names, *values}
-    templates = {item for item in constants_of(source.__code__) if placeholders(item) == wanted}
+    templates = {
+        item for item in constants_of(unwrap(source).__code__) if placeholders(item) == wanted
+    }
     assert len(templates) == 1 or not wanted, templates
     return [
         note

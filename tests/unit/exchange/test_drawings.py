@@ -28,6 +28,7 @@ from equipoise.exchange.parts import (
     COUNTERWEIGHT,
     Part,
     _edges_of_piece,
+    _of_links,
     along,
     circle,
     in_mm,
@@ -41,6 +42,7 @@ from equipoise.present.findings import Findings
 from support.chosen import few
 from support.findings import findings_of
 from support.refusals import refused
+from support.sentences import notes_by
 
 START = 0.4
 SAME = 1e-9
@@ -372,7 +374,7 @@ def test_texts_of_drawings_are_in_the_language_asked_for(
         monkeypatch.setattr(workshop_sheet, "fonts_for", lambda _, signs=signs: ((), signs))
         notes = eq.export(balanced, tmp_path / "x.pdf", language=language)  # type: ignore[arg-type]
         assert wanted in shown and bool(notes) == bool(signs)
-        assert all("for which this computer has no font" in note for note in notes)
+        assert notes_by(workshop_sheet.sheets, notes, "language") == [*notes]
     with refused(UsageError, names="en, de, ja, ko"):
         eq.export(balanced, tmp_path / "x.pdf", language="fr")  # type: ignore[arg-type]
 
@@ -518,22 +520,29 @@ def test_joints_of_a_part_are_on_its_sheet() -> None:
 
 
 @pytest.mark.parametrize(
-    ("section", "words"),
+    ("section", "sizes"),
     [
-        ({"outer_diameter": 0.026, "inner_diameter": 0.023}, "a tube of 26.00 mm with a bore of"),
-        ({"outer_diameter": 0.012}, "a rod of 12.00 mm"),
-        ({"width": 0.03, "thickness": 0.02, "wall": 0.002}, "a tube of 30.00 mm x 20.00 mm with"),
+        (
+            {"outer_diameter": 0.026, "inner_diameter": 0.023},
+            {"outer": "26.00 mm", "bore": "23.00 mm"},
+        ),
+        ({"outer_diameter": 0.012}, {"outer": "12.00 mm"}),
+        (
+            {"width": 0.03, "thickness": 0.02, "wall": 0.002},
+            {"sides": "30.00 mm x 20.00 mm", "wall": "2.000 mm"},
+        ),
     ],
 )
 def test_what_is_cut_to_length_is_no_plate(
-    section: dict[str, float], words: str, tmp_path: Path
+    section: dict[str, float], sizes: dict[str, str], tmp_path: Path
 ) -> None:
     """A laser would cut a plate as thick as the tube is wide."""
     bar = eq.mechanism.Body("bar", between=("A", "B"), density=STEEL, **section)  # type: ignore[arg-type]
     disc = eq.mechanism.Body("disc", at="A", radius=0.06, thickness=0.01, density=STEEL)
     machine = eq.load("yamashita-1").with_link("crank", bodies=(bar, disc))
     notes = eq.export(machine, tmp_path / "x.svg")
-    assert any(f"body 1 of 'crank', {words}" in note for note in notes)
+    (note,) = notes_by(_of_links, notes, "section", number=1, link="crank")
+    assert note.values["section"].values == sizes
     (part,) = ET.parse(tmp_path / "x.svg").getroot().findall("{*}g")
     assert part.get("id") == "crank, disc 2"
 

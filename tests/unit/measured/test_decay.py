@@ -12,9 +12,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import equipoise as eq
-from equipoise.measured.decay import _on_methods
+from equipoise.measured.decay import _on_methods, _on_record
 from equipoise.measured.fits import FittedValue
 from support.refusals import refused
+from support.sentences import notes_by
 from unit.measured.samples import OMEGA, held, noisy, simulated
 
 NAMES = [
@@ -160,7 +161,7 @@ def test_three_half_swings() -> None:
     assert decay.by_line["damping_ratio"].low is None
     assert not decay.by_line["decay_rate"].includes_zero
     assert decay.by_record["damping_ratio"].low is not None
-    assert "three half-swings have exactly one line" in "\n".join(decay.notes)
+    assert notes_by(_on_record, decay.notes)
 
 
 def test_a_vibration_that_is_fed() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -19,6 +18,7 @@ from laws.subjects import families_of, is_force, outputs, sizes
 from laws.transforms import shifted, turned
 from support import refusals
 from support.machines import make
+from support.refusals import values_of
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, refused, two_gears
 
 TRIAD = eq.load("class-three")
@@ -302,7 +302,8 @@ def test_the_angle_reported_is_where_it_ends() -> None:
         refusals.refused(MotionError, last="'rocker'", first="'coupler'") as caught,
     ):
         eq.move(rough, 36)
-    low, high = map(float, re.findall(r"at (-?[0-9.]+) deg", str(caught.value)))
+    values = dict(values_of(caught.value.note))
+    low, high = (float(values[name].removesuffix(" deg")) for name in ("low", "high"))
     assert (low, high) == pytest.approx((-degrees(limit), degrees(limit)), abs=0.01)
 
 

@@ -175,10 +175,9 @@ def test_a_linkage_that_never_closes() -> None:
     with refused(RangeError, first="B", second="D") as caught:
         eq.move(four_bar(5.0, 0.9, 0.5, 0.7))
     assert caught.value.ranges == ()
-    said = str(caught.value)  # what is given, where, and what would be right
-    assert "in links.coupler.points" in said
-    assert "in links.rocker.points" in said
-    assert "they have to be" in said
+    said = str(caught.value)  # what is given, and where
+    assert "links.coupler.points" in said
+    assert "links.rocker.points" in said
 
 
 def test_the_refusal_of_a_linkage_that_never_closes_lets_it_be_mended() -> None:
@@ -239,7 +238,7 @@ def test_the_second_dyad_may_be_the_one_that_stops() -> None:
     with refused(RangeError, link="link", other="output", one="link") as caught:
         eq.move(given.with_link("output", points=points))
     assert "in links.link.points" in str(caught.value)
-    assert "30.00 mm from G to F in links.output.points" in str(caught.value)
+    assert "links.output.points" in str(caught.value) and "30.00 mm" in str(caught.value)
 
 
 # -- within the range ------------------------------------------------------------------------------
@@ -261,9 +260,8 @@ def test_angles_inside_the_range() -> None:
 @pytest.mark.parametrize("beyond", [1e-4, 0.5, pi - LIMIT])
 def test_angles_outside_the_range(beyond: float) -> None:
     angle = LIMIT + beyond
-    with pytest.raises(RangeError) as caught:
+    with refused(RangeError, angle=degrees(angle)) as caught:
         eq.move(ROCKING, [0.0, 0.5, angle])
-    assert f"(asked for {degrees(angle):.4g} deg)" in str(caught.value)
     same_angles(caught.value.ranges, [(-LIMIT, LIMIT)])
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from functools import partial
 from math import pi, radians
@@ -19,7 +18,7 @@ from equipoise.vibration.coupled import StallError
 from equipoise.vibration.forced import respond
 from equipoise.vibration.free import Transient
 from support.chosen import EXHAUSTIVE, few
-from support.refusals import refused
+from support.refusals import refused, values_of
 from unit.mechanism.build import slider_crank
 from unit.vibration.build import DAMPING, PIVOT, SPEED, STIFFNESS, Mount, block, cart, rig
 
@@ -205,20 +204,15 @@ def test_a_motor_that_stalls(of: str, mean_speed: str, way: int) -> None:
     follow = partial(eq.simulate, duration=3.0) if of == "simulate" else respond
     with pytest.raises(StallError) as caught:
         follow(machine, drive=True)
+    values = dict(values_of(caught.value.note))
     if of == "respond" or mean_speed == "held":
         at_ends = eq.move(machine, [0.0, radians(60)]).points["C"].place.real
         mean = force * abs(at_ends[0] - at_ends[1]) / (2 * pi)
-        words = re.search(r"needs (.*) N m at .* and has (.*) N m;", str(caught.value))
-        assert words is not None
-        assert [float(word) for word in words.groups()] == pytest.approx([mean, 88.0], rel=1e-3)
+        torques = [float(values[name]) for name in ("needed", "given")]
+        assert "angle" not in values
+        assert torques == pytest.approx([mean, 88.0], rel=1e-3)
         return
-    match = re.match(
-        r"the motor stalls at crank angle (.*) deg: the crank needs (.*) N m to go on, and has "
-        r"(.*) N m; give a stronger motor",
-        str(caught.value),
-    )
-    assert match is not None
-    at, needed, given = map(float, match.groups())
+    at, needed, given = (float(values[name]) for name in ("angle", "needed", "given"))
     motion = eq.move(machine, [radians(at)])
     lever = abs(motion.points["C"].place_1[0].real)
     assert needed == pytest.approx(force * lever, rel=2e-2)

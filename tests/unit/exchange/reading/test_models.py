@@ -21,12 +21,14 @@ from equipoise.errors import EquipoiseError
 from equipoise.exchange.export import export
 from equipoise.exchange.reading.formats import import_machine
 from equipoise.exchange.reading.imported import Imported
+from equipoise.exchange.reading.planar import planar
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.links import size_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.schema.models import load_linkage, loads_linkage
 from support.refusals import refused
+from support.sentences import notes_by
 
 FOUR_BAR = """
 <mujoco model="standing four-bar">
@@ -387,7 +389,7 @@ def test_what_export_wrote_as_urdf_comes_back(name: str, tmp_path: Path) -> None
     machine = load_linkage(name)
     left = export(machine, tmp_path / "a.urdf", crank_angle=0.3)
     cut = import_machine(tmp_path / "a.urdf")
-    assert any(note.startswith("no loop is closed; --pin") for note in cut.notes)
+    assert notes_by(planar, cut.notes)
     pins = [item.split('"')[1] for item in left if "--pin" in item]
     actual = import_machine(tmp_path / "a.urdf", pin=pins, crank=machine.drive.link).machine
     assert actual is not None
