@@ -34,12 +34,13 @@ from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.loops import LoopGroup
 from equipoise.mechanism.assembly.steps import Reaction, planar
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.reactions import PUSH, Push
-from equipoise.mechanism.formulas.kernels import cross, length
+from equipoise.mechanism.dynamics.reactions import PUSH, Push, moment_of_guide, read_on
+from equipoise.mechanism.formulas.kernels import length
+from equipoise.mechanism.kinematics.motion import in_time
 from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.element_kinds import force_kinds
-from equipoise.mechanism.parts.joint_properties import JOINTS, family_of
+from equipoise.mechanism.parts.joint_properties import family_of
 from equipoise.mechanism.parts.machine import Machine
 
 RUBS = Note("what friction in joints changes cannot be computed in a loop")
@@ -178,7 +179,7 @@ class Signals:
         speed, acceleration = self.trace.rate("speed"), self.trace.rate("acceleration")
         value, first, second = values
         if order == 2:
-            return second * (speed * speed) + first * acceleration
+            return in_time(first, second, speed, acceleration)
         return first * speed if order else value
 
     def drive_torque(self, item: str) -> Any:
@@ -204,29 +205,25 @@ class Signals:
     def joint_force(self, item: str) -> Any:
         """A joint's force on the later of its bodies, a coupling's on the driven one."""
         reaction = self._reaction(item)
-        return self._sign(reaction) * self.forces[reaction.force]
+        _, _, sign = read_on(self.linkage.joints, reaction)
+        return sign * self.forces[reaction.force]
 
     def joint_moment(self, item: str) -> Any:
         """Moment of a guide about the point of the slider."""
         reaction = self._reaction(item)
         if reaction.couple is None:
             raise _Missing
-        couple = self.forces[reaction.couple]
+        force = self.joint_force(item)
         slider = next(s for s in self.machine.sliders if s.name == reaction.name)
-        to, *_ = self.trace.point(slider.link, slider.point)
-        arm = self.trace.state[f"p({reaction.at})"] - to
-        return self._sign(reaction) * couple + cross(arm, self.joint_force(item))
+        point, *_ = self.trace.point(slider.link, slider.point)
+        _, _, sign = read_on(self.linkage.joints, reaction)
+        return moment_of_guide(self.forces, reaction, point, (sign, force))
 
     def _reaction(self, item: str) -> Reaction:
         reaction = dict(self.linkage.named_reactions).get(item)
         if reaction is None:
             raise _Missing
         return reaction
-
-    def _sign(self, reaction: Reaction) -> float:
-        order = self.linkage.joints.bodies.index
-        later = reaction.kind not in JOINTS or order(reaction.on) > order(reaction.by)
-        return 1.0 if later else -1.0
 
     def bearing_force(self, item: str) -> Any:
         if item not in self.machine.bearings:

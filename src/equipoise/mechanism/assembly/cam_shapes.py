@@ -171,7 +171,7 @@ class CamShape:
         """From the way in which the follower rises to the common normal (N,), rad."""
         at, normal = self.contact
         forth = self.path.forth(at if self.flat else self.ride.place)
-        slant = np.arctan2(cross(forth, normal), dot(forth, normal))
+        slant = _slant(forth, normal)
         return np.broadcast_to(slant, np.broadcast_shapes(slant.shape, self.angle.shape))
 
     @property
@@ -426,6 +426,11 @@ def fits_of(machine: Machine, joints: Structure) -> tuple[CamFit, ...]:
 def pressure_angle(cam: Cam, state: State) -> Array:
     """From the way in which a follower rises to the common normal, rad, as of a motion's state."""
     forth, normal = state[f"forth({cam.name})"], state[f"normal({cam.name})"]
+    return _slant(forth, normal)
+
+
+def _slant(forth: Any, normal: Any) -> Array:
+    """Angle from one direction to another (N,), rad."""
     slant: Array = np.arctan2(cross(forth, normal), dot(forth, normal))
     return slant
 

@@ -430,10 +430,7 @@ class JointReactions:
         return {name: value for name, value in self.state.items() if name.startswith("flank(")}
 
     def _joint(self, reaction: Reaction) -> JointForce:
-        order = self.motion.linkage.joints.bodies.index
-        on, by, sign = reaction.on, reaction.by, 1
-        if order(on) < order(by):
-            on, by, sign = by, on, -1
+        on, by, sign = read_on(self.motion.linkage.joints, reaction)
         force = full(self.motion, sign * self.state[reaction.force], complex)
         if rider := self.motion.linkage.joints.riders.get(by):
             normal = self.state[f"u({by})"] * rider.normal
@@ -445,8 +442,8 @@ class JointReactions:
             return JointForce(force, on, by)
         slider = next(s for s in self.motion.machine.sliders if s.name == reaction.name)
         direction = self.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
-        at = self.state[f"p({reaction.at})"] - self.motion.point(slider.point).place
-        moment = sign * self.state[reaction.couple] + kernels.cross(at, force)
+        point = self.motion.point(slider.point).place
+        moment = moment_of_guide(self.state, reaction, point, (sign, force))
         normal = kernels.cross(direction, force)
         if (rubs := self.friction.get(slider.name)) is not None:
             force = force + (1.0 if rubs.on == on else -1.0) * rubs.effort * direction
@@ -460,6 +457,29 @@ class JointReactions:
         if rubs is not None and coupling.contact == "surface":
             force = force - 1j * self.state[f"normal({coupling.name})"] * rubs.effort
         return CouplingForce(force, reaction.on, reaction.by, parts)
+
+
+def read_on(joints: Structure, reaction: Reaction) -> tuple[str, str, int]:
+    """Body on which the force of a reaction is reported, the other one, and the sign of the force
+    in a state: in joints the later body of the linkage, of a coupling the driven one.
+    """
+    order = joints.bodies.index
+    if reaction.kind in JOINTS and order(reaction.on) < order(reaction.by):
+        return reaction.by, reaction.on, -1
+    return reaction.on, reaction.by, 1
+
+
+def moment_of_guide(
+    state: Mapping[str, Any], reaction: Reaction, point: Any, reported: tuple[int, Any]
+) -> Any:
+    """Moment of a guide about the point of its slider, N m, from a state of arrays or terms.
+
+    point : place of that point, m.  reported : sign as of `read_on`, and the force with it.
+    """
+    sign, force = reported
+    return sign * state[str(reaction.couple)] + kernels.cross(
+        state[f"p({reaction.at})"] - point, force
+    )
 
 
 def reactions(

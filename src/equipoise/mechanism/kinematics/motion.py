@@ -32,10 +32,9 @@ from equipoise.quantities import HUGE, Dimension, in_si
 from equipoise.signals import Array, Figures, JumpSampling, Periodic, first_below
 
 
-def in_time(first: Array, second: Array, speed: float, acceleration: float) -> Array:
-    """Second derivative by time, from the derivatives by crank angle."""
-    steady = second * speed**2
-    return steady + first * acceleration if acceleration else steady
+def in_time(first: Any, second: Any, speed: Any, acceleration: Any) -> Any:
+    """Second derivative by time, from the derivatives by crank angle: of arrays, or of terms."""
+    return second * (speed * speed) + first * acceleration
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -60,7 +59,8 @@ class LinkMotion(Brief):
     @property
     def angular_acceleration(self) -> Array:
         """rad/s2."""
-        return in_time(self.angle_1, self.angle_2, self.speed, self.acceleration)
+        second: Array = in_time(self.angle_1, self.angle_2, self.speed, self.acceleration)
+        return second
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -93,7 +93,8 @@ class PointMotion(Brief):
     @property
     def acceleration_vector(self) -> Array:
         """m/s2, complex."""
-        return in_time(self.place_1, self.place_2, self.speed, self.acceleration)
+        second: Array = in_time(self.place_1, self.place_2, self.speed, self.acceleration)
+        return second
 
     @property
     def vx(self) -> Array:
@@ -134,7 +135,8 @@ class SliderMotion(Brief):
     @property
     def along_acceleration(self) -> Array:
         """m/s2, as seen from the guide."""
-        return in_time(self.travel_1, self.travel_2, self.speed, self.acceleration)
+        second: Array = in_time(self.travel_1, self.travel_2, self.speed, self.acceleration)
+        return second
 
 
 MOST_ANGLES = 400_000
