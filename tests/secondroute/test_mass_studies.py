@@ -70,7 +70,7 @@ def design(machine: eq.Machine, links: list[str], share: float) -> eq.Machine:
 @pytest.mark.parametrize("name", MACHINES)
 def test_figures_are_those_of_each_design(name: str) -> None:
     machine = MACHINES[name]()
-    links = [n for n, one in machine.links.items() if one.mass and not one.bodies]
+    links = [n for n, link in machine.links.items() if link.mass and not link.bodies]
     paths = [f"links.{link}.mass" for link in links]
     if not links:
         pytest.skip("no link has a mass of its own")

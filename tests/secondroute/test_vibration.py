@@ -94,13 +94,13 @@ class Pair:
 
     case: Case
     wanted: rig_reference.Steady
-    found: ExactSolution
+    solution: ExactSolution
     states: Array
     """(n, N), of the package's solution at the reference's crank angles."""
 
     @property
     def places(self) -> tuple[Array, Array]:
-        return self.found.system.place_and_rate(self.states)
+        return self.solution.system.place_and_rate(self.states)
 
     def close(self, result: Array, wanted: Array, size: float = 0.0) -> None:
         size = size or float(np.max(np.abs(wanted)))
@@ -145,7 +145,7 @@ def same_motion(pair: Pair) -> None:
 
 
 def same_gauge(pair: Pair) -> None:
-    response = respond(pair.found.machine, None, "exact", pair.case.motor is not None)
+    response = respond(pair.solution.machine, None, "exact", pair.case.motor is not None)
     signal = response.gauges["gauge"].displacement
     mean_speed = response.speed
     # Signals go with time: at the mean speed, this is where the crank is by then.
@@ -156,22 +156,22 @@ def same_gauge(pair: Pair) -> None:
 def same_mounts(pair: Pair) -> None:
     """Pushes, and what of them holds the weight."""
     place, rate = pair.places
-    forces = {contact.name: contact.force(place, rate) for contact in pair.found.system.contacts}
+    forces = {contact.name: contact.force(place, rate) for contact in pair.solution.system.contacts}
     for k, wanted in enumerate(pair.wanted.mounts.T):
         pair.close(forces[str(k)], wanted)
     for k, wanted in enumerate(pair.wanted.torsions.T):
         pair.close(forces[f"t{k}"], wanted)
     if any(mount.one_sided for mount in pair.case.rig.mounts):
         assert 0.1 < np.mean(pair.wanted.mounts[:, 0] == 0) < 0.9
-    assert pair.found.linear is not None
+    assert pair.solution.linear is not None
     given = np.concatenate(pair.case.rig.preloads)
-    result = list(pair.found.linear.rest.preload.values())
+    result = list(pair.solution.linear.rest.preload.values())
     np.testing.assert_allclose(result, given, rtol=1e-11)
 
 
 def same_drive(pair: Pair) -> None:
     """Torque of motor or drive; with a motor, the crank's speed and the time too."""
-    system = pair.found.system
+    system = pair.solution.system
     table = system.sums(system.sense * TRAVEL)
     pair.close(system.drive_torque(table, pair.states), pair.wanted.motor)
     n = 2 * pair.case.rig.freedoms
@@ -185,7 +185,7 @@ def same_joints(pair: Pair) -> None:
 
     The reference's forces are in space, the package's in the axes of the support.
     """
-    exact = replace(pair.found)
+    exact = replace(pair.solution)
     exact.__dict__["turned"] = TRAVEL  # equal steps of the crank instead of time
     ride, kept = exact.base_motion, slice(3 - pair.case.rig.freedoms, 3)
     for actual, wanted in zip(ride.change[kept], pair.wanted.acceleration.T[kept], strict=True):
@@ -205,7 +205,7 @@ def same_work(pair: Pair) -> None:
 
     What the motor gives and takes back in a turn is much more, and as good as it is integrated.
     """
-    result = pair.found.energy()
+    result = pair.solution.energy()
     swing = 2 * pi * float(np.max(np.abs(pair.wanted.motor)))
     assert result.fed_in == pytest.approx(pair.wanted.work, abs=pair.case.tolerance * swing)
     assert result.lost == pytest.approx(pair.wanted.loss, abs=pair.case.tolerance * swing)

@@ -577,12 +577,12 @@ class _Walk:
         return list(zip(self.measures, self.over, strict=True))
 
     @staticmethod
-    def _near(one: Measured, changes: Array) -> Array:
+    def _near(measured: Measured, changes: Array) -> Array:
         """Crank angles at which the signal is near to its peak, thinned out."""
-        if one.measure not in ("peak", "peak_to_peak"):
+        if measured.measure not in ("peak", "peak_to_peak"):
             return np.zeros(0, int)
-        signal = one.signal(changes)[..., 0]
-        if one.measure == "peak":
+        signal = measured.signal(changes)[..., 0]
+        if measured.measure == "peak":
             size = np.linalg.norm(signal, axis=0)
             return few(np.flatnonzero(size > 0.8 * size.max()), 100)
         edge = 0.1 * np.ptp(signal)

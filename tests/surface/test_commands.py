@@ -78,7 +78,7 @@ def test_outputs_and_dwells_are_reported_by_name(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "words"),
     [
         (
             ("--output", "centers.rod/frame"),
@@ -89,8 +89,8 @@ def test_outputs_and_dwells_are_reported_by_name(tmp_path: Path) -> None:
         (("--dwell", "P"), "--dwell: got 'P'; give a length of more than 0, such as"),
     ],
 )
-def test_outputs_and_dwells_that_cannot_be_reported(options: tuple[str, ...], told: str) -> None:
-    assert told in refused(equipoise("analyze", "yamashita-1", *options))
+def test_outputs_and_dwells_that_cannot_be_reported(options: tuple[str, ...], words: str) -> None:
+    assert words in refused(equipoise("analyze", "yamashita-1", *options))
 
 
 # -- in general ------------------------------------------------------------------------------------

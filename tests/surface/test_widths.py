@@ -230,12 +230,12 @@ def test_nothing_is_lost_at_any_width(line: str, place: Path) -> None:
 
 @pytest.mark.parametrize("line", TRIED)
 def test_what_stands_out_does_so_with_and_without_colour(line: str, place: Path) -> None:
-    for told in run(line, place):
-        sentences, cells = told.marked
-        for text in told.by_width.values():
+    for printed in run(line, place):
+        sentences, cells = printed.marked
+        for text in printed.by_width.values():
             assert len(re.findall("^! ", text, re.MULTILINE)) == sentences
             assert len(re.findall(r"over the limit| worse\b", text)) >= cells
-        assert told.coloured.count("\x1b[1;31m") >= sentences + cells
-        assert "\x1b" not in told.by_width[80]
+        assert printed.coloured.count("\x1b[1;31m") >= sentences + cells
+        assert "\x1b" not in printed.by_width[80]
     if line in STAND_OUT:
         assert any(any(reported.marked) for reported in run(line, place))

@@ -90,11 +90,11 @@ def pixels(picture: Picture, scene: Scene, item: str, other: str):
 CASES = [("watt-six-bar", "A", "G"), ("geared-counterweight", "O2", "E"), ("yamashita-1", "A", "D")]
 
 
-@pytest.mark.parametrize(("name", "one", "other"), [*CASES, ("quick-return", "A", "D")])
-def test_pins_are_where_the_motion_has_them(name: str, one: str, other: str) -> None:
+@pytest.mark.parametrize(("name", "pin", "other"), [*CASES, ("quick-return", "A", "D")])
+def test_pins_are_where_the_motion_has_them(name: str, pin: str, other: str) -> None:
     _, scene, _ = analyzed(name)
     picture = Picture(animated_svg(scene, title=name, frames=40))
-    to_pixels = pixels(picture, scene, one, other)
+    to_pixels = pixels(picture, scene, pin, other)
     circles = [circle for circle in picture.circles("pin") if len(circle) > 1]
     moving = [name for name in scene.pins if name not in scene.frame]
     assert len(circles) == len(moving)
@@ -105,11 +105,11 @@ def test_pins_are_where_the_motion_has_them(name: str, one: str, other: str) -> 
         assert circle[0] == pytest.approx(circle[-1], abs=ROUNDED)
 
 
-@pytest.mark.parametrize(("name", "one", "other"), CASES)
-def test_links_reach_from_pin_to_pin(name: str, one: str, other: str) -> None:
+@pytest.mark.parametrize(("name", "pin", "other"), CASES)
+def test_links_reach_from_pin_to_pin(name: str, pin: str, other: str) -> None:
     _, scene, _ = analyzed(name)
     picture = Picture(animated_svg(scene, title=name, frames=30))
-    to_pixels = pixels(picture, scene, one, other)
+    to_pixels = pixels(picture, scene, pin, other)
     places = {key: to_pixels(shown(scene, place, 30)) for key, place in scene.places.items()}
     drawn = [corner[:-1] for corners in picture.ends("body") for corner in corners]
     for body in scene.bodies:

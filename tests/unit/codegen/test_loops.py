@@ -93,8 +93,8 @@ def test_numpy_gives_the_same(tmp_path: Path) -> None:
     values = designs(24, 0.06)
     right, reasons = batch(values)
     with by_numpy(tmp_path):
-        figures, told_by_numpy = batch(values)
-    np.testing.assert_array_equal(told_by_numpy, reasons)
+        figures, numpy_reasons = batch(values)
+    np.testing.assert_array_equal(numpy_reasons, reasons)
     np.testing.assert_allclose(figures, right, rtol=1e-9, atol=1e-9)
 
 

@@ -102,7 +102,7 @@ def test_what_is_beyond_a_value_has_a_sign_that_the_legend_reports() -> None:
 
 
 @pytest.mark.parametrize(
-    "one",
+    "exposure",
     [
         day(("one", 3.0, 4.0)),
         day(*((f"task number {k}", 1.0 + 0.3 * k, 0.2 + 0.1 * k) for k in range(12))),
@@ -110,9 +110,9 @@ def test_what_is_beyond_a_value_has_a_sign_that_the_legend_reports() -> None:
         day(("nothing", 0.0, 1.0)),
     ],
 )
-def test_odd_days(one: Exposure) -> None:
-    check(measured.exposure(tools(one), one))
-    check(measured.exposure(tools(one), None))
+def test_odd_days(exposure: Exposure) -> None:
+    check(measured.exposure(tools(exposure), exposure))
+    check(measured.exposure(tools(exposure), None))
 
 
 # -- decay -----------------------------------------------------------------------------------------

@@ -54,7 +54,7 @@ def racked(rack: Rack, **more: Any) -> eq.Machine:
 
 
 @pytest.mark.parametrize(
-    ("one", "turns", "winding"),
+    ("belt", "turns", "winding"),
     [
         (belt(radii=None, teeth=(20, 30), pitch=0.01), 3, 2),
         (belt(radii=None, teeth=(30, 30), pitch=0.01), 1, 1),
@@ -62,9 +62,9 @@ def racked(rack: Rack, **more: Any) -> eq.Machine:
         (belt(), 2, 1),
     ],
 )
-def test_ratio_and_cycle(one: Belt, turns: int, winding: int) -> None:
+def test_ratio_and_cycle(belt: Belt, turns: int, winding: int) -> None:
     """An open belt turns both alike, also at a ratio of 1, a crossed one against each other."""
-    motion = eq.move(belted(replace(one, start=0.4)), 24)
+    motion = eq.move(belted(replace(belt, start=0.4)), 24)
     assert (motion.turns, motion.linkage.cycle.windings["wheel"]) == (turns, winding)
     angle = motion.links["wheel"].angle
     np.testing.assert_allclose(angle, 0.4 + motion.crank_angle * winding / turns, atol=1e-13)
@@ -211,8 +211,8 @@ def test_a_belt_across_a_link_of_its_carrier() -> None:
             lambda: assembled(given))  # fmt: skip
 
 
-@pytest.mark.parametrize(("length", "told"), [(0.25, 235.0), (0.45, 220.0), (0.19, None)])
-def test_a_strand_across_a_link_that_turns_beside_it(length: float, told: float | None) -> None:
+@pytest.mark.parametrize(("length", "angle"), [(0.25, 235.0), (0.45, 220.0), (0.19, None)])
+def test_a_strand_across_a_link_that_turns_beside_it(length: float, angle: float | None) -> None:
     """The strands lie 0.1 m beside the line of the pins, the link's pin 0.3 m: on the arm it dips
     below them where its sine, of the crank angle, is below -0.2 / length; a long one at the ends of
     the strand first, where its slope is 0.2 / 0.25.  Every 5 deg are looked at.
@@ -230,7 +230,7 @@ def test_a_strand_across_a_link_that_turns_beside_it(length: float, told: float 
         "belts[1]: a strand lies across 'rod' at crank angle {} deg; move B, change the radii, or "
         "give 'rod' a plane of its own"
     )
-    assert actual == ([sentence.format(f"{told:.4g}")] if told else [])
+    assert actual == ([sentence.format(f"{angle:.4g}")] if angle else [])
     beside = {**links, "rod": replace(links["rod"], plane=0.01)}
     assert not [*crossings(assemble(replace(given, links=beside)))]
 

@@ -179,12 +179,14 @@ def test_tables_in_a_window() -> None:
     np.testing.assert_allclose(torque_of(load), np.where((CIRCLE >= 1) & (CIRCLE < 2), 4.0, 0.0))
 
 
-@pytest.mark.parametrize(("start", "stop", "told"), [(5, 175, True), (-350, -300, True),
+@pytest.mark.parametrize(("start", "stop", "is_reported"), [(5, 175, True), (-350, -300, True),
                                                     (5, 181, False), (0, 20, False)])  # fmt: skip
-def test_a_window_within_the_rows_of_a_table_reports_all(start: int, stop: int, told: bool) -> None:
+def test_a_window_within_the_rows_of_a_table_reports_all(
+    start: int, stop: int, is_reported: bool
+) -> None:
     rows = eq.mechanism.LoadTable(tuple(np.radians((5.0, 90.0, 180.0))), ((4.0, 7.0, 4.0),))
     load = eq.Load("coupler", table=rows, start=radians(start), stop=radians(stop))
-    if told:
+    if is_reported:
         assert replace(crank_rocker(), loads=(load,)).loads == (load,)
     else:
         with refused(ModelError, "loads[1].outside", high="180 deg", low="5 deg"):

@@ -157,11 +157,11 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("told", WRONG)
-def test_what_is_wrong_is_reported_in_one_sentence(told):
-    (problem,) = wrong_law("drive.motion", WRONG[told])
-    assert told in str(problem)
+@pytest.mark.parametrize("problem_text", WRONG)
+def test_what_is_wrong_is_reported_in_one_sentence(problem_text):
+    (problem,) = wrong_law("drive.motion", WRONG[problem_text])
+    assert problem_text in str(problem)
     assert str(problem).startswith("drive.motion")
-    (of_cam,) = wrong_law("cams[1].lift", WRONG[told], CAM)
-    assert told.replace("crank angle", "cam angle") in str(of_cam)
+    (of_cam,) = wrong_law("cams[1].lift", WRONG[problem_text], CAM)
+    assert problem_text.replace("crank angle", "cam angle") in str(of_cam)
     assert "crank angle" not in str(of_cam)

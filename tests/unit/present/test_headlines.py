@@ -125,12 +125,12 @@ def test_what_is_alike_everywhere_has_no_place_of_its_own() -> None:
 
 
 @pytest.mark.parametrize(
-    ("across", "along", "told"),
+    ("across", "along", "words"),
     [(0.6, 1.0, "up and down"), (1.0, 0.5, "to and fro"), (1.0, 0.9, "in all directions")],
 )
-def test_a_force_acts_in_words_of_directions(across: float, along: float, told: str) -> None:
+def test_a_force_acts_in_words_of_directions(across: float, along: float, words: str) -> None:
     turned = np.linspace(0.0, 2 * np.pi, 36, endpoint=False)
-    assert told in acting(across * np.cos(turned) + 1j * along * np.sin(turned))
+    assert words in acting(across * np.cos(turned) + 1j * along * np.sin(turned))
 
 
 def test_titles_name_no_column_that_is_not_there() -> None:

@@ -326,7 +326,7 @@ def test_a_daily_exposure_beyond_the_limit_value_stands_out() -> None:
 
 
 @pytest.mark.parametrize(
-    ("told", "a_terminal", "colour"),
+    ("environment", "a_terminal", "colour"),
     [
         ({}, True, True),
         ({}, False, False),
@@ -338,11 +338,11 @@ def test_a_daily_exposure_beyond_the_limit_value_stands_out() -> None:
     ],
 )
 def test_colours_are_for_terminals_that_want_them(
-    told: dict[str, str], a_terminal: bool, colour: bool, monkeypatch: pytest.MonkeyPatch
+    environment: dict[str, str], a_terminal: bool, colour: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for name in ("NO_COLOR", "FORCE_COLOR"):
         monkeypatch.delenv(name, raising=False)
-    for name, value in {"TERM": "xterm", **told}.items():
+    for name, value in {"TERM": "xterm", **environment}.items():
         monkeypatch.setenv(name, value)
     stream = io.StringIO()
     monkeypatch.setattr(stream, "isatty", lambda: a_terminal, raising=False)

@@ -102,7 +102,7 @@ def test_a_dragged_centre_of_mass_counts_its_counterweight() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "told"),
+    ("change", "words"),
     [
         ({"set": "links.crank.mass", "text": "5"}, "the unit is missing"),
         ({"set": "links.crank.mass", "text": "-5 g"}, "got -5 g; a mass cannot be negative"),
@@ -121,11 +121,11 @@ def test_a_dragged_centre_of_mass_counts_its_counterweight() -> None:
     ],
 )
 def test_what_cannot_be_is_refused_and_changes_nothing(
-    change: dict[str, object], told: str
+    change: dict[str, object], words: str
 ) -> None:
     session, _ = opened("yamashita-1")
     before = session.shown
-    assert told in refusal(ask(session, "edit", seq=3, commit=True, edits=[change]))
+    assert words in refusal(ask(session, "edit", seq=3, commit=True, edits=[change]))
     assert session.shown is before
 
 

@@ -146,8 +146,8 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("path", "headers", "told"), REFUSED.values(), ids=REFUSED)
-def test_strangers_are_refused(here: Here, path: str, headers: dict[str, str], told: str) -> None:
+@pytest.mark.parametrize(("path", "headers", "words"), REFUSED.values(), ids=REFUSED)
+def test_strangers_are_refused(here: Here, path: str, headers: dict[str, str], words: str) -> None:
     def filled(text: str) -> str:
         port = here.host.rpartition(":")[2]
         for word, value in (("QUERY", here.query), ("HOST", here.host), ("PORT", port)):
@@ -157,7 +157,7 @@ def test_strangers_are_refused(here: Here, path: str, headers: dict[str, str], t
     given = {key: filled(value) for key, value in headers.items()}
     status, _, body = here.get(filled(path), **given)
     assert status in {400, 403}
-    assert body == f"equipoise: {told}\n" or status == 400
+    assert body == f"equipoise: {words}\n" or status == 400
 
 
 @pytest.mark.parametrize(

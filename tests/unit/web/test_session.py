@@ -341,7 +341,7 @@ def test_what_a_drive_holds_is_reported_where_it_is_dragged() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "words"),
     [
         ({"example": "yamashita-9"}, "no example of the name 'yamashita-9'"),
         ({"example": "../secret"}, "no example of the name"),
@@ -353,9 +353,9 @@ def test_what_a_drive_holds_is_reported_where_it_is_dragged() -> None:
         ({"name": "s.toml", "text": SIDELESS}, "such as\n[assembly]\n# C lies left or right of"),
     ],
 )
-def test_what_is_no_machine_is_refused(given: dict[str, str], told: str) -> None:
+def test_what_is_no_machine_is_refused(given: dict[str, str], words: str) -> None:
     session = Session()
-    assert told in refusal(ask(session, "open", seq=2, **given))
+    assert words in refusal(ask(session, "open", seq=2, **given))
     for kind in ("edit", "undo", "balance", "download", "compare"):
         assert "no machine is open" in refusal(ask(session, kind, edits=[MASS], kind="csv"))
 

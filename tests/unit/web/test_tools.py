@@ -68,8 +68,8 @@ def test_a_tool_is_reported_from_the_side_with_its_modes(name) -> None:
         assert f"{frequency:.4g} Hz" in view["name"]
         shape = np.array(view["shape"]).view(complex)
         assert np.max(np.abs(shape)) == pytest.approx(0.05 * tool.shaft.length, rel=1e-3)
-    told_masses = float(figures(content)["mass"]["texts"][1])
-    assert told_masses == pytest.approx(tool.mass, rel=1e-3)
+    total_mass = float(figures(content)["mass"]["texts"][1])
+    assert total_mass == pytest.approx(tool.mass, rel=1e-3)
     assert {entry["path"].partition(".")[0] for entry in content["fields"]} >= {
         "shaft",
         "operation",

@@ -280,7 +280,7 @@ def test_a_hatching_marks_the_frame(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("shapes", "told", "expected"),
+    ("shapes", "options", "expected"),
     [
         ([CRANK], {}, {"by": "_check"}),
         ([CRANK, PIVOT], {"frame": ["bse"]}, {"name": "base"}),
@@ -302,11 +302,11 @@ def test_a_hatching_marks_the_frame(tmp_path: Path) -> None:
     ],
 )
 def test_what_cannot_be_read_is_reported(
-    shapes: list[str], told: dict[str, object], expected: dict[str, Any], tmp_path: Path
+    shapes: list[str], options: dict[str, object], expected: dict[str, Any], tmp_path: Path
 ) -> None:
     path = drawing(tmp_path / "a.svg", *shapes)
     with refused(EquipoiseError, **expected):
-        import_machine(path, **told)  # type: ignore[arg-type]
+        import_machine(path, **options)  # type: ignore[arg-type]
 
 
 def test_entities_are_refused(tmp_path: Path) -> None:
