@@ -45,16 +45,18 @@ LISTS = (*part_kinds(Machine), "loads", "timed_loads", "joints", "constraints")
 class Sketch(MachineDraft):
     """A machine that may be unfinished, as a page has it.
 
-    name : of the file.  counterweights : as of a `Design`.
+    name : of the file.  counterweights, shafts, expressions : as of a `Design`.
     """
 
     name: str = UNTITLED
     counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
+    shafts: frozenset[str] = frozenset()
+    expressions: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(cls, computed: Computed, at: int = 0) -> Sketch:
         """A finished machine as it stands at a sample of its crank angle."""
-        own, motion = computed.design.own, computed.motion
+        design, own, motion = computed.design, computed.design.own, computed.motion
         poses = {}
         for name, link in motion.links.items():
             anchor, angle = motion.linkage.anchors[name], float(link.angle[at])
@@ -63,11 +65,12 @@ class Sketch(MachineDraft):
         rest = {key: getattr(own, key) for key in REST}
         weights = {
             name: counterweight
-            for name, counterweight in computed.design.counterweights.items()
+            for name, counterweight in design.counterweights.items()
             if counterweight.mass
         }
         return cls(own.frame, own.links, poses, own.drive, own.sliders, rest,
-                   float(motion.crank_angle[at]), computed.design.name, weights)  # fmt: skip
+                   float(motion.crank_angle[at]), design.name, weights, design.shafts,
+                   design.expressions)  # fmt: skip
 
     @property
     def units(self) -> ShownUnits | None:
@@ -131,7 +134,8 @@ class Sketch(MachineDraft):
         """
         machine = self.settled()
         weights = {item: w for item, w in self.counterweights.items() if item in self.links}
-        return solved(Design(self.name, machine, weights))
+        shafts = self.shafts & self.links.keys()
+        return solved(Design(self.name, machine, weights, shafts, self.expressions))
 
 
 # -- what it lacks ---------------------------------------------------------------------------------

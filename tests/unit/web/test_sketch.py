@@ -13,6 +13,7 @@ from equipoise.i18n import Worded
 from equipoise.web.desk import PageBackend
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
+from equipoise.web.sketch import Sketch
 from support.chosen import few
 from unit.web.pages import ask, edit, move, opened, refusal, state
 
@@ -334,6 +335,15 @@ def test_an_unfinished_machine_has_its_title_in_the_language_of_the_page() -> No
     title = eq.load("slider-crank-engine").title
     assert isinstance(title, Worded) and title.texts["ja"] != title
     assert maker.seen.content["title"] == title.texts["ja"]
+
+
+def test_a_machine_that_is_drawn_on_keeps_its_expressions_and_added_shafts() -> None:
+    """What balancing added is replaced when it is asked again, whatever was drawn meanwhile."""
+    shown = opened("yamashita-1")[0].shown
+    expressions = {"links.coupler.lengths.B-P": "=160 mm + 5 mm"}
+    design = replace(shown.design, shafts=frozenset({"crank", "gone"}), expressions=expressions)
+    after = Sketch.of(replace(shown, design=design)).finished().design
+    assert (after.expressions, after.shafts) == (expressions, {"crank"})
 
 
 def test_a_belt_and_a_rack_are_added_as_they_are_drawn() -> None:
