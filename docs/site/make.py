@@ -3,7 +3,8 @@
     make docs
 
 With ``--draft``, as tests of a change make it, each machine has its interactive file in one
-language.
+language, and the contents of a page beside it leave out public names, which Sphinx would copy for
+every page: a fifth of its time.
 
 Pages of `docs` are laid out in `build/docs-source` beside what is made of the product itself: the
 gallery, the commands, the public names, the scripts, the tutorials, the pictures of the theory.
@@ -164,7 +165,7 @@ def digest() -> str:
 def main(*, draft: bool) -> int:
     """Make the site anew, unless nothing has changed; returns 0 if Sphinx warns of nothing.
 
-    draft : as of `write_live`; a whole site that is there will do.
+    draft : as of this module; a whole site that is there will do.
     """
     from sphinx.cmd.build import main as sphinx
 
@@ -178,6 +179,7 @@ def main(*, draft: bool) -> int:
         lay_out(SOURCE, draft=draft)
         extra = f"-Dhtml_extra_path={SOURCE / EXTRA}"
         options = ["--quiet", "--fail-on-warning", f"-c{HERE}", f"-d{SOURCE}/.read", extra]
+        options += ["-Dtoc_object_entries=0"] * draft
         if status := sphinx([*options, str(SOURCE), str(BUILT)]):
             return status
         stamp.write_text(now, encoding="utf-8")
