@@ -80,7 +80,7 @@ def test_a_machine_is_changed_balanced_and_taken_along(wired: Live) -> None:
 RUNS = "cutter-bar"
 
 
-@pytest.mark.parametrize("address", WIRES, indirect=True)
+@pytest.mark.parametrize("address", few(WIRES, {"socket"}), indirect=True)
 def test_a_machine_runs_and_its_run_is_played_until_it_is_changed(wired: Live) -> None:
     """From rest to the standstill that is computed without a page; then the cycle, as before."""
     page, own = wired.page, eq.load(RUNS)

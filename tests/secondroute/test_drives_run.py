@@ -187,6 +187,7 @@ def table_on_two_cranks(drive: eq.Drive, other: FurtherDrive) -> eq.Machine:
     )  # fmt: skip
 
 
+@pytest.mark.exhaustive
 def test_a_table_on_two_cranks_whose_links_are_solved_at_once() -> None:
     drive = eq.Drive("crank", 15.0, free=True)
     other = FurtherDrive("second crank", motor=QUICK)
@@ -224,6 +225,7 @@ def test_the_bundled_mixer_starts_by_two_motors() -> None:
     assert all(course.turns > 0.05 for course in result.drives.values())
 
 
+@pytest.mark.exhaustive
 def test_a_five_bar_swings_with_friction() -> None:
     """Joints turn back at instants of their own."""
     drive = eq.Drive("left crank", 5.0, free=True)
@@ -244,6 +246,7 @@ def test_a_five_bar_moves_freely() -> None:
     assert not np.any(result.drives["left crank"].effort)
 
 
+@pytest.mark.exhaustive
 def test_a_motor_beside_a_crank_of_constant_speed() -> None:
     drive = eq.Drive("left crank", 15.0)
     other = FurtherDrive("right crank", start=pi / 3, motor=LAGGING)

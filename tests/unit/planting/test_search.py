@@ -115,6 +115,7 @@ def test_the_result_is_a_machine_that_turns(calmer: tuple[Fit, list[Requirement]
     assert fit.machine.assembly == eq.load("kim-chung-a").assembly
 
 
+@pytest.mark.exhaustive
 def test_the_same_seed_gives_the_same_result() -> None:
     machine = eq.load("kim-chung-c")
     goals = [Requirement("curve.width", target=0.1), Requirement("soil.depth", at_least=0.01)]

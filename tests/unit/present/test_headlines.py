@@ -401,6 +401,7 @@ def test_rows_of_a_high_picture_are_drawn_like_the_whole() -> None:
         assert sorted(each_row) == sorted(larger.findall(block.svg)), block.name
 
 
+@pytest.mark.exhaustive
 def test_wide_pictures_are_drawn_for_telephones_too() -> None:
     """With every panel, half as wide."""
     for name in ("twin-engine", "riding-transplanter"):
