@@ -5,7 +5,7 @@ Signals go by their names in the output of an analysis.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property, partial
 from typing import Any
@@ -75,33 +75,40 @@ class Signals:
         ------
         UsageError : there is no such signal, or a loop cannot have it.
         """
+        try:
+            return self.value(signal)
+        except _Missing:
+            raise UsageError(unknown(signal, self._known(), "signal")) from None
+
+    def value(self, signal: str) -> Any:
+        """As a call, but for a signal that there is not a `_Missing` is raised, which costs less
+        than to name those that there are.
+        """
         if signal in self.poses:
             return self.poses[signal]
         if signal.startswith(WATCHED):
             return self.watched[signal]
         entry, item = declared(signal) or (None, "")
-        if entry is None or entry.loop is None or not self._has(entry):
-            raise UsageError(unknown(signal, self._known(), "signal"))
+        if entry is None:
+            raise _Missing
+        return self._value(entry, item)
+
+    def _value(self, entry: Declared, item: str) -> Any:
+        """An output, or a member of a family of outputs."""
+        if entry.loop is None or item not in entry.members(self.machine):
+            raise _Missing
         if entry.by_friction and self.machine.rubs:
             raise UsageError(RUBS)
-        try:
-            value = entry.loop(
-                partial(self.of_member, item) if entry.is_family else self.of_machine
-            )
-        except _Missing:
-            raise UsageError(unknown(signal, self._known(), "signal")) from None
-        return PARTS[entry.part](value)
+        read = partial(self.of_member, item) if entry.is_family else self.of_machine
+        return PARTS[entry.part](entry.loop(read))
 
-    def _has(self, declared: Declared) -> bool:
-        """Whether the machine has what an output needs, as far as that depends on no member."""
-        return declared.needs != "planes" or self.machine.has_planes
-
-    def _known(self) -> Sequence[str]:
-        named = self.linkage.named_reactions
-        joints = [family_of(r.kind) + name for name, r in named]
-        ones = (item for item in DECLARED.values() if item.loop is not None and not item.is_family)
-        bearings = [f"bearings.{name}" for name in self.machine.bearings]
-        return [*(item.name for item in ones if self._has(item)), *joints, *bearings]
+    def _known(self) -> Iterator[str]:
+        """Names of the outputs that there are."""
+        for entry in DECLARED.values():
+            for item in entry.members(self.machine):
+                with suppress(_Missing, UsageError, MassError):
+                    self._value(entry, item)
+                    yield entry.named(item)
 
     # -- values ------------------------------------------------------------------------------------
 
@@ -305,8 +312,8 @@ def signals_in_loops(linkage: Linkage, names: Iterable[str]) -> list[str]:
     """
     signals, texts = _traced(linkage), []
     for name in names:
-        with suppress(UsageError):
-            signals(name)
+        with suppress(_Missing, UsageError):
+            signals.value(name)
             texts.append(name)
     return texts
 

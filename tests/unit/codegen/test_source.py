@@ -172,11 +172,29 @@ def test_strange_names_compiled() -> None:
         "joints",
         "shaking_force.z",
         "torque",
+        "drive_force",
+        "rocking_moment",
     ],
 )
 def test_unknown_signal(signal: str) -> None:
     with refused(UsageError, given=signal):
         source_of(four_bar(3.0, 1.0, 3.0, 2.5), signal)
+
+
+@pytest.mark.parametrize(
+    ("name", "signal", "meant"),
+    [
+        ("knife-drive", "belts.shaft to crank", "belts.shaft to crank.pull"),
+        ("yamashita-1", "drive_force", "drive_torque"),
+    ],
+)
+def test_what_is_proposed_in_place_of_an_unknown_signal_is_there(
+    name: str, signal: str, meant: str
+) -> None:
+    machine = eq.load(name)
+    with refused(UsageError, given=signal, name=meant):
+        source_of(machine, signal)
+    assert source_of(machine, meant)
 
 
 def test_forces_need_masses() -> None:
