@@ -18,6 +18,7 @@ from equipoise.errors import UsageError
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.reactions import idle_teeth_notes
+from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.laws import LengthLaw
@@ -184,6 +185,46 @@ def test_forces_that_are_shared_with_teeth_or_by_stiffness(
     if stiff:
         bare = eq.analyze(replace(own, joints=()), ANGLES).summary
         assert not np.allclose(known, [bare[name].rms for name in names], rtol=1e-3)
+
+
+def test_forces_that_are_shared_with_a_belt(numpy_engine: None) -> None:
+    """Cranks that a body keeps parallel, and a belt too; with its strands."""
+    base = make("parallel_cranks", 1).machine
+    start = float(eq.move(base, [0.0]).links["follower 1"].angle[0])
+    belt = Belt("crank", "follower 1", radii=(0.03, 0.03), tension=400.0, start=start)
+    base = replace(base, belts=(belt,))
+    assert assemble(base).shared is not None
+    outputs = eq.analyze(base, 8).outputs
+    names = [array.name for array in outputs.arrays if array.name.startswith("belts.")]
+    assert {f"belts.{belt.name}.pull", f"belts.{belt.name}.left"} <= {*names}
+    weighed(base, [*names, "drive_torque", "joints.B1"])
+
+
+@pytest.mark.parametrize("name", few(["transplanter", "rotary-transplanter"], {"transplanter"}))
+def test_fingers_in_soil(name: str, numpy_engine: None) -> None:
+    """Where the motion of the tip is that of the base."""
+    base = replace(eq.load(name).without_friction(), resistances=())
+    assert base.in_soil
+    signals = ["frame_force", "frame_moment", "drive_torque"]
+    signals += [f"joints.{joint}" for joint in eq.analyze(base, 8).forces.joints]
+    assert weighed(base, signals) != weighed(replace(base, planting=None), signals)
+
+
+def weighed(base: Machine, signals: Sequence[str]) -> list[list[float]]:
+    """Compare designs of which a mass and the speed vary, of any machine; give their figures."""
+    link = next(name for name, item in base.links.items() if item.mass)
+    numbers = named(base, str(KeyPath(("links", link, "mass"))), "drive.speed")
+    mass, speed = (number.value for number in numbers)
+    values = np.array([[mass, speed], [1.5 * mass, 0.7 * speed]])
+    wanted = wanted_of(signals, "rms", "max")
+    figures, reasons = Batch(base, paths_of(numbers), wanted, angles=ANGLES)(values)
+    assert not reasons.any()
+    for row, got in zip(values, figures, strict=True):
+        own = base
+        for number, value in zip(numbers, row, strict=True):
+            own = own.with_number(number.path, float(value))
+        same_figures(got, wanted, known_of(own, ANGLES, signals), ANGLES, TOLERANCE)
+    return [[*map(float, row)] for row in figures]
 
 
 CAMS = [(kind, seed) for kind in machines_cams.KINDS for seed in range(3)]

@@ -40,7 +40,6 @@ from equipoise.mechanism.kinematics.motion import in_time
 from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.element_kinds import force_kinds
-from equipoise.mechanism.parts.joint_properties import family_of
 from equipoise.mechanism.parts.machine import Machine
 
 RUBS = Note("what friction in joints changes cannot be computed in a loop")

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import reduce
+from itertools import islice
 from math import pi
 from operator import attrgetter
 from typing import Any
@@ -26,7 +27,7 @@ from equipoise.codegen.terms import ANGLE, Term, floor, greatest, least, pick, r
 from equipoise.codegen.trace import FAR as LOWEST
 from equipoise.codegen.trace import Trace
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.loopgroup import FAR, LoopForces
+from equipoise.mechanism.assembly.loopgroup import FAR, LoopForces, exerted
 from equipoise.mechanism.assembly.loops import (
     JUMP,
     Free,
@@ -375,11 +376,8 @@ class _Forces:
         closing = [self.loops[k] for k in self.closing]
         strengths = iter(self.by_work(closing))
         for k, loop in zip(self.closing, closing, strict=True):
-            units = loop.wrenches(self.poses, 0.0)
-            parts = [next(strengths) for _ in units]
-            pairs = [*zip(parts, units, strict=True)]
-            force = sum(part * unit for part, (unit, _) in pairs)
-            self.exert(k, force, sum(part * couple for part, (_, couple) in pairs))
+            parts = [*islice(strengths, loop.unknowns)]
+            self.exert(k, *exerted(loop.wrenches(self.poses, 0.0), parts))
         for place in reversed(self.step.group.tree):
             self.supply(place)
 

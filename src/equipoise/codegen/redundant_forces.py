@@ -13,6 +13,7 @@ changed that do not agree, a fixed number of times; whether all agree then is wa
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import islice
 from math import tau
 from typing import Any
 
@@ -106,12 +107,8 @@ class _SharedForces:
         shared, state = self.shared, self.trace.state
         senses = self.senses()
         strengths = iter(self.strengths(senses))
-        for loop, reaction, sense in zip(shared.loops, shared.reactions, senses, strict=True):
-            wrenches = loop.wrenches(self.poses, sense)
-            parts = [next(strengths) for _ in wrenches]
-            for name, unit in zip(reaction.outputs, zip(*wrenches, strict=True), strict=False):
-                state[name] = sum(part * item for part, item in zip(parts, unit, strict=True))
-            state.setdefault(f"p({reaction.at})", loop.place(self.poses))
+        of_loops = [[*islice(strengths, loop.unknowns)] for loop in shared.loops]
+        shared.put(state, self.poses, senses, of_loops)
         for drive, pin in shared.pins.items():
             state[f"F({drive})"], state[f"M({drive})"] = state[pin.force], next(strengths)
 

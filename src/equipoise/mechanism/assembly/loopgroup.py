@@ -59,13 +59,19 @@ class LoopForces:
         own = zip(group.links, group.anchors, strict=True)
         poses = poses_in(state, (*group.known, *own))
         senses = self.senses(state, poses)
-        strengths = self.solve(state, poses, senses)
+        self.put(state, poses, senses, self.solve(state, poses, senses))
+
+    def put(
+        self, state: State, poses: Poses, senses: Sequence[Any], strengths: Sequence[Sequence[Any]]
+    ) -> None:
+        """Add what joints exert to the state, by the strengths of the unknowns of each loop; arrays
+        or terms.
+        """
         for loop, reaction, sense, parts in zip(
             self.loops, self.reactions, senses, strengths, strict=True
         ):
-            units = zip(*loop.wrenches(poses, sense), strict=True)  # of forces, then of couples
-            for name, unit in zip(reaction.outputs, units, strict=False):
-                state[name] = sum(part * item for part, item in zip(parts, unit, strict=True))
+            wrench = exerted(loop.wrenches(poses, sense), parts)
+            state.update(zip(reaction.outputs, wrench, strict=False))
             if isinstance(loop, CouplingLoop):
                 state[f"p({reaction.at})"] = loop.place(poses)
                 state[f"T({loop.name})"] = parts[0]
@@ -134,6 +140,15 @@ class LoopForces:
         count = np.shape(state["theta"])
         full = [np.broadcast_to(part, np.broadcast_shapes(np.shape(part), count)) for part in parts]
         return np.stack(np.broadcast_arrays(*full), axis=-1)
+
+
+def exerted(units: Iterable[tuple[Any, Any]], strengths: Sequence[Any]) -> tuple[Any, Any]:
+    """Force, and couple, that a joint exerts by the strengths of its unit forces and couples."""
+    force, couple = (
+        sum(strength * part for strength, part in zip(strengths, parts, strict=True))
+        for parts in zip(*units, strict=True)
+    )
+    return force, couple
 
 
 def loop_group(

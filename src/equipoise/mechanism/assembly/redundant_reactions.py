@@ -297,7 +297,11 @@ class RedundantReactions(LoopForces):
                 force, moment = force - own, moment - torque - kernels.cross(lever, own)
         state[f"F({FRAME})"] = state[f"F({FRAME})"] + force
         state[f"M({FRAME})"] = state[f"M({FRAME})"] + moment
-        poses = self.poses(state)
+
+    def put(
+        self, state: State, poses: Poses, senses: Sequence[Any], strengths: Sequence[Sequence[Any]]
+    ) -> None:
+        super().put(state, poses, senses, strengths)
         for loop, reaction in zip(self.loops, self.reactions, strict=True):
             state.setdefault(f"p({reaction.at})", loop.place(poses))
 
