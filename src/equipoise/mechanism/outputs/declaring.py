@@ -3,9 +3,9 @@
 `outputs.declared` has the declarations.  `{}` in the name of a family stands for its members:
 ``links.{}.angle`` is declared once for all links.
 
-    @output("drive_power", "power", "drive power", linear=True, loop=power)
-    def drive_power(found):
-        return found.forces.drive_torque * found.motion.speed
+    @output("crank_power", "power", to_say("power of the crank"), linear=True)
+    def crank_power(result):
+        return result.forces.drive_torque * result.motion.speed
 """
 
 from __future__ import annotations
