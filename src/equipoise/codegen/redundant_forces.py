@@ -95,11 +95,10 @@ class _SharedForces:
 
     def __init__(self, trace: Trace, shared: RedundantReactions) -> None:
         self.trace, self.shared = trace, shared
-        self.size, self.links = float(shared.group.size), shared.group.links
         self.poses = _poses(trace, shared)
-        demand = [part for link in self.links for part in _demand(trace, link)]
-        self.rows = [1.0, 1.0, self.size] * len(self.links)
-        self.right = [part * (1.0 / row) for part, row in zip(demand, self.rows, strict=True)]
+        demand = [part for link in shared.group.links for part in _demand(trace, link)]
+        rows = shared.rows.tolist()
+        self.right = [part * (1.0 / row) for part, row in zip(demand, rows, strict=True)]
         self.couplings = [k for k, loop in enumerate(shared.loops) if loop.switches]
 
     def put(self) -> None:
@@ -138,23 +137,15 @@ class _SharedForces:
 
     def strengths(self, senses: Sequence[Any]) -> list[Any]:
         """What each joint bears of its unit forces, then the torque of each drive."""
-        shared, rows = self.shared, self.rows
-        columns, units, soft = [], [], []
-        most = max(shared.compliance.values(), default=1.0)
-        for loop, reaction, sense in zip(shared.loops, shared.reactions, senses, strict=True):
-            columns += shared.columns(loop, self.poses, sense)
-            units += [self.size if loop.turns and not k else 1.0 for k in range(loop.unknowns)]
-            soft += [shared.compliance.get(reaction.force, 0.0) / most] * loop.unknowns
-        for drive in shared.drives:
-            columns.append({3 * self.links.index(drive) + 2: 1.0})
-            units.append(self.size)
-            soft.append(0.0)
+        shared = self.shared
+        rows, units = shared.rows.tolist(), shared.units.tolist()
         columns = [
             {row: entry * (unit / rows[row]) for row, entry in column.items()
              if not _is_zero(entry)}
-            for column, unit in zip(columns, units, strict=True)
+            for column, unit in zip(shared.columns(self.poses, senses), units, strict=True)
         ]  # fmt: skip
         if shared.compliance:
+            soft = (shared.softness / np.max(shared.softness)).tolist()
             values = _softest(columns, soft, self.right)
         else:
             weights = _eliminated(_products(columns, len(rows)), self.right)

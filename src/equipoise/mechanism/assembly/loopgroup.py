@@ -97,23 +97,25 @@ class LoopForces:
         strengths = iter(solved.transpose(1, 2, 0).reshape(matrix.shape[-1], *demand.shape[:-1]))
         return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
 
-    def matrix(
-        self, state: State, poses: Poses, senses: Sequence[Any], extra_columns: int = 0
-    ) -> Array:
-        """What each unknown adds to force and moment on each link, (N, 3 n, m + more)."""
-        columns = [
-            column
-            for loop, sense in zip(self.loops, senses, strict=True)
-            for column in self.columns(loop, poses, sense)
-        ]
+    def matrix(self, state: State, poses: Poses, senses: Sequence[Any]) -> Array:
+        """What each unknown adds to force and moment on each link, (N, 3 n, m)."""
+        columns = self.columns(poses, senses)
         rows = 3 * len(self.group.links)
-        matrix = np.zeros((len(columns) + extra_columns, rows, *np.shape(state["theta"])))
-        for column, entries in zip(matrix, columns, strict=False):
+        matrix = np.zeros((len(columns), rows, *np.shape(state["theta"])))
+        for column, entries in zip(matrix, columns, strict=True):
             for row, entry in entries.items():
                 column[row] = entry
         return matrix.T
 
-    def columns(self, loop: LoopEquation, poses: Poses, sense: Any) -> list[dict[int, Any]]:
+    def columns(self, poses: Poses, senses: Sequence[Any]) -> list[dict[int, Any]]:
+        """What each unknown adds to force and moment on each link, by row; arrays or terms."""
+        return [
+            column
+            for loop, sense in zip(self.loops, senses, strict=True)
+            for column in self.columns_of(loop, poses, sense)
+        ]
+
+    def columns_of(self, loop: LoopEquation, poses: Poses, sense: Any) -> list[dict[int, Any]]:
         """Force and moment about the anchor on the links that it joins, by row, for a unit of each
         of its unknowns.
         """

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from math import degrees
 from typing import Any
 
@@ -355,10 +356,10 @@ class RedundantReactions(LoopForces):
         return np.stack([*parts, *[none] * len(self.drives)], axis=-1)
 
     def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
-        matrix, rows, units = self.balance(state, poses, senses)
+        matrix = self.balance(state, poses, senses)
         idle = self.idle(state)
         matrix *= ~idle[:, None]
-        demand = self.demand(state) / rows
+        demand = self.demand(state) / self.rows
         right = np.moveaxis(demand.reshape(-1, *demand.shape[-2:]), 0, -1)
         if self.compliance:
             values = np.concatenate(
@@ -370,33 +371,44 @@ class RedundantReactions(LoopForces):
         else:
             values = min_norm(matrix, right)
         values *= ~idle[..., None]  # of rounding
-        values *= units[:, None]
-        result = np.moveaxis(values, (-1, 1), (1, 0)).reshape(len(units), *demand.shape[:-1])
+        values *= self.units[:, None]
+        result = np.moveaxis(values, (-1, 1), (1, 0)).reshape(len(self.units), *demand.shape[:-1])
         count = len(self.drives)
         state.update((f"torque({drive})", item)
                      for drive, item in zip(self.drives, result[-count:], strict=True))  # fmt: skip
         strengths = iter(result)
         return [[next(strengths) for _ in range(loop.unknowns)] for loop in self.loops]
 
-    def balance(
-        self, state: State, poses: Poses, senses: Sequence[Any]
-    ) -> tuple[Array, Array, Array]:
-        """Equations (N, 3 n, m) of all free bodies without dimension, and the units (3 n,) of rows
-        and (m,) of unknowns: moments are counted as forces at the largest distance of two joints on
-        one body.
-
-        The last unknowns are the torques of the drives.
+    @cached_property
+    def rows(self) -> Array:
+        """Units (3 n,) of the equations: moments are counted as forces at the largest distance of
+        two joints on one body.
         """
-        size = self.group.size
+        return np.tile([1.0, 1.0, self.group.size], len(self.group.links))
+
+    @cached_property
+    def units(self) -> Array:
+        """Units (m,) of the unknowns, of which the last are the torques of the drives."""
         couples = [loop.turns and part == 0 for loop in self.loops for part in range(loop.unknowns)]
-        count = len(self.drives)
-        units = np.where([*couples, *[True] * count], size, 1.0)
-        rows = np.tile([1.0, 1.0, size], len(self.group.links))
-        matrix = self.matrix(state, poses, senses, extra_columns=count)
-        for column, drive in enumerate(self.drives, -count):
-            matrix[:, 3 * self.group.links.index(drive) + 2, column] = 1.0
-        matrix *= units / rows[:, None]
-        return matrix, rows, units
+        return np.where([*couples, *[True] * len(self.drives)], self.group.size, 1.0)
+
+    @cached_property
+    def softness(self) -> Array:
+        """Compliance (m,) of the unknowns, m/N; 0 of those that have none."""
+        owners = zip(self.loops, self.reactions, strict=True)
+        values = [self.compliance.get(reaction.force, 0.0)
+                  for loop, reaction in owners for _ in range(loop.unknowns)]  # fmt: skip
+        return np.array([*values, *[0.0] * len(self.drives)])
+
+    def columns(self, poses: Poses, senses: Sequence[Any]) -> list[dict[int, Any]]:
+        places = [3 * self.group.links.index(drive) + 2 for drive in self.drives]
+        return [*super().columns(poses, senses), *({place: 1.0} for place in places)]
+
+    def balance(self, state: State, poses: Poses, senses: Sequence[Any]) -> Array:
+        """Equations (N, 3 n, m) of all free bodies without dimension."""
+        matrix = self.matrix(state, poses, senses)
+        matrix *= self.units / self.rows[:, None]
+        return matrix
 
     def check(self, state: State) -> None:
         """Raise an error where a joint that is not needed for the motion does not fit, or where
@@ -449,12 +461,7 @@ class RedundantReactions(LoopForces):
 
     def energy(self, loose: Array, idle: Any = False) -> tuple[Array, Array]:
         """What unknowns (N, k, m), and loose forces themselves (N, k, k), store with loose ones."""
-        soft = np.array([
-            self.compliance.get(reaction.force, 0.0)
-            for loop, reaction in zip(self.loops, self.reactions, strict=True)
-            for _ in range(loop.unknowns)
-        ] + [0.0] * len(self.drives))  # fmt: skip
-        soft = np.where(idle, np.max(soft), soft)
+        soft = np.where(idle, np.max(self.softness), self.softness)
         weighed = np.swapaxes(loose * soft[..., None], -1, -2)
         return weighed, weighed @ loose
 
@@ -480,7 +487,7 @@ class RedundantReactions(LoopForces):
 
     def unsensed(self, state: State) -> Array:
         """The equations, for whatever flanks of couplings."""
-        return self.balance(state, self.poses(state), [0.0] * len(self.loops))[0]
+        return self.balance(state, self.poses(state), [0.0] * len(self.loops))
 
     def those(self, flags_by_unknown: Array) -> frozenset[str]:
         """Names of forces by flags of the unknowns."""
