@@ -270,6 +270,8 @@ def test_topics_are_listed_and_unknown_ones_refused() -> None:
         assert f"\n{meaning}" in succeeded(equipoise_runs("explain", term))
     assert known_topic("links.crank.section.width") == "links.NAME.section"
     assert known_topic("links") == "links.NAME"  # the word before a name of the user's
+    assert known_topic("support.mounts") == known_topic("mounts") == "support.mounts.NAME"
+    assert known_topic("support.mounts.left.stiffness") == "support.mounts.NAME"
     gravity = succeeded(equipoise_runs("explain", "gravity"))  # a key of a whole file
     assert "linkage" in gravity and "two accelerations" in gravity
     assert "drive.motor.servo" in succeeded(equipoise_runs("explain", "speed"))

@@ -158,9 +158,17 @@ def terms() -> Mapping[str, Explained]:
 def known_topic(topic: str) -> str:
     """The topic that a command can explain: the same, or the table that a place is in.
 
-    Tables with names of the user's, such as ``links.NAME``, go by the word before the name too.
+    Tables with names of the user's, such as ``links.NAME``, go by the word before the name too, and
+    a table in another, such as ``support.mounts.NAME``, by its own word, if it is alone with it.
     """
     if topic in errors():
         return topic
     steps = topic.split(".")
-    return table_at(steps) or table_at((*steps, NAME))
+    for path in (f"{topic}.{NAME}", topic):
+        if path in tables():
+            return path
+    if topic not in {*terms(), *keys_by_name()}:
+        within = [path for path in tables() if path.removesuffix(f".{NAME}").endswith(f".{topic}")]
+        if len(within) == 1:
+            return within[0]
+    return table_at(steps)
