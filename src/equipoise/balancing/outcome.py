@@ -535,9 +535,12 @@ def beside_the_aim(balanced: Balanced) -> Iterator[str]:
               and not was.is_limit]  # fmt: skip
     if fallen:
         yield say("This also reduces {figures}.", figures=listed(fallen))
+    for was, new in pairs:
+        if was.is_exposure and was.is_broken and not new.is_broken:
+            yield say("After that: {figure}.", figure=_valued(new))
     poor = balanced.advice.beyond.transmission
     before = {item.family: item.value for item in balanced.advice.before}
-    for item in _left(balanced.advice)[:1]:
+    for item in large_after(balanced.advice)[:1]:
         if poor is not None and item.yardstick_kind == "transmission":
             break
         if isclose(item.value, before.get(item.family, 0.0), rel_tol=SAME):
@@ -556,18 +559,20 @@ def large_besides(balanced: Balanced) -> Iterator[str]:
     """
     assert balanced.advice is not None
     has_transmission = balanced.advice.beyond.transmission is not None
-    others = [item for item in _left(balanced.advice)[1:]
+    others = [item for item in large_after(balanced.advice)[1:]
               if not (has_transmission and item.yardstick_kind == "transmission")]  # fmt: skip
     if others:
         figures = listed(map(_valued, others[: MOST_LARGE - 1]))
         yield say("Large besides: {figures}.", figures=figures)
 
 
-def _left(advice: Advice) -> list[FigureAssessment]:
-    """What is large after a change, the largest first, against the yardstick before."""
+def large_after(advice: Advice) -> list[FigureAssessment]:
+    """What is large after a change, against the yardstick before: what is beyond a limit, as where
+    a machine is judged, then the largest.
+    """
     left = (_against(new, was) for was, new in _before_and_after(advice))
     return sorted(
-        (item for item in left if item.is_large), key=lambda comparison: -comparison.excess
+        (item for item in left if item.is_large), key=lambda item: (not item.is_limit, -item.excess)
     )
 
 

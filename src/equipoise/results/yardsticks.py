@@ -194,6 +194,11 @@ class FigureAssessment:
         return self.is_limit and self.is_large
 
     @property
+    def is_exposure(self) -> bool:
+        """Whether it is the daily exposure of a hand."""
+        return self.output.startswith(GAUGES) and self.dimension == "acceleration"
+
+    @property
     def is_nearly_dead(self) -> bool:
         """Whether it is a transmission angle of less than 20 deg."""
         if self.yardstick_kind != "transmission":

@@ -17,7 +17,9 @@ from equipoise.balancing.first_order import end_weights_for
 from equipoise.balancing.headlines import Saving, assessed, watched_of, worse_headlines
 from equipoise.balancing.outcome import (
     benefit_sentences,
+    beside_the_aim,
     deterioration_sentences,
+    large_after,
     objectives_text,
     proof_sentences,
     sentences_beyond_masses,
@@ -175,6 +177,20 @@ def test_where_a_hand_holds_the_machine_its_gauge_alone_is_an_aim() -> None:
     assert watched == {f"gauges.{name}" for name in machine.support.gauges}
     for name in machine.support.gauges:
         assert swing(remedy.machine, name) <= HEADLINE_GROWTH * swing(machine, name)
+
+
+@pytest.mark.parametrize(("faster", "beyond"), [(1.0, False), (2.2, True)])
+def test_what_a_hand_bears_after_a_change_stands_first(faster: float, beyond: bool) -> None:
+    """What has come below the limit value, and what is left beyond it, whatever else is large."""
+    machine = with_hand(23.0)
+    advice = advise(machine.with_drive(speed=faster * machine.drive.speed))
+    assert advice.advice is not None
+    (was,) = (item for item in advice.advice.before if item.is_exposure)
+    (new,) = (item for item in advice.advice.after if item.is_exposure)
+    assert was.is_broken and new.is_broken == beyond
+    lines = [line for line in beside_the_aim(advice) if f"{new.value:.2f} m/s" in line]
+    assert len(lines) == 1
+    assert beyond == (large_after(advice.advice)[:1] == [new])
 
 
 @pytest.mark.parametrize("limit", [1e-6, 10.0])
