@@ -44,6 +44,7 @@ from equipoise.mechanism.assembly.steps import (
     demand_names,
     p,
     planar,
+    resultant,
     size_of_bodies,
     u,
 )
@@ -558,12 +559,9 @@ def _inertial(trace: Trace, link: str, place: int) -> LinkageReader:
 
 def _on_frame(trace: Trace, what: str, demands: list[HoldingWrench]) -> None:
     """Force and moment, about the drive's pivot, that these demands exert on the frame."""
-    pivot = trace.state[f"p({trace.linkage.pivot})"]
-    trace.state[f"{what} force"] = -sum(force for _, force, _ in demands)
-    trace.state[f"{what} moment"] = -sum(
-        moment + kernels.cross(trace.body(link)[0] - pivot, force)
-        for link, force, moment in demands
-    )
+    wrenches = ((trace.body(link)[0], force, moment) for link, force, moment in demands)
+    force, moment = resultant(wrenches, trace.state[f"p({trace.linkage.pivot})"])
+    trace.state[f"{what} force"], trace.state[f"{what} moment"] = -force, -moment
 
 
 def _drive_torques(trace: Trace) -> Iterable[Any]:

@@ -43,7 +43,14 @@ from equipoise.mechanism.assembly.loops import (
     Poses,
     poses_in,
 )
-from equipoise.mechanism.assembly.steps import Reaction, State, planar, running_angle
+from equipoise.mechanism.assembly.steps import (
+    Reaction,
+    State,
+    demand_names,
+    planar,
+    resultant,
+    running_angle,
+)
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.joint_properties import family_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -319,12 +326,10 @@ class RedundantReactions(LoopForces):
 
     def demanded(self, state: State) -> tuple[Any, Any]:
         """Force and moment about the pivot that these links together need."""
-        force, moment, pivot = 0j, 0.0, state[f"p({self.pivot})"]
-        for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
-            force = force + state[f"F({link})"]
-            lever = state[f"p({anchor})"] - pivot
-            moment = moment + state[f"M({link})"] + kernels.cross(lever, state[f"F({link})"])
-        return force, moment
+        links = zip(self.group.links, self.group.anchors, strict=True)
+        names = ((f"p({anchor})", *demand_names(link)) for link, anchor in links)
+        demands = ((state[p], state[f], state[m]) for p, f, m in names)
+        return resultant(demands, state[f"p({self.pivot})"])
 
     def poses(self, state: State) -> Poses:
         group = self.group

@@ -23,6 +23,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from equipoise.dataclass import dataclass
+from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import direction
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector, size_of
 from equipoise.signals import Array
@@ -183,6 +184,17 @@ def size_of_links(machine: Machine) -> float:
 def demand_names(link: str) -> tuple[str, str]:
     """Names of what a link's joints must supply: force, and moment about its anchor."""
     return f"F({link})", f"M({link})"
+
+
+def resultant(wrenches: Iterable[tuple[Any, Any, Any]], about: Any) -> tuple[Any, Any]:
+    """Force, N, and moment about a place, N m, of forces at places with moments about these.
+
+    wrenches : of each its place, m, force and moment; arrays or terms, as is the place `about`.
+    """
+    each = list(wrenches)
+    force = sum(force for _, force, _ in each)
+    moment = sum(moment + kernels.cross(place - about, force) for place, force, moment in each)
+    return force, moment
 
 
 def selects_flank(step: Step) -> bool:

@@ -22,7 +22,7 @@ from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note, key_names
 from equipoise.mechanism.assembly.joints import given_properties
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.steps import Reaction, p, planar, u
+from equipoise.mechanism.assembly.steps import Reaction, p, planar, resultant, u
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.friction import (
     unit_demands,
@@ -391,14 +391,17 @@ class Forces(ForceReadings, Displayed):
         return forces(self.motion.at(speed, acceleration), self.about)
 
     def _force(self, demands: Mapping[str, Demand]) -> VectorSignal:
-        whole = -sum(force for force, _ in demands.values())
-        return VectorSignal(full(self.motion, whole, complex))
+        force, _ = self._resultant(demands, self.about)
+        return VectorSignal(full(self.motion, -force, complex))
 
     def moment(self, demands: Mapping[str, Demand], about: complex) -> Any:
         """Moment of demands of links about a point, N m."""
-        return sum(
-            moment + kernels.cross(self.motion.state[f"p({self.anchor(link)})"] - about, force)
-            for link, (force, moment) in demands.items()
+        return self._resultant(demands, about)[1]
+
+    def _resultant(self, demands: Mapping[str, Demand], about: complex) -> tuple[Any, Any]:
+        state = self.motion.state
+        return resultant(
+            ((state[f"p({self.anchor(link)})"], *demand) for link, demand in demands.items()), about
         )
 
     def anchor(self, link: str) -> str:

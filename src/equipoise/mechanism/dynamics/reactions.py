@@ -25,7 +25,7 @@ from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.redundant_reactions import CHANGE_POINT_OFFSET, IDLE, WEAK
-from equipoise.mechanism.assembly.steps import Reaction, State, demand_names, run
+from equipoise.mechanism.assembly.steps import Reaction, State, demand_names, resultant, run
 from equipoise.mechanism.checks import NamedItems
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.cylinders import pushes
@@ -372,18 +372,19 @@ class JointReactions:
     @cached_property
     def frame_force(self) -> Array:
         """Sum of the forces of all joints on the frame, N, complex."""
-        grounded = self.motion.linkage.grounded
-        total = sum(self.state[f"F({body})"] for body in (FRAME, *grounded))
-        return full(self.motion, -total, complex)
+        return full(self.motion, -self._on_frame(0j)[0], complex)
 
     def frame_moment(self, about: complex) -> Array:
         """Moment of all joints and of the drives on the frame about a point, N m."""
-        anchors, total = self.motion.linkage.anchors, np.zeros(())
-        for body in (FRAME, *self.motion.linkage.grounded):
-            force, moment = (self.state[name] for name in demand_names(body))
-            arm = self.state[f"p({anchors[body]})"] - about
-            total = total - moment - kernels.cross(arm, force)
-        return total
+        return np.asarray(-self._on_frame(about)[1])
+
+    def _on_frame(self, about: complex) -> tuple[Any, Any]:
+        anchors = self.motion.linkage.anchors
+        bodies = (FRAME, *self.motion.linkage.grounded)
+        names = ((f"p({anchors[body]})", *demand_names(body)) for body in bodies)
+        return resultant(
+            ((self.state[p], self.state[f], self.state[m]) for p, f, m in names), about
+        )
 
     @property
     def joints(self) -> dict[str, JointForce]:
