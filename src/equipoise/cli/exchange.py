@@ -218,7 +218,7 @@ def import_file(
     )
     if shown.units:
         imported = imported.shown_in(shown.units)
-    check_new(imported.outline.machine(), path)
+    check_new(imported.outline.to_machine(), path)
 
     def save() -> list[str]:
         write(path, imported.text(), replace=False)

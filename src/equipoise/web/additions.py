@@ -22,23 +22,15 @@ from equipoise.mechanism.parts.element_kinds import PartKind, named_value, part_
 from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Machine, Slider
 from equipoise.quantities import clean
 from equipoise.web.messages import Message, Spot
-from equipoise.web.sketch import Sketch, assumed_bar, assumed_block
+from equipoise.web.sketch import COINCIDENT, Sketch, assumed_bar, assumed_block, check_point
 
 USUAL_SPEED = 2 * pi
 """rad/s, of a drive that is chosen."""
-COINCIDENT = 1e-9
-"""Distance over the size of the machine below which two places are one."""
 
 
 def the(body: str) -> str:
     """A body in a sentence."""
     return Note("the frame") if body == FRAME else body
-
-
-def check_point(sketch: Sketch, name: str) -> None:
-    """Refuse a point that is not there."""
-    if name not in sketch.places:
-        raise UsageError(unknown(name, sketch.places, "point"))
 
 
 def check_body(sketch: Sketch, name: str) -> None:

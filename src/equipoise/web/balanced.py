@@ -34,7 +34,7 @@ from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import Link, Machine
 from equipoise.quantities import clean, clean_place, display, format_quantity
 from equipoise.results.outputs import objective_named, shown_in
-from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
+from equipoise.web.design import Counterweight, Design, PageDraft, joined, pin_of, place_of_pin
 from equipoise.web.edits import Computed, solved
 from equipoise.web.figures import compared, figures_of
 from equipoise.web.messages import JsonObject
@@ -46,7 +46,7 @@ GAIN = 1e-3
 """Share of the aim below which less of it is nothing that anybody would build."""
 
 
-def balanced(base: Design, hold: bool = False) -> Balanced:
+def balanced(base: PageDraft, hold: bool = False) -> Balanced:
     """By the plan of the file, or as `advise` does it; with the errors of `balance`.
 
     hold : whether no gauge may read more than it does, whatever the plan says; advice makes none
@@ -73,7 +73,7 @@ def balanced(base: Design, hold: bool = False) -> Balanced:
     return advise(base.machine, solve) if frees else _advised(base)
 
 
-def _without_shafts(base: Design) -> Design:
+def _without_shafts(base: PageDraft) -> PageDraft:
     """The design without links that an earlier balance has added, their couplings and pins."""
     own, gone = base.own, base.shafts & base.own.links.keys()
     links = {name: link for name, link in own.links.items() if name not in gone}
@@ -89,14 +89,14 @@ def _without_shafts(base: Design) -> Design:
     return base.with_machine(replace(own, links=links, frame=frame, **couplings))
 
 
-def _advised(base: Design) -> Balanced:
+def _advised(base: PageDraft) -> Balanced:
     """As `advise` does it, in the place of all counterweights that there are."""
     weights = _weighted(base)
     result = advise(base.without(weights).machine)
     return advice_against(result, base.machine.with_balance(None)) if weights else result
 
 
-def _weighted(base: Design) -> list[str]:
+def _weighted(base: PageDraft) -> list[str]:
     """Links that have a counterweight."""
     return [name for name, weight in base.counterweights.items() if weight.mass]
 
@@ -109,18 +109,18 @@ def _with_gauge_limits(machine: Machine, plan: Balance) -> Balance:
     return replace(plan, limits=(*plan.limits, *(Limit(gauge, ratio=1.0) for gauge in gauges)))
 
 
-def _replaced(base: Design, plan: Balance) -> list[str]:
+def _replaced(base: PageDraft, plan: Balance) -> list[str]:
     """Links that have a counterweight on the pin where the plan may add mass."""
     free = {(mass.link, mass.at) for mass in plan.masses}
     return [name for name in _weighted(base) if (name, pin_of(base.own, name)) in free]
 
 
-def _taken_away(base: Design, balanced: Balanced) -> list[str]:
+def _taken_away(base: PageDraft, balanced: Balanced) -> list[str]:
     """Links whose counterweights a result takes away, or replaces."""
     return _weighted(base) if balanced.advice is not None else _replaced(base, balanced.plan)
 
 
-def _replaced_shafts(base: Design, balanced: Balanced) -> list[str]:
+def _replaced_shafts(base: PageDraft, balanced: Balanced) -> list[str]:
     """Shafts of an earlier balance that a result replaces."""
     return [] if balanced.advice is not None else sorted(base.shafts & base.own.links.keys())
 
@@ -152,7 +152,7 @@ DIGITS = 9
 """Digits of a place: a program finds -1e-12 m beside 40 mm for 0."""
 
 
-def balanced_design(base: Design, balanced: Balanced) -> Design:
+def balanced_design(base: PageDraft, balanced: Balanced) -> Design:
     """The balanced machine, whose masses on pins of the frame can be changed further.
 
     base : what was balanced.
@@ -219,7 +219,7 @@ def _rounded(body: Body) -> Body:
     return replace(body, at=at, mass=clean(body.mass, "mass"))
 
 
-def _weights(base: Design, balanced: Balanced) -> dict[str, Counterweight]:
+def _weights(base: PageDraft, balanced: Balanced) -> dict[str, Counterweight]:
     """Masses that were found about pins of the frame, by link."""
     weights = {}
     for change in balanced.changes:

@@ -24,7 +24,6 @@ from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, Le
 from equipoise.mechanism.parts.machine import FRAME, Slider
 from equipoise.quantities import clean
 from equipoise.web.additions import (
-    COINCIDENT,
     PartTool,
     ToolOptions,
     check_body,
@@ -34,7 +33,7 @@ from equipoise.web.additions import (
     with_part,
 )
 from equipoise.web.messages import Message, Spot
-from equipoise.web.sketch import Sketch
+from equipoise.web.sketch import COINCIDENT, Sketch
 
 ROLLER = 0.25
 """Radius of the roller over the distance of its centre from the cam's axis."""
@@ -172,7 +171,7 @@ def _cut(sketch: Sketch, cam: Cam, pin: str, joint: Slider | str) -> Sketch:
     for item in _moving(sketch, cam, pin, joint):
         result = with_part(sketch, item)
         try:
-            machine = result.machine()
+            machine = result.to_machine()
             check_shape(machine, result.joints, fitted(machine, result.joints, item))
         except ModelError as error:
             refused = error

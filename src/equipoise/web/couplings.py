@@ -20,9 +20,9 @@ from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean
-from equipoise.web.additions import COINCIDENT, PartTool, ToolOptions, check_body, the, with_part
+from equipoise.web.additions import PartTool, ToolOptions, check_body, the, with_part
 from equipoise.web.messages import Message
-from equipoise.web.sketch import Sketch
+from equipoise.web.sketch import COINCIDENT, Sketch
 
 PITCHES = (0.014, 0.008, 0.005, 0.003, 0.002)
 """Of toothed belts that are usual, m."""

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from cmath import phase
 from collections.abc import Iterable, Mapping
 from dataclasses import field, replace
 from functools import cached_property
 from math import cos, pi, sin
 from types import MappingProxyType
-from typing import Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.parts.links import MASS_FIELDS
-from equipoise.mechanism.parts.machine import Link, Machine
+from equipoise.mechanism.parts.machine import Drive, Link, Machine, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import Measured, clean, clean_place
 
@@ -42,27 +44,88 @@ class Counterweight:
         return self.radius * complex(cos(self.direction), sin(self.direction))
 
 
-@dataclass(frozen=True)
-class Design:
-    """One state of a page.
+@dataclass(frozen=True, eq=False)
+class PageDraft(ABC):
+    """A machine on a page, finished (`Design`) or not (`Sketch`), with what is tried on it.
 
-    name : of the file or example.  own : the machine without the counterweights.
+    name : of the file or example.
     counterweights : by link; those of mass 0 do nothing, and keep their place.
     shafts : links that balancing has added, which balancing again replaces.
     expressions : by which numbers were given that are none of the file's, by path: lengths and
         directions of oblique lines, and counterweights.
     """
 
-    name: str
-    own: Machine
-    counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
-    shafts: frozenset[str] = frozenset()
-    expressions: Mapping[str, str] = field(default_factory=dict)
+    if TYPE_CHECKING:  # a default of a field is looked up in the classes above
+
+        @property
+        def name(self) -> str: ...
+
+        @property
+        def own(self) -> Machine: ...
+
+        @property
+        def counterweights(self) -> Mapping[str, Counterweight]: ...
+
+        @property
+        def shafts(self) -> frozenset[str]: ...
+
+        @property
+        def expressions(self) -> Mapping[str, str]: ...
+
+        @property
+        def frame(self) -> Mapping[str, Vector]: ...
+
+        @property
+        def links(self) -> Mapping[str, Link]: ...
+
+        @property
+        def drive(self) -> Drive | None: ...
+
+    drawn_keys: ClassVar[tuple[str, ...]] = ()
+    """Keys of couplings that follow from where links are drawn."""
 
     @property
+    @abstractmethod
     def units(self) -> ShownUnits | None:
         """In which its file has values shown."""
-        return self.own.units
+
+    @property
+    @abstractmethod
+    def parameters(self) -> Mapping[str, Any]:
+        """Those of its file, by name."""
+
+    @property
+    @abstractmethod
+    def known_machine(self) -> Machine | None:
+        """The machine without the counterweights; None where what there is makes none yet."""
+
+    @abstractmethod
+    def with_machine(self, own: Machine) -> Self:
+        """Return the draft with another machine, whose counterweights stay."""
+
+    @abstractmethod
+    def with_number(self, path: KeyPath, value: float) -> Self:
+        """Return the draft with another number of the machine, by its path in the file.
+
+        Raises
+        ------
+        EquipoiseError : it cannot be.
+        """
+
+    @abstractmethod
+    def with_point(self, body: str, point: str, place: Vector) -> Self:
+        """Return the draft with a point of a body elsewhere, in the axes of that, m."""
+
+    @abstractmethod
+    def points_about(self, body: str, keep: Iterable[str]) -> Mapping[str, Vector]:
+        """Points of a body in its axes, m, with those of other bodies that are kept in place.
+
+        keep : names of points from which one of the body keeps its distance.
+        """
+
+    def altered(self, **values: Any) -> Self:
+        """Return the draft with other values of its fields."""
+        return replace(self, **values)
 
     @cached_property
     def machine(self) -> Machine:
@@ -86,11 +149,7 @@ class Design:
         """The counterweight on a link; at first without mass, but where it would do some good."""
         return self.counterweights.get(link) or _opposite(self.own, link)
 
-    def with_machine(self, own: Machine) -> Design:
-        """These counterweights on another machine of the same build."""
-        return replace(self, own=own)
-
-    def with_weight(self, link: str, weight: Counterweight) -> Design:
+    def with_weight(self, link: str, weight: Counterweight) -> Self:
         """Another counterweight on a link.
 
         Raises
@@ -106,13 +165,13 @@ class Design:
                     Note("got a {what} of {text}; give 0 or more", what=what, text=given)
                 )
         weights = {**self.counterweights, link: weight}
-        return replace(self, counterweights=MappingProxyType(weights))
+        return self.altered(counterweights=MappingProxyType(weights))
 
-    def without(self, links: Iterable[str]) -> Design:
+    def without(self, links: Iterable[str]) -> Self:
         """The counterweights of some links without mass, in their places."""
         bare = {name: replace(self.counterweights[name], mass=0.0) for name in links}
         weights = {**self.counterweights, **bare}
-        return replace(self, counterweights=MappingProxyType(weights))
+        return self.altered(counterweights=MappingProxyType(weights))
 
     def own_center(self, link: str, center: complex) -> complex:
         """Centre of mass that a link needs so that it lies there with its counterweight, m.
@@ -134,6 +193,73 @@ class Design:
                 )
             )
         return center + (center - place_of_pin(self.own, link) - weight.arm) * (weight.mass / mass)
+
+
+DraftT = TypeVar("DraftT", bound=PageDraft)
+
+
+@dataclass(frozen=True)
+class Design(PageDraft):
+    """A finished machine with the counterweights that are tried on it.
+
+    own : the machine without the counterweights.  Others as of a `PageDraft`.
+    """
+
+    name: str
+    own: Machine
+    counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
+    shafts: frozenset[str] = frozenset()
+    expressions: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def frame(self) -> Mapping[str, Vector]:
+        """Points of the frame, m."""
+        return self.own.frame
+
+    @property
+    def links(self) -> Mapping[str, Link]:
+        """Links of the machine by name."""
+        return self.own.links
+
+    @property
+    def drive(self) -> Drive:
+        """The first drive."""
+        return self.own.drive
+
+    @property
+    def units(self) -> ShownUnits | None:
+        return self.own.units
+
+    @property
+    def parameters(self) -> Mapping[str, Any]:
+        return self.own.parameters
+
+    @property
+    def known_machine(self) -> Machine:
+        return self.own
+
+    def with_machine(self, own: Machine) -> Design:
+        return replace(self, own=own)
+
+    def with_number(self, path: KeyPath, value: float) -> Design:
+        return self.with_machine(self.own.with_number(path, value))
+
+    def with_point(self, body: str, point: str, place: Vector) -> Design:
+        return self.with_machine(self.own.with_point(body, point, place))
+
+    def points_about(self, body: str, keep: Iterable[str]) -> Mapping[str, Vector]:
+        return self.own.points_of(body)
+
+
+def fitting_counterweights(
+    weights: Mapping[str, Counterweight], machine: Machine
+) -> Mapping[str, Counterweight]:
+    """Counterweights of links that a machine has, with a pin and a mass."""
+    return MappingProxyType({
+        name: weight for name, weight in weights.items()
+        if name in machine.links and machine.links[name].has_mass
+        and pin_of(machine, name) is not None
+    })  # fmt: skip
 
 
 def pin_of(machine: Machine, link: str) -> str | None:

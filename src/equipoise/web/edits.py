@@ -1,4 +1,4 @@
-"""Edits: from a design and what a page does to it to a new design.
+"""Edits: from a draft and what a page does to it to another one, computed as far as it can be.
 
 What is dragged at a crank angle keeps the pose that every link has there: a point gets new
 coordinates in each link that has it, so that all other points stand still.
@@ -6,7 +6,7 @@ coordinates in each link that has it, so that all other points stand still.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, wraps
@@ -17,22 +17,29 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, MobilityError, ModelError, MotionError, UsageError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import ALTERNATIVES, unknown
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.swinging import SWUNG, swing
 from equipoise.mechanism.parts.drives import Pushing
 from equipoise.mechanism.parts.machine import Machine, Position, Vector
-from equipoise.quantities import clean, clean_place
+from equipoise.quantities import clean, clean_place, format_exact
 from equipoise.results.analysis import ANGLES, LEAST_ANGLES, Analysis, analyze
+from equipoise.results.machine_blocks import driven
 from equipoise.symbols.scene import Scene
-from equipoise.web.design import DRAGGED, Design
+from equipoise.web.design import DRAGGED, PageDraft
 from equipoise.web.fields import constrained_place, fields_of
 from equipoise.web.following import DragGoals, extent_of, following
-from equipoise.web.messages import DraftEdit, Drag, Setting
+from equipoise.web.messages import DraftEdit, Drag, Entry, Setting
+from equipoise.web.sketch import Sketch, lacking, moved
+from equipoise.web.sketch_scene import drawn_scene
+from equipoise.web.structure_edits import with_constraints_met
+from equipoise.web.tables import entered
 
 R = TypeVar("R")
+LONGER = 0.1
+"""By how much a stroke is longer at its other end, over what it is."""
 MOST_SAMPLES = 2880
 """Crank angles in a cycle of many turns, which has fewer in each."""
 OTHER_SIDE = {item: other for pair in ALTERNATIVES for item, other in (pair, pair[::-1])}
@@ -46,28 +53,48 @@ THERE = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Computed:
-    """A design with what it does.
+    """A draft with what it does, or what it lacks.
 
+    result : the analysis; None of an unfinished machine.
+    lacks : a sentence on why that does not move yet.
     stand : crank angle at which it was drawn, rad; None where it has not just been made.
     swings : that its crank cannot turn, and how far it is let swing; None where it can.
     along : which points went along with what was changed, so that joints agree, if any did.
     limit_note : why a point did not come to where it was dragged, if a drive holds it.
     """
 
-    design: Design
-    analysis: Analysis
+    design: PageDraft
+    result: Analysis | None
+    lacks: str = ""
     stand: float | None = None
     swings: Note | None = None
     along: Note | None = None
     limit_note: Note | None = None
 
     @property
+    def finished(self) -> bool:
+        """Whether it moves."""
+        return self.result is not None
+
+    @property
+    def analysis(self) -> Analysis:
+        """What it does; a `UsageError` where the machine is not finished."""
+        if self.result is None:
+            raise UsageError(Note("the machine is not finished: {lacks}", lacks=self.lacks))
+        return self.result
+
+    def checked(self) -> Computed:
+        """Return the machine itself, or raise a `UsageError` where it is not finished."""
+        _ = self.analysis
+        return self
+
+    @property
     def motion(self) -> Motion:
         return self.analysis.motion
 
     @property
-    def moved(self) -> Design:
-        """The design, with the motion by which its crank swings where it cannot turn."""
+    def moved(self) -> PageDraft:
+        """The draft, with the motion by which its crank swings where it cannot turn."""
         if self.swings is None:
             return self.design
         changes = {name: getattr(self.analysis.machine, name) for name in SWUNG}
@@ -76,7 +103,21 @@ class Computed:
     @cached_property
     def scene(self) -> Scene:
         """What there is to draw of it."""
+        if isinstance(self.design, Sketch):
+            return drawn_scene(self.design)
         return Scene.of(self.motion)
+
+    def sketch(self, at: int) -> Sketch:
+        """The draft as a sketch; a finished machine as at a sample of its crank angle.
+
+        Raises
+        ------
+        UsageError : there is no such sample.
+        """
+        if isinstance(self.design, Sketch):
+            return self.design
+        _check_sample(self.motion, at)
+        return Sketch.of(self.design, self.motion, at)
 
 
 def kept_with_first(make: Callable[..., R]) -> Callable[..., R]:
@@ -95,7 +136,50 @@ def kept_with_first(make: Callable[..., R]) -> Callable[..., R]:
     return result_of
 
 
-def solved(design: Design, previous: Computed | None = None, stuck: bool = True) -> Computed:
+def computed(draft: PageDraft) -> Computed:
+    """Compute a draft; a sketch that cannot be computed says what it lacks.
+
+    Raises
+    ------
+    EquipoiseError : a design cannot be computed.
+    """
+    if not isinstance(draft, Sketch):
+        return solved(draft)
+    lacks = lacking(draft)
+    if not lacks:
+        try:
+            result = solved(draft.finished())
+            return replace(result, stand=_stand(result, draft))
+        except EquipoiseError as error:
+            lacks = error.message()
+    return Computed(draft, None, lacks)
+
+
+def _stand(computed: Computed, sketch: Sketch) -> float:
+    """Crank angle at which a machine is as it is drawn, rad; of a crank that cannot turn, the first
+    at which its link, which swings, is there or next to it.
+    """
+    drive = computed.analysis.machine.drive
+    if computed.swings is None:
+        return sketch.crank_angle
+    off = computed.motion.links[drive.link].angle - sketch.poses[drive.link].angle
+    return float(computed.motion.crank_angle[np.argmin(np.abs(np.sin(off / 2)))])
+
+
+def _tried(sketch: Sketch) -> Computed:
+    """A sketch in which something is dragged: it stands where it is drawn until it is let go."""
+    result = computed(sketch)
+    return Computed(sketch, None, turning(result.analysis.machine)) if result.finished else result
+
+
+def turning(machine: Machine) -> str:
+    """That a machine is finished."""
+    if not machine.has_crank:
+        return driven(machine, machine.drive.speed)
+    return say("1 degree of freedom; {link} turns fully", link=machine.drive.link)
+
+
+def solved(design: PageDraft, previous: Computed | None = None, stuck: bool = True) -> Computed:
     """Compute a design; the errors are those of `analyze`.
 
     previous : one of the same build that differs by little, if one is known.
@@ -124,11 +208,15 @@ def movable(machine: Machine) -> list[str]:
 
 
 def edited(
-    base: Computed, changes: Iterable[DraftEdit], previous: Computed | None = None
+    base: Computed,
+    changes: Iterable[DraftEdit],
+    previous: Computed | None = None,
+    commit: bool = True,
 ) -> Computed:
-    """Change a design and compute it.
+    """Set numbers of a draft and drag its points, and compute it.
 
-    previous : a design that differs by less than the base does, if one is known.
+    previous : what was tried last, which differs by less than the base does, if anything was.
+    commit : whether what is dragged is let go; until then a sketch stands where it is drawn.
 
     Raises
     ------
@@ -140,9 +228,22 @@ def edited(
             design = _set(design, change)
         elif change.of_mass:
             design = _mass_moved(base, design, change)
+        elif isinstance(design, Sketch):
+            place = constrained_place(design.places, change)
+            design = moved(design, change.name, place)
         else:
             design, place = _moved(base, design, change)
             goals[change.name] = (change.at, place)
+    if isinstance(design, Sketch):
+        design = with_constraints_met(base.sketch(0), design)
+        return computed(design) if commit else _tried(design)
+    return _assembled_design(base, design, goals, previous)
+
+
+def _assembled_design(
+    base: Computed, design: PageDraft, goals: DragGoals, previous: Computed | None
+) -> Computed:
+    """Compute a design that was changed, with what has to go along so that its joints fit."""
     if design.own.constraints:
         design = design.with_machine(design.own.with_constraints_met(base.design.own))
     if previous is not None and previous.along is not None:  # so this one needs something along too
@@ -159,7 +260,7 @@ def edited(
 
 
 def _agreeing(
-    base: Computed, design: Design, goals: DragGoals, previous: Computed
+    base: Computed, design: PageDraft, goals: DragGoals, previous: Computed
 ) -> Computed | None:
     """The design with the other changes that make all joints fit, or None if these are unknown."""
     if base.motion.linkage.shared is None:
@@ -171,21 +272,21 @@ def _agreeing(
     return replace(fitting, along=result.note if result.spots else None)
 
 
-def _set(design: Design, change: Setting) -> Design:
+def _set(design: PageDraft, change: Setting) -> PageDraft:
     """A number set to a value, or to what was typed."""
     fields = fields_of(design)
     field = fields.get(change.path)
     if field is None:
         raise UsageError(unknown(change.path, fields, "number of this machine"))
-    return field.keeping(change.keep).typed(design, change.to)  # type: ignore[no-any-return]
+    return field.keeping(change.keep).typed(design, change.to)
 
 
-def _moved(base: Computed, design: Design, change: Drag) -> tuple[Design, complex]:
+def _moved(base: Computed, design: PageDraft, change: Drag) -> tuple[PageDraft, complex]:
     """A point dragged to a place of the frame, or as near as locked lengths let it, m."""
     machine, motion = design.own, base.motion
     if change.name not in movable(machine):
         raise UsageError(unknown(change.name, movable(machine), "point that can be moved"))
-    _check_sample(motion, change)
+    _check_sample(motion, change.at)
     to = constrained_place(
         {name: point.place[change.at] for name, point in motion.points.items()}, change
     )
@@ -202,29 +303,27 @@ def _moved(base: Computed, design: Design, change: Drag) -> tuple[Design, comple
     return design.with_machine(replace(machine, frame=frame, links=links, position=position)), to
 
 
-def _mass_moved(base: Computed, design: Design, change: Drag) -> Design:
+def _mass_moved(base: Computed, design: PageDraft, change: Drag) -> PageDraft:
     """The centre of mass of a link, with its counterweight, dragged to a place of the frame."""
     machine = design.own
     having = [name for name, link in machine.links.items() if link.has_mass]
     if change.name not in having:
         raise UsageError(unknown(change.name, having, "link with a mass"))
-    _check_sample(base.motion, change)
-    place = complex(*_local(base.motion, change.name, change.at, change.to))
+    if isinstance(design, Sketch):
+        place = design.pose(change.name).into(change.to)
+    else:
+        _check_sample(base.motion, change.at)
+        place = complex(*_local(base.motion, change.name, change.at, change.to))
     center = design.own_center(change.name, place)
     there = clean_place(center, extent_of(machine), DRAGGED)
-    moved = machine.with_link(change.name, center_of_mass=there)
-    return design.with_machine(moved)
+    return design.with_machine(machine.with_link(change.name, center_of_mass=there))
 
 
-def _check_sample(motion: Motion, change: Drag) -> None:
+def _check_sample(motion: Motion, at: int) -> None:
     count = len(motion.crank_angle)
-    if not 0 <= change.at < count:
+    if not 0 <= at < count:
         raise UsageError(
-            Note(
-                "at: got {at}; there are the crank angles 0 to {count}",
-                at=change.at,
-                count=count - 1,
-            )
+            Note("at: got {at}; there are the crank angles 0 to {count}", at=at, count=count - 1)
         )
 
 
@@ -261,14 +360,14 @@ def _position(machine: Machine, motion: Motion, change: Drag | None = None) -> P
 
 def settled(computed: Computed) -> Computed:
     """Design with its rough position where the machine now is, if it has one."""
-    machine = computed.design.own
-    if machine.position is None:
+    if not computed.finished or computed.design.own.position is None:
         return computed
+    machine = computed.design.own
     placed = replace(machine, position=_position(machine, computed.motion))
     return replace(computed, design=computed.design.with_machine(placed), stand=None)
 
 
-def _assembled(design: Design, goals: DragGoals, previous: Computed, stuck: bool) -> Computed:
+def _assembled(design: PageDraft, goals: DragGoals, previous: Computed, stuck: bool) -> Computed:
     """Compute a design in which dragged points come to where they were put.
 
     One that is dragged across a line of its dyad needs that dyad on its other side.  One that comes
@@ -284,7 +383,7 @@ def _assembled(design: Design, goals: DragGoals, previous: Computed, stuck: bool
     return result if _reaches(result, goals) else _turned_over(design, goals, stuck) or result
 
 
-def _turned_over(design: Design, goals: DragGoals, stuck: bool) -> Computed | None:
+def _turned_over(design: PageDraft, goals: DragGoals, stuck: bool) -> Computed | None:
     """The design with one dyad on its other side, if the points then come where they were put."""
     for joint, side in design.own.assembly.items() if goals else ():
         if not _moves(design.own, joint, goals):
@@ -337,3 +436,48 @@ def _with_limit_note(computed: Computed, goals: DragGoals) -> Computed:
         }:
             return replace(computed, limit_note=Note(STROKE_LIMITED, name=name))
     return computed
+
+
+# -- tables of the file ----------------------------------------------------------------------------
+
+
+def with_entry(base: Computed, entry: Entry) -> Computed:
+    """Change a table of the file; the machine is unfinished where it then moves otherwise."""
+    entry = _with_stroke(base.sketch(0), entry)
+    draft = entered(base.design, entry)
+    if isinstance(draft, Sketch):
+        return computed(draft)
+    try:
+        return settled(solved(draft, None, base.swings is not None))
+    except MobilityError:
+        return computed(base.sketch(0).with_machine(draft.machine))
+
+
+def _with_stroke(sketch: Sketch, entry: Entry) -> Entry:
+    """Entry as it is; but a drive that is to push, and has no stroke yet, gets one that begins
+    as it is drawn: neither can be there without the other.
+    """
+    values, place = entry.values, entry.place
+    if values is None or not (place == ("drive",) or place[:1] == ("drives",) == place[:-1]):
+        return entry
+    drives = (sketch.drive,) if len(place) == 1 else sketch.rest.get("drives", ())
+    drive = dict(enumerate(drives)).get(0 if len(place) == 1 else int(place[1]))
+    length = _pushed(sketch, values)
+    if length is None or (drive is not None and drive.pushes):
+        return entry
+    ends = length, length + LONGER * (abs(length) or sketch.extent)
+    texts = [format_exact(clean(end, "length"), "length") for end in ends]
+    items: dict[str, Any] = {**values, "stroke": {"between": texts}}
+    if values.get("link") in sketch.links:
+        angle = clean(sketch.poses[str(values["link"])].angle, "angle")
+        items.setdefault("start", format_exact(angle, "angle"))
+    return replace(entry, values=items)
+
+
+def _pushed(sketch: Sketch, values: Mapping[str, Any]) -> float | None:
+    """Length of the cylinder, or travel of the sliding joint, that is to be driven, as drawn, m."""
+    between, places = values.get("between"), sketch.places
+    if isinstance(between, list) and len(between) == 2 and {*map(str, between)} <= places.keys():
+        return abs(places[between[1]] - places[between[0]])
+    named = (slider for slider in sketch.sliders if slider.name == values.get("slider"))
+    return next((sketch.travel(item) for item in named), None)

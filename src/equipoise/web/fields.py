@@ -1,4 +1,4 @@
-"""The numbers of a design that a page shows and changes, with lengths and angles of bodies."""
+"""The numbers of a draft that a page shows and changes, with lengths and angles of bodies."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note, all_of, listed, say, to_say
 from equipoise.keys import Frozen, Quantity, numbers_of, quantities_of
 from equipoise.keys.paths import KeyPath
+from equipoise.mechanism.kinematics.machine_draft import USUAL_SIZE
 from equipoise.mechanism.outputs.declared import GROUPS
+from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector, size_of
 from equipoise.mechanism.parts.shown_units import PARAMETERS, SIGN, amounts_of, worked_out
@@ -38,7 +40,7 @@ from equipoise.quantities.expressions import names_in, spelled
 from equipoise.quantities.units import KINDS, Dimension
 from equipoise.schema.entries import Document
 from equipoise.schema.writing import WorkedOut
-from equipoise.web.design import Design, pin_of
+from equipoise.web.design import DraftT, PageDraft, pin_of
 from equipoise.web.messages import Drag
 
 MOST = 4
@@ -178,7 +180,7 @@ def _crossings(centers: list[complex], radii: list[float]) -> Iterator[complex]:
 
 
 Put = Callable[..., Any]
-"""From a design or a sketch, and the value, to another one; of a measure, with points to keep."""
+"""From a draft and the value to another one; of a measure, with points to keep."""
 FINE = 1000
 """Steps of a slider over its range."""
 FREE = 0.5
@@ -193,7 +195,7 @@ CENTER: Vector = (0.0, 0.0)
 @dataclass(frozen=True)
 class Field:
     """A number: its path, such as ``links.crank.mass``, the heading that it belongs under, its
-    label, its value in SI units and radians, and the design with another value.
+    label, its value in SI units and radians, and the draft with another value.
 
     dimension : None of a number without a unit, such as a coefficient of friction.
     measure : the length or direction that it is, if it is one.
@@ -217,20 +219,21 @@ class Field:
             return self
         return replace(self, put=partial(self.put, keep=points))
 
-    def typed(self, of: Any, to: str | float) -> Any:
-        """What it is a number of, with the number set to a value or to what was typed.
+    def typed(self, draft: DraftT, to: str | float) -> DraftT:
+        """Return the draft with the number set to a value or to what was typed.
 
         Raises
         ------
         EquipoiseError : that is no such number, or it cannot be.
         """
         if not isinstance(to, str):
-            return self.put(of, clean(to, self.dimension))
+            return self.put(draft, clean(to, self.dimension))  # type: ignore[no-any-return]
         typed = to.strip()
-        names = amounts_of(of.own.parameters) if isinstance(of, Design) else {}
+        names = amounts_of(draft.parameters)
         value = worked_out(typed, self.dimension, names)
         try:
-            return self._remembering(typed, self.put(of, value))
+            changed: DraftT = self.put(draft, value)
+            return self._remembering(typed, changed)
         except (ModelError, UsageError) as error:
 
             def as_typed(amount: Measured) -> Any:
@@ -241,15 +244,15 @@ class Field:
                 raise ModelError(error.where, what).like(error) from error
             raise UsageError(with_measured(error.note, as_typed)) from error
 
-    def _remembering(self, typed: str, of: Any) -> Any:
-        """What has the number now, with the expression by which it was given from parameters."""
-        if not isinstance(of, Design) or not names_in(typed) or self.group == PARAMETERS:
-            return of
+    def _remembering(self, typed: str, draft: DraftT) -> DraftT:
+        """Return the draft with the expression by which the number was given from parameters."""
+        if not names_in(typed) or self.group == PARAMETERS:
+            return draft
         typed = typed if typed.startswith(SIGN) else f"{SIGN}{typed}"
         if self.place is None:
-            return replace(of, expressions={**of.expressions, self.path: typed})
-        expressions = {**of.own.expressions, str(self.place): typed}
-        return of.with_machine(of.own.with_expressions(expressions))
+            return draft.altered(expressions={**draft.expressions, self.path: typed})
+        expressions = {**draft.own.expressions, str(self.place): typed}
+        return draft.with_machine(draft.own.with_expressions(expressions))
 
 
 @dataclass(frozen=True)
@@ -264,12 +267,13 @@ class Scale:
     mass: float
 
     @classmethod
-    def of(cls, design: Design) -> Scale:
-        """The scale of a design that is opened."""
-        own = design.own
-        bodies = (own.frame, *(link.points for link in own.links.values()))
-        values = {path: field.value for path, field in fields_of(design).items()}
-        return cls(values, max(map(size_of, bodies)) or 1.0, own.mass or 1.0)
+    def of(cls, draft: PageDraft) -> Scale:
+        """The scale of a draft that is opened, or whose parts have changed."""
+        own = draft.known_machine
+        bodies = (draft.frame, *(link.points for link in draft.links.values()))
+        values = {path: field.value for path, field in fields_of(draft).items()}
+        length = max((size_of(points) for points in bodies if points), default=0.0) or USUAL_SIZE
+        return cls(values, length, (own.mass if own else None) or 1.0)
 
     def ends(self, field: Field) -> tuple[float, float]:
         """Least and largest value on the slider of a number, and its own value in any case."""
@@ -359,26 +363,23 @@ def _shown(value: float, unit: Display) -> str:
     return unit.with_unit(typeset(f"{unit.factor * value:.{SHOWN}g}"))
 
 
-def fields_of(design: Design) -> dict[str, Field]:
-    """Every number by its path, in the order in which a page shows them."""
-    parts = (
-        _parameters,
-        _drive,
-        _links,
-        _frame,
-        _parts,
-        _joints,
-        _rows,
-        _planting,
-        _mounts,
-    )
-    values = [field for part in parts for field in part(design.own)]
-    fields = {field.path: field for field in (*values, *_weights(design))}
-    if not design.own.expressions and not design.expressions:
+def fields_of(draft: PageDraft) -> dict[str, Field]:
+    """Every number by its path, in the order in which a page shows them.
+
+    Of a draft that makes no machine yet, those of its parameters, drive, links and frame.
+    """
+    own = draft.known_machine
+    every = [_parameters(draft), _drive(draft), _links(draft), _frame(draft)]
+    if own is not None:
+        every += [_parts(own, draft.drawn_keys), _joints(own), _rows(own), _planting(own)]
+        every += [_mounts(own), _weights(draft)]
+    fields = {field.path: field for values in every for field in values}
+    expressions = {} if own is None else own.expressions
+    if not expressions and not draft.expressions:
         return fields
-    names = amounts_of(design.own.parameters)
-    given = WorkedOut(design.own.expressions, names)
-    on_page = WorkedOut(design.expressions, names)
+    names = amounts_of(draft.parameters)
+    given = WorkedOut(expressions, names)
+    on_page = WorkedOut(draft.expressions, names)
     return {path: _with_expression(field, given, on_page) for path, field in fields.items()}
 
 
@@ -397,10 +398,10 @@ def _with_expression(field: Field, given: WorkedOut, on_page: WorkedOut) -> Fiel
     return field
 
 
-def _parameters(machine: Machine) -> Iterator[Field]:
+def _parameters(draft: PageDraft) -> Iterator[Field]:
     """The parameters that are not worked out from others."""
-    amounts = amounts_of(machine.parameters)
-    for name, given in machine.parameters.items():
+    amounts = amounts_of(draft.parameters)
+    for name, given in draft.parameters.items():
         if not (isinstance(given, str) and names_in(given)):
             path, amount = KeyPath((PARAMETERS, name)), amounts[spelled(name)]
             put = partial(_with_parameter, path, amount.dimension)
@@ -408,14 +409,14 @@ def _parameters(machine: Machine) -> Iterator[Field]:
 
 
 def _with_parameter(
-    path: KeyPath, dimension: Dimension | None, design: Design, value: float
-) -> Design:
-    """The design with another value of a parameter, and all that is worked out from it."""
-    document = Document.of_machine(design.own)
+    path: KeyPath, dimension: Dimension | None, draft: DraftT, value: float
+) -> DraftT:
+    """The draft with another value of a parameter, and all that is worked out from it."""
+    document = Document.of_machine(draft.own)
     text = value if dimension is None else format_exact(value, dimension)
     changed = replace(document, content=path.write(document.content, text))
-    after = design.with_machine(changed.machine())
-    for field in fields_of(design).values() if design.expressions else ():
+    after = draft.with_machine(changed.machine())
+    for field in fields_of(draft).values() if draft.expressions else ():
         if field.place is None and field.expression is not None:
             after = fields_of(after)[field.path].typed(after, field.expression)
     return after
@@ -430,8 +431,8 @@ def _field(
     return Field(str(path), group, label, dimension, value, partial(_put, path), place=place)
 
 
-def _put(path: KeyPath, design: Design, value: float) -> Design:
-    return design.with_machine(design.own.with_number(path, value))
+def _put(path: KeyPath, draft: DraftT, value: float) -> DraftT:
+    return draft.with_number(path, value)
 
 
 def _point(path: KeyPath, group: str, label: str, point: Vector) -> Iterator[Field]:
@@ -452,13 +453,16 @@ def _numbers(
             yield _field(path / key, group, label, dimension, value)
 
 
-def _drive(machine: Machine) -> Iterator[Field]:
-    label = say("speed") if machine.crank_turns else say(CYCLE_SPEED)
-    yield _field(KeyPath(("drive", "speed")), "drive", label, "angular speed", machine.drive.speed)
+def _drive(draft: PageDraft) -> Iterator[Field]:
+    drive = draft.drive
+    if drive is None:
+        return
+    label = say("speed") if drive.crank else say(CYCLE_SPEED)
+    yield _field(KeyPath(("drive", "speed")), "drive", label, "angular speed", drive.speed)
 
 
-def _links(machine: Machine) -> Iterator[Field]:
-    for name, link in machine.links.items():
+def _links(draft: PageDraft) -> Iterator[Field]:
+    for name, link in draft.links.items():
         where = KeyPath(("links", name))
         yield from _numbers(where, name, "", link, (*MASS_FIELDS,) if link.bodies else ())
         yield from _bodies(where, name, link)
@@ -502,18 +506,18 @@ def _measures(where: KeyPath, body: str, points: Mapping[str, Vector]) -> Iterat
 
 
 def _measured(
-    body: str, measure: Measure, design: Design, value: float, keep: tuple[str, ...] = ()
-) -> Design:
-    points = design.own.points_of(body)
+    body: str, measure: Measure, draft: DraftT, value: float, keep: tuple[str, ...] = ()
+) -> DraftT:
+    points = draft.points_about(body, keep)
     place = measure.place(points, value, keep)
     if keep or not measure.is_component(points):  # else it is the number that was given
         place = clean_place(complex(*place))
-    return design.with_machine(design.own.with_point(body, measure.moves, place))
+    return draft.with_point(body, measure.moves, place)
 
 
-def _frame(machine: Machine) -> Iterator[Field]:
-    yield from _measures(KeyPath((FRAME,)), FRAME, machine.frame)
-    for point, place in machine.frame.items():
+def _frame(draft: PageDraft) -> Iterator[Field]:
+    yield from _measures(KeyPath((FRAME,)), FRAME, draft.frame)
+    for point, place in draft.frame.items():
         yield from _point(KeyPath((FRAME, "points", point)), "frame", point, place)
 
 
@@ -521,10 +525,12 @@ NOT_OF_PARTS = ("ratio",)
 """A slider would pass through ratios whose motion repeats after thousands of turns."""
 
 
-def _parts(machine: Machine) -> Iterator[Field]:
+def _parts(machine: Machine, drawn_keys: tuple[str, ...]) -> Iterator[Field]:
+    """Numbers of couplings, without those that are drawn, and of what acts between bodies."""
     for table, number, part in machine.parts:
         path, of = KeyPath((table, number)), part.label.localized()
-        yield from _numbers(path, table, of, part, (*part.idle_keys, *NOT_OF_PARTS))
+        drawn = drawn_keys if isinstance(part, Coupling) else ()
+        yield from _numbers(path, table, of, part, (*part.idle_keys, *NOT_OF_PARTS, *drawn))
 
 
 def _joints(machine: Machine) -> Iterator[Field]:
@@ -559,18 +565,18 @@ def _mounts(machine: Machine) -> Iterator[Field]:
         yield from _numbers(where, "support", f"{name}, ", mount, without)
 
 
-def _weights(design: Design) -> Iterator[Field]:
+def _weights(draft: PageDraft) -> Iterator[Field]:
     """Counterweights of links that are pinned to the frame and have their masses given."""
     quantities: tuple[tuple[str, Dimension], ...] = (
         ("mass", "mass"),
         ("radius", "length"),
         ("direction", "angle"),
     )
-    for name, link in design.own.links.items():
-        pin = pin_of(design.own, name)
+    for name, link in draft.links.items():
+        pin = pin_of(draft.own, name)
         if pin is None or link.mass is None:
             continue
-        weight = design.weight_on(name)
+        weight = draft.weight_on(name)
         for key, dimension in quantities:
             put = partial(_with_weight, name, key)
             path = str(KeyPath((COUNTERWEIGHTS, name, key)))
@@ -579,6 +585,6 @@ def _weights(design: Design) -> Iterator[Field]:
             yield Field(path, f"{WEIGHT}{name}", label, dimension, value, put)
 
 
-def _with_weight(link: str, key: str, design: Design, value: float) -> Design:
-    old = design.weight_on(link)
-    return design.with_weight(link, replace(old, **{key: value}))
+def _with_weight(link: str, key: str, draft: DraftT, value: float) -> DraftT:
+    old = draft.weight_on(link)
+    return draft.with_weight(link, replace(old, **{key: value}))

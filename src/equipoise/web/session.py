@@ -16,7 +16,6 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
 from equipoise.i18n import Note, localized, say, speaking, wording
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.kinematics.machine_draft import USUAL_SIZE
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
@@ -26,24 +25,13 @@ from equipoise.schema.files import LARGEST
 from equipoise.schema.template import named_parts
 from equipoise.signals import Array
 from equipoise.web.deferred import deferred_replies, response_of
-from equipoise.web.design import Design, History, HistoryStep
+from equipoise.web.design import Design, History, HistoryStep, PageDraft
 from equipoise.web.documents import language_of, spoken_in, wording_of
-from equipoise.web.edits import Computed, settled, solved
+from equipoise.web.edits import Computed, computed, edited, settled, solved, with_entry
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.figures import figures_of
 from equipoise.web.files import NOT_OF_FILE, Disk, downloaded
 from equipoise.web.gallery import opened_example, opened_text, pictured, titles, tool_titles
-from equipoise.web.incomplete import (
-    Incomplete,
-    changed,
-    computed,
-    computed_or_incomplete,
-    finished,
-    plain_of,
-    sketch_of,
-    state_of_sketch,
-    with_entry,
-)
 from equipoise.web.measured_records import MeasuredSignals, record_of_text
 from equipoise.web.messages import MOST_LANGUAGES, MOST_OUTPUTS, SLOW, JsonObject, Message
 from equipoise.web.replies import Reply, refused
@@ -66,7 +54,7 @@ class Session:
     """The state of one page.
 
     history : of its designs.
-    current_state : the present design, computed, or drawn while it is unfinished.
+    current_state : the present design, computed as far as it can be.
     preview : what it is while something is dragged; each one starts from `current_state`.
     before : with which it is compared, if with any.
     scale : of the sliders.
@@ -85,13 +73,13 @@ class Session:
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
-    history: History[Design | Sketch] | None = None
-    current_state: Computed | Incomplete | None = None
-    preview: Computed | Incomplete | None = None
+    history: History[PageDraft] | None = None
+    current_state: Computed | None = None
+    preview: Computed | None = None
     before: Computed | None = None
     scale: Scale | None = None
-    deferred_sent: tuple[Computed | Incomplete | None, Computed | None] = (None, None)
-    response_sent: tuple[Computed | Incomplete | None, MeasuredSignals | None] = (None, None)
+    deferred_sent: tuple[Computed | None, Computed | None] = (None, None)
+    response_sent: tuple[Computed | None, MeasuredSignals | None] = (None, None)
     wanted: tuple[str, ...] = ()
     language: str = "en"
     disk: Disk | None = None
@@ -99,7 +87,7 @@ class Session:
     brief: bool = False
     written: JsonObject | None = None
     spectra: Mapping[str, Array] = field(default_factory=dict)
-    numbered: tuple[Computed | Incomplete | None, int] = (None, 0)
+    numbered: tuple[Computed | None, int] = (None, 0)
     before_change: Callable[[], None] = field(default=lambda: None)
     lock: Lock = field(default_factory=Lock)
 
@@ -187,7 +175,7 @@ class Session:
         yield Reply({"type": "spoken", "seq": message.seq, **spoken})
 
     def _open(self, message: Message) -> Iterator[Reply]:
-        design: Design | Sketch
+        design: PageDraft
         disk = self.disk if message.flag("file", False) else None
         if message.flag("new", False):
             design = Sketch()
@@ -209,13 +197,13 @@ class Session:
         with self.lock, self.localized():
             base, preview = self.base(), None
             try:
-                preview = changed(base, message.changes(), commit, self.preview)
+                preview = edited(base, message.changes(), self.preview, commit)
             except EquipoiseError as error:
                 problem = error
             if preview is None and commit:  # the last place of a drag at which it could be
                 preview = self.preview
             if preview is not None and commit:
-                preview = settled(preview) if isinstance(preview, Computed) else preview
+                preview = settled(preview)
                 self._go(self._past.then(preview.design, message.label), preview)
             elif preview is not None:
                 self.preview = preview
@@ -226,9 +214,9 @@ class Session:
 
     def _make(self, message: Message) -> Iterator[Reply]:
         with self.lock, self.localized():
-            base = sketch_of(self.base(), message.whole("at", 0))
+            base = self.base().sketch(message.whole("at", 0))
             sketch, label = sketch_after(base, message)
-            result = computed_or_incomplete(sketch)
+            result = computed(sketch)
             self._go(self._past.then(result.design, label), result)
             self._measure(result, False)
             named = message.text("do") == "delete" and message.text("what") in ("point", "link")
@@ -247,8 +235,8 @@ class Session:
 
     def _compare(self, message: Message) -> Iterator[Reply]:
         first = self._past.first
-        on = message.flag("on", False)
-        self.before = solved(first) if on and isinstance(first, Design) else None
+        before = computed(first) if message.flag("on", False) else None
+        self.before = before if before and before.finished else None
         yield from self.state_replies(message.seq)
 
     def _outputs(self, message: Message) -> Iterator[Reply]:
@@ -260,7 +248,7 @@ class Session:
 
     def _tables(self, message: Message) -> Iterator[Reply]:
         with self.localized():
-            tables = tables_of(plain_of(self.base()))
+            tables = tables_of(self.base().design.own)
         yield Reply({"type": "tables", "seq": message.seq, **tables})
 
     def _entry(self, message: Message) -> Iterator[Reply]:
@@ -378,7 +366,7 @@ class Session:
         with speaking(self.language):
             return [{"name": name, "title": localized(title)} for name, title in titles.items()]
 
-    def open(self, design: Design | Sketch, result: Computed | None = None) -> None:
+    def open(self, design: PageDraft, result: Computed | None = None) -> None:
         """Begin with a design, or with a sketch; what was done before is forgotten.
 
         result : the design, if it has been computed.
@@ -388,20 +376,19 @@ class Session:
             self._go(History(HistoryStep(design, "")), first)
             self._measure(first, True)
 
-    def _measure(self, computed: Computed | Incomplete, new: bool) -> None:
+    def _measure(self, computed: Computed, new: bool) -> None:
         """What goes by the build of a machine: ranges of sliders, and outputs that are drawn.
 
         new : whether it has nothing to do with the one before.
         """
-        machine = computed if isinstance(computed, Computed) else None
         self.before = None
-        self.scale = Scale({}, USUAL_SIZE, 1.0) if machine is None else Scale.of(machine.design)
+        self.scale = Scale.of(computed.design)
         if new:
-            self.view_state = self.view_state.opening(machine)
-        if machine is not None and (new or not self.wanted):
-            self.wanted = first_of(machine.design.machine)[1]
+            self.view_state = self.view_state.opening(computed if computed.finished else None)
+        if computed.finished and (new or not self.wanted):
+            self.wanted = first_of(computed.design.machine)[1]
 
-    def go_to(self, computed: Computed | Incomplete, label: str) -> None:
+    def go_to(self, computed: Computed, label: str) -> None:
         """Make a design that has been computed the one that is, as one step of undo."""
         self._go(self._past.then(computed.design, label), computed)
 
@@ -409,7 +396,7 @@ class Session:
     def has_more(self) -> bool:
         """Whether deferred replies on the design are due."""
         text, against = self.deferred_sent
-        if not isinstance(self.current_state, Computed):
+        if self.current_state is None or not self.current_state.finished:
             return False
         return self.view is not text or self._against is not against
 
@@ -437,7 +424,7 @@ class Session:
         wanted; None where the design is unfinished by now.
         """
         view = self.view
-        if not isinstance(view, Computed):
+        if not view.finished:
             return None
         sweep, against = self.deferred_sent[0] is not view, self._against
         self.deferred_sent = view, against
@@ -455,25 +442,25 @@ class Session:
     @property
     def _machine(self) -> Machine | None:
         """The machine that is seen, where it is finished."""
-        return self.view.design.machine if isinstance(self.view, Computed) else None
+        return self.view.design.machine if self.view.finished else None
 
     @property
-    def view(self) -> Computed | Incomplete:
+    def view(self) -> Computed:
         """What the page sees: what is dragged, or the design that is."""
         return self.preview or self.base()
 
     @property
     def shown(self) -> Computed:
         """Shown machine if it is finished, else a `UsageError`."""
-        return finished(self.view)
+        return self.view.checked()
 
     @property
-    def _past(self) -> History[Design | Sketch]:
+    def _past(self) -> History[PageDraft]:
         self.base()
         assert self.history is not None
         return self.history
 
-    def base(self) -> Computed | Incomplete:
+    def base(self) -> Computed:
         """What is, finished or not; a `UsageError` where there is nothing."""
         if self.current_state is None:
             raise UsageError(Note("no machine is open; pick an example, or drop a model file"))
@@ -481,15 +468,13 @@ class Session:
 
     def current(self) -> Computed:
         """The design that is, or a `UsageError` where it is not finished."""
-        return finished(self.base())
+        return self.base().checked()
 
-    def _go(
-        self, history: History[Design | Sketch], result: Computed | Incomplete | None = None
-    ) -> None:
+    def _go(self, history: History[PageDraft], result: Computed | None = None) -> None:
         """Show where a history has come to; nothing has changed where that cannot be computed."""
         result = result or computed(history.now.design)
         self.view_state.last = last = (
-            self.current_state if isinstance(self.current_state, Computed) else None
+            self.current_state if self.current_state and self.current_state.finished else None
         )
         if last is not None and last.design is not result.design:
             last.design.forget()
@@ -504,7 +489,7 @@ class Session:
             state = self._state(seq)
         state.content["notes"] = [*notes, *state.content["notes"]]
         yield state
-        if isinstance(self.view, Incomplete):
+        if not self.view.finished:
             return
         with self.localized():
             compared = [*self.view_state.compared(None if self.preview else self.current())]
@@ -530,18 +515,12 @@ class Session:
     def _state(self, seq: int | None) -> Reply:
         assert self.scale is not None
         view = self.view
-        if isinstance(view, Incomplete):
-            content, data = state_of_sketch(view, self.scale)
-            self.written = None
-        else:
-            last = self.written if self.brief else None
+        last = self.written if self.brief and view.finished else None
+        if view.finished:
             self.spectra = spectra_of(view.analysis, self.spectra if last else None)
-            content, data = self._state_of(view)
-            content |= last or self._numbers_of(view)
-        now = self.current_state if self.preview is None else None
-        file = self.disk and self.disk.status(
-            now.design.machine if isinstance(now, Computed) else None
-        )
+        content, data = self._state_of(view)
+        content |= last or self._numbers_of(view)
+        file = self.disk and self.disk.status(None if self.preview else self._machine)
         content["wording"] = wording_of(words_of(self._machine))
         if self.numbered[0] is not view:
             self.numbered = view, self.numbered[1] + 1
@@ -549,7 +528,7 @@ class Session:
         text = {"type": "state", "seq": seq, **self._past.content, "file": file}
         return Reply({**text, **content}, data)
 
-    def number_of(self, result: Computed | Incomplete) -> int:
+    def number_of(self, result: Computed) -> int:
         """By which a page knows that it shows a design; 0 of one that it does not show."""
         newest, number = self.numbered
         return number if newest is result else 0
@@ -558,12 +537,16 @@ class Session:
         """The part of a state that a page writes: figures, and the numbers of the machine."""
         assert self.scale is not None
         against = self._against or self.view_state.pale or self.before
+        figures = []
+        if computed.finished:
+            figures = figures_of(computed.analysis, against.analysis if against else None)
         fields = fields_of(computed.design).values()
-        self.written = {
-            "figures": figures_of(computed.analysis, against.analysis if against else None),
+        numbers = {
+            "figures": figures,
             "fields": [self.scale.field_message(item) for item in fields],
         }
-        return self.written
+        self.written = numbers if computed.finished else None
+        return numbers
 
     def _state_of(self, computed: Computed) -> tuple[JsonObject, bytes]:
         view = self.view_state
@@ -581,7 +564,7 @@ class Session:
     def _against(self) -> Computed | None:
         """The design that figures are compared with, if any."""
         state = self.current_state if self.preview is not None else None
-        current = state if isinstance(state, Computed) else None
+        current = state if state and state.finished else None
         return self.view_state.against(current) or self.before
 
 

@@ -6,27 +6,42 @@ is a bar of flat steel, assumed until its masses are given.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from cmath import phase
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import field, fields, replace
-from math import floor, log10
-from typing import Any
+from functools import cached_property
+from math import floor, log10, pi, remainder
+from typing import Any, ClassVar
 
 from equipoise.dataclass import dataclass
-from equipoise.i18n import all_of, localized, say, to_say
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.i18n import Note, all_of, localized, say, to_say
+from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.joints import Structure, held_too_often, undetermined
-from equipoise.mechanism.kinematics.machine_draft import STILL, LinkPlacement, MachineDraft
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.kinematics.machine_draft import (
+    STILL,
+    LinkPlacement,
+    MachineDraft,
+    length_between,
+    pose_between,
+)
+from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.bodies import MATERIALS, Body
-from equipoise.mechanism.parts.element_kinds import part_kinds
+from equipoise.mechanism.parts.constraints import changed_points
+from equipoise.mechanism.parts.element_kinds import PartKind, part_kinds
 from equipoise.mechanism.parts.links import MASS_FIELDS
-from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
+from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Slider, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
-from equipoise.quantities import clean_place
+from equipoise.quantities import DIGITS, clean, clean_place
 from equipoise.schema.entries import own_keys
-from equipoise.web.design import Counterweight, Design
-from equipoise.web.edits import Computed, solved
+from equipoise.web.design import DRAGGED, Counterweight, Design, PageDraft, fitting_counterweights
 from equipoise.web.tables import word_of
 
 UNTITLED = "untitled"
+COINCIDENT = 1e-9
+"""Distance over the size of the machine below which two places are one."""
 
 
 REST = tuple(
@@ -42,22 +57,22 @@ LISTS = (*part_kinds(Machine), "loads", "timed_loads", "joints", "constraints")
 
 
 @dataclass(frozen=True, eq=False)
-class Sketch(MachineDraft):
+class Sketch(PageDraft, MachineDraft):
     """A machine that may be unfinished, as a page has it.
 
-    name : of the file.  counterweights, shafts, expressions : as of a `Design`.
+    name, counterweights, shafts, expressions : as of a `PageDraft`.
     """
 
     name: str = UNTITLED
     counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
     shafts: frozenset[str] = frozenset()
     expressions: Mapping[str, str] = field(default_factory=dict)
+    drawn_keys: ClassVar[tuple[str, ...]] = ("start",)
 
     @classmethod
-    def of(cls, computed: Computed, at: int = 0) -> Sketch:
-        """A finished machine as it stands at a sample of its crank angle."""
-        design, own, motion = computed.design, computed.design.own, computed.motion
-        poses = {}
+    def of(cls, design: PageDraft, motion: Motion, at: int = 0) -> Sketch:
+        """A finished machine as it stands at a sample of the crank angles of its motion."""
+        own, poses = design.own, {}
         for name, link in motion.links.items():
             anchor, angle = motion.linkage.anchors[name], float(link.angle[at])
             arm = LinkPlacement(0j, angle).out(own.links[name].points[anchor])
@@ -74,9 +89,32 @@ class Sketch(MachineDraft):
 
     @property
     def units(self) -> ShownUnits | None:
-        """In which its file has values shown."""
         units: ShownUnits | None = self.rest.get("units")
         return units
+
+    @property
+    def parameters(self) -> Mapping[str, Any]:
+        parameters: Mapping[str, Any] = self.rest.get("parameters", {})
+        return parameters
+
+    @cached_property
+    def own(self) -> Machine:
+        """The machine as far as it is known, which may not move; without its counterweights.
+
+        Raises
+        ------
+        UsageError : it has no link yet.
+        ModelError : what it has contradicts itself.
+        """
+        if not self.links:
+            raise UsageError(Note("the machine has no links yet; draw one first"))
+        return replace(self.to_machine(), position=None)
+
+    @cached_property
+    def known_machine(self) -> Machine | None:
+        with suppress(EquipoiseError):
+            return self.own
+        return None
 
     # -- with other parts --------------------------------------------------------------------------
 
@@ -112,30 +150,174 @@ class Sketch(MachineDraft):
         rest = {**self.rest, **{key: of[key] for key in LISTS}}
         return replace(self, sliders=of["sliders"], rest=rest)
 
-    def taking(self, machine: Machine) -> Sketch:
-        """Drawing of a machine whose tables are other ones; a link that is new lies in
+    def with_machine(self, own: Machine) -> Sketch:
+        """Return the drawing of a machine whose tables are other ones; a link that is new lies in
         the axes of the frame.
         """
         old = self.drive or self._usual_drive()
-        drive = None if self.drive is None and machine.drive == old else machine.drive
-        poses = {name: self.poses.get(name, STILL) for name in machine.links}
-        rest = {key: getattr(machine, key) for key in REST}
-        return replace(self, frame=machine.frame, links=machine.links, poses=poses, drive=drive,
-                       sliders=machine.sliders, rest=rest)  # fmt: skip
+        drive = None if self.drive is None and own.drive == old else own.drive
+        poses = {name: self.poses.get(name, STILL) for name in own.links}
+        rest = {key: getattr(own, key) for key in REST}
+        return replace(self, frame=own.frame, links=own.links, poses=poses, drive=drive,
+                       sliders=own.sliders, rest=rest)  # fmt: skip
 
-    # -- as a machine ------------------------------------------------------------------------------
+    # -- with other numbers ------------------------------------------------------------------------
 
-    def finished(self) -> Computed:
-        """The machine that is drawn, computed.
+    def with_number(self, path: KeyPath, value: float) -> Sketch:
+        """Return the sketch with another number of the machine; other bodies that have a point
+        which then lies elsewhere go with it.
 
         Raises
         ------
-        EquipoiseError : it cannot be computed; the sentence says why.
+        EquipoiseError : it cannot be.
+        """
+        if path[0] == FRAME:  # which may have points before there is a machine
+            _, _, point, axis = path
+            x, y = self.frame[str(point)]
+            return self.with_point(FRAME, str(point), (value, y) if axis == "x" else (x, value))
+        sketch = self.with_machine(self.own.with_number(path, value))
+        places: dict[str, complex] = {}
+        bodies: dict[str, list[str]] = {}
+        for body, point in sorted(changed_points(self.bodies, sketch.bodies)):
+            places[point] = sketch.pose(body).out(sketch.bodies[body][point])
+            bodies.setdefault(point, []).append(body)
+        for point, place in places.items():
+            sketch = moved(sketch, point, place, DIGITS, bodies[point])
+        return sketch
+
+    def with_point(self, body: str, point: str, place: Vector) -> Sketch:
+        sketch = self.with_points(body, {**self.bodies[body], point: place})
+        return moved(sketch, point, self.pose(body).out(place), DIGITS, (body,))
+
+    def points_about(self, body: str, keep: Iterable[str]) -> Mapping[str, Vector]:
+        pose, places = self.pose(body), self.places
+        others = {name: pose.into(places[name]) for name in keep if name in places}
+        points = {name: (at.real, at.imag) for name, at in others.items()}
+        return {**points, **self.bodies[body]}
+
+    # -- as a machine ------------------------------------------------------------------------------
+
+    def finished(self) -> Design:
+        """The machine that is drawn, as it can be computed.
+
+        Raises
+        ------
+        EquipoiseError : it does not make a linkage; the sentence says why.
         """
         machine = self.settled()
-        weights = {item: w for item, w in self.counterweights.items() if item in self.links}
+        weights = fitting_counterweights(self.counterweights, machine)
         shafts = self.shafts & self.links.keys()
-        return solved(Design(self.name, machine, weights, shafts, self.expressions))
+        return Design(self.name, machine, weights, shafts, self.expressions)
+
+
+# -- with points elsewhere -------------------------------------------------------------------------
+
+
+def check_point(sketch: Sketch, name: str) -> None:
+    """Refuse a point that is not there."""
+    if name not in sketch.places:
+        raise UsageError(unknown(name, sketch.places, "point"))
+
+
+def moved(
+    sketch: Sketch, point: str, to: complex, digits: int = DRAGGED, there: Sequence[str] = ()
+) -> Sketch:
+    """A point elsewhere, in all bodies that have it; all other points stay where they are.
+
+    A block goes along its line, and a line turns with the point that it goes through.
+
+    there : bodies that have it there already, which stay as they are.
+    """
+    check_point(sketch, point)
+    for slider in sketch.sliders if not there else ():
+        if slider.point == point:
+            to = _onto(sketch, slider, to)
+    holders = [body for body in sketch.holders(point) if body not in there]
+    for body in holders:
+        if body != FRAME and len(sketch.links[body].points) == 1:
+            pose = sketch.poses[body]
+            shift = to - pose.out(sketch.links[body].points[point])
+            sketch = _posed(sketch, body, replace(pose, origin=pose.origin + shift))
+        else:
+            sketch = sketch.with_place(body, point, to, digits)
+    sketch = straight(sketch, holders, digits)
+    for number, slider in enumerate(sketch.sliders):
+        if slider.through == point:
+            sketch = _aimed(sketch, number, slider)
+    return sketch
+
+
+def _posed(sketch: Sketch, link: str, pose: LinkPlacement) -> Sketch:
+    return replace(sketch, poses={**sketch.poses, link: pose})
+
+
+def _onto(sketch: Sketch, slider: Slider, to: complex) -> complex:
+    """The nearest place on the line of a slider, m."""
+    through = sketch.places[slider.through]
+    way = LinkPlacement(0j, sketch.pose(slider.on).angle + slider.direction).turn
+    return through + way * ((to - through) * way.conjugate()).real
+
+
+def _aimed(sketch: Sketch, number: int, slider: Slider) -> Sketch:
+    """The line of a slider from the point that it goes through to its block, in the old sense."""
+    place, other = sketch.places[slider.point], sketch.places[slider.through]
+    if abs(place - other) <= COINCIDENT * sketch.size:
+        raise UsageError(
+            Note(
+                "{through} and {point} would lie at one place; the line of {link} goes through "
+                "both",
+                through=slider.through,
+                point=slider.point,
+                link=slider.link,
+            )
+        )
+    way = phase(place - other) - sketch.pose(slider.on).angle
+    if abs(remainder(way - slider.direction, 2 * pi)) > pi / 2:
+        way += pi
+    aimed = replace(slider, direction=clean(remainder(way, 2 * pi), "angle"))
+    sliders = (*sketch.sliders[:number], aimed, *sketch.sliders[number + 1 :])
+    pose = sketch.poses[slider.link]
+    if len(sketch.links[slider.link].points) == 1:
+        pose = replace(pose, angle=way + sketch.pose(slider.on).angle + slider.angle)
+    return _posed(replace(sketch, sliders=sliders), slider.link, pose)
+
+
+def straight(sketch: Sketch, links: Iterable[str], digits: int = DIGITS) -> Sketch:
+    """Give links whose axes only points refer to axes from their first point to their second."""
+    values = {body for key, item in sketch.entries() for body in _axes_of(key, item)}
+    for name in links:
+        link = sketch.links.get(name)
+        given = link is not None and link.has_mass and not link.only_assumed
+        if link is None or given or name in values or len(link.points) < 2:
+            continue
+        places = {point: sketch.pose(name).out(at) for point, at in link.points.items()}
+        first, second, *_ = places.values()
+        if abs(second - first) <= COINCIDENT * sketch.size:
+            raise UsageError(
+                Note(
+                    "{names} of {name} would lie at one place",
+                    names=all_of([*places][:2]),
+                    name=name,
+                )
+            )
+        pose = pose_between(first, second)
+        points = {
+            point: clean_place(pose.into(at), sketch.size, digits) for point, at in places.items()
+        }
+        points[[*places][1]] = (points[[*places][1]][0] if digits < DIGITS else
+                                length_between(first, second), 0.0)  # fmt: skip
+        sketch = _posed(sketch.with_points(name, points), name, pose)
+    return sketch
+
+
+def _axes_of(key: str, entry: Any) -> Iterator[str]:
+    """Bodies in whose axes an entry has coordinates or directions."""
+    if key == "sliders":
+        yield from (entry.link, entry.on)
+    if key in ("loads", "timed_loads"):
+        yield entry.link
+    if isinstance(entry, PartKind):
+        yield from entry.axed
 
 
 # -- what it lacks ---------------------------------------------------------------------------------

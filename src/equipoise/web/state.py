@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -15,53 +14,19 @@ from equipoise.mechanism.outputs.declared import GROUPS, declared, guided, pinne
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Dimension, Display, display
 from equipoise.results.analysis import Analysis
-from equipoise.results.machine_blocks import driven
 from equipoise.signals import Array, Periodic
 from equipoise.web.drawing import circles_of, ground_of, moves_of, stage_of
-from equipoise.web.edits import Computed, kept_with_first, movable
+from equipoise.web.edits import Computed, kept_with_first, movable, turning
 from equipoise.web.figures import charts_of, least_of, signals_of
 from equipoise.web.following import extent_of
 from equipoise.web.measured_records import MeasuredSignals
 from equipoise.web.messages import JsonObject
 from equipoise.web.replies import FloatBlock
-from equipoise.web.sketch import forces_lack
+from equipoise.web.sketch import Sketch, forces_lack
 from equipoise.web.view_state import arrows_of, points_of, record_values
 
 MOST_ORDER = 20
 """Highest order of the spectra."""
-
-
-def state_content(
-    name: str, texts: Mapping[str, Any], size: float, status: JsonObject, scene: JsonObject
-) -> JsonObject:
-    """What a page draws of any machine, with nothing yet in what only a computed one has.
-
-    name : of the file.  texts : `title` and `description` of the machine.  size : m.
-    scene : as of `stage_of`.
-    """
-    length = display("length", [size])
-    nothing: JsonObject = {
-        key: [] for key in ("traced", "outputs", "charts", "orders", "notes", "points", "arrows")
-    }
-    return {
-        "name": name,
-        "title": localized(texts["title"]),
-        "description": localized(texts.get("description", "")),
-        "length": {"unit": length.name, "factor": length.factor},
-        "status": status,
-        "scene": scene,
-        "lacking": status["text"],
-        "angles": 1,
-        "turns": 1,
-        "speed": 0,
-        "first": "squares",
-        "least": 0,
-        "before": False,
-        "compared": False,
-        "record": None,
-        "arrows_at": None,
-        **nothing,
-    }
 
 
 def state_of(
@@ -82,26 +47,79 @@ def state_of(
     arrows_at : a point of which velocity, acceleration and forces are drawn.
     record : that is drawn beside its own signals.
     """
-    analysis, block = computed.analysis, FloatBlock()
+    block = FloatBlock()
+    moves_of(computed.scene, block)
+    content = _drawing_of(computed)
+    if computed.finished:
+        content |= _signals(computed, spectra, before, wanted, block)
+        content |= {
+            "compared": (against or before) is not None,
+            "record": record_values(record, computed, block),
+            "arrows_at": arrows_at,
+            "arrows": arrows_of(computed.analysis, arrows_at, block) if arrows_at else [],
+            **ground_of(computed, block),
+        }
+    content["arrays"] = block.placement
+    return content, block.data
+
+
+def _drawing_of(computed: Computed) -> JsonObject:
+    """What a page draws of any machine, with nothing in what only a finished one has."""
+    draft, status = computed.design, status_of(computed)
+    if isinstance(draft, Sketch):
+        texts, size = draft.rest, draft.size
+        stage = stage_of(computed.scene, [*draft.places])
+    else:
+        machine = computed.analysis.machine
+        texts = {"title": machine.title, "description": machine.description}
+        size = extent_of(machine)
+        circles = circles_of(machine, computed.motion.linkage.joints)
+        stage = stage_of(computed.scene, movable(machine), circles)
+    length = display("length", [size])
+    nothing: JsonObject = {
+        key: [] for key in ("traced", "outputs", "charts", "orders", "notes", "points", "arrows")
+    }
+    return {
+        "name": draft.name,
+        "title": localized(texts["title"]),
+        "description": localized(texts.get("description", "")),
+        "length": {"unit": length.name, "factor": length.factor},
+        "status": status,
+        "scene": stage,
+        "lacking": computed.lacks,
+        "angles": 1,
+        "turns": 1,
+        "speed": 0,
+        "first": "squares",
+        "least": 0,
+        "before": False,
+        "compared": False,
+        "record": None,
+        "arrows_at": None,
+        **nothing,
+    }
+
+
+def _signals(
+    computed: Computed,
+    spectra: Mapping[str, Array],
+    before: Computed | None,
+    wanted: Sequence[str],
+    block: FloatBlock,
+) -> JsonObject:
+    """What a page draws of a finished machine over the crank angle; arguments as of `state_of`."""
+    analysis = computed.analysis
     machine, motion = analysis.machine, analysis.motion
-    scene = computed.scene
-    moves_of(scene, block)
     signals = signals_of(analysis)
     _add_signals(block, signals, analysis, spectra)
     _add_outputs(block, analysis, wanted)
-    old = None
     if before is not None:
         old = signals_of(before.analysis)
         _add_signals(block, old, before.analysis, _spectra_before(before), "before.")
         _add_outputs(block, before.analysis, wanted, "before.")
-    against = against or before
     lacking = forces_lack(machine)
-    texts = {"title": machine.title, "description": machine.description}
-    stage = stage_of(scene, movable(machine), circles_of(machine, motion.linkage.joints))
-    size, status = extent_of(machine), status_of(computed)
-    content: JsonObject = {
-        **state_content(computed.design.name, texts, size, status, stage),
-        "angles": len(scene.crank_angle),
+    return {
+        "angles": len(computed.scene.crank_angle),
         "turns": motion.turns,
         "speed": motion.speed,
         "lacking": lacking,
@@ -119,16 +137,9 @@ def state_of(
         ],
         "held": localized(computed.limit_note) if computed.limit_note else None,
         "before": before is not None,
-        "compared": against is not None,
         "beside": machine.has_planes,
         "points": points_of(analysis),
-        "record": record_values(record, computed, block),
-        "arrows_at": arrows_at,
-        "arrows": arrows_of(analysis, arrows_at, block) if arrows_at else [],
-        **ground_of(computed, block),
     }
-    content["arrays"] = block.placement
-    return content, block.data
 
 
 def outputs_of(analysis: Analysis) -> list[JsonObject]:
@@ -172,21 +183,21 @@ def status_of(computed: Computed) -> JsonObject:
     finished : whether it can be computed.  drive : the crank, if there is one that turns.
     stand : crank angle at which it was drawn, deg; None where it has not just been made.
     """
-    machine, stand = computed.analysis.machine, computed.stand
+    draft, stand = computed.design, computed.stand
+    if isinstance(draft, Sketch):
+        mobility, text = draft.mobility, computed.lacks
+        drive = draft.drive.link if draft.drive else None
+    else:
+        machine = computed.analysis.machine
+        mobility, text = len(machine.driven), turning(machine)
+        drive = machine.drive.crank or None
     return {
-        "mobility": len(machine.driven),
-        "text": turning(machine),
-        "finished": True,
-        "drive": machine.drive.crank or None,
+        "mobility": mobility,
+        "text": text,
+        "finished": computed.finished,
+        "drive": drive,
         "stand": None if stand is None else float(np.degrees(stand)),
     }
-
-
-def turning(machine: Machine) -> str:
-    """That a machine is finished."""
-    if not machine.has_crank:
-        return driven(machine, machine.drive.speed)
-    return say("1 degree of freedom; {link} turns fully", link=machine.drive.link)
 
 
 def _add_outputs(

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from functools import cache
 from itertools import count
 from math import pi
@@ -39,7 +38,7 @@ from equipoise.schema.entries import Document, entry_of, kind_at, own_keys, tabl
 from equipoise.schema.file_numbers import plain_word
 from equipoise.schema.open_files import document_of
 from equipoise.schema.writing import plain_default, value_text
-from equipoise.web.design import Design, pin_of
+from equipoise.web.design import DraftT, fitting_counterweights
 from equipoise.web.messages import Entry, JsonObject, Pair
 
 MOST_WORDS = 4
@@ -57,26 +56,28 @@ WHOLE = to_say("machine"), to_say("title, gravity and what else is of the whole"
 """What the table around all others is called, and what it holds."""
 
 
-def entered(design: Design, entry: Entry) -> Design:
-    """A design with an entry of its file that is new, other or gone.
+def entered(draft: DraftT, entry: Entry) -> DraftT:
+    """A draft with an entry of its file that is new, other or gone.
 
     Raises
     ------
     ModelError : there can be no such entry; `where` is the key.
     """
-    document = Document.of_machine(design.own)
+    before = draft.own
+    document = Document.of_machine(before)
     if entry.values is None:
         document = document.without(entry.place)
     else:
         kind = kind_at(document.of, entry.place)
-        names = amounts_of(design.own.parameters)
+        names = amounts_of(before.parameters)
         values = {
             name: _worked_out(kind.type, name, value, names) for name, value in entry.values.items()
         }
         document = document.put(entry.place, values, entry.name)
-    own = completed(document, entry, design.own).machine(entry.files)
-    own = own.with_constraints_met(design.own)
-    return replace(design, own=own, counterweights=_that_fit(design, own))
+    own = completed(document, entry, before).machine(entry.files)
+    own = own.with_constraints_met(before)
+    weights = fitting_counterweights(draft.counterweights, own)
+    return draft.with_machine(own).altered(counterweights=weights)
 
 
 def _worked_out(of: type[Frozen], name: str, value: Any, names: NamedAmounts) -> Any:
@@ -98,15 +99,6 @@ def _worked_out(of: type[Frozen], name: str, value: Any, names: NamedAmounts) ->
         return f"{SIGN}{value.strip()}"
     is_plain = re.fullmatch(pattern(dimension), value.strip())
     return value if is_plain else format_exact(clean(worked_out, dimension), dimension)
-
-
-def _that_fit(design: Design, own: Machine) -> Mapping[str, Any]:
-    """Counterweights of links that still have a pin and a mass."""
-    weights = design.counterweights.items()
-    return MappingProxyType({
-        name: weight for name, weight in weights
-        if name in own.links and own.links[name].has_mass and pin_of(own, name) is not None
-    })  # fmt: skip
 
 
 def tables_of(machine: Machine) -> JsonObject:

@@ -20,7 +20,7 @@ from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.web.deferred import deferred_replies
-from equipoise.web.design import Design
+from equipoise.web.design import PageDraft
 from equipoise.web.desk import PageBackend
 from equipoise.web.edits import Computed, solved
 from equipoise.web.messages import SLOW, Message, makes_way, read
@@ -66,8 +66,8 @@ class SlowTask:
     number : by which the page knows the design.
     """
 
-    design: Design | None
-    against: Design | None
+    design: PageDraft | None
+    against: PageDraft | None
     message: Message | None
     sweep: bool
     wanted: tuple[str, ...]
@@ -218,7 +218,8 @@ class Foreground:
     def _is_for_background(self, message: Message) -> bool:
         """Whether a question is about a finished machine, or about nothing that is open."""
         desk = self.desk
-        of_machine = desk.tool is None and isinstance(desk.session.current_state, Computed)
+        current = desk.session.current_state
+        of_machine = desk.tool is None and current is not None and current.finished
         return of_machine or message.kind not in OF_MACHINE
 
     def _begin(

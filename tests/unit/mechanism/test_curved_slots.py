@@ -27,7 +27,6 @@ from equipoise.symbols.scene import Scene
 from equipoise.web.design import Design
 from equipoise.web.edits import solved
 from equipoise.web.gallery import opened_file
-from equipoise.web.incomplete import sketch_of
 from equipoise.web.session import Session
 from equipoise.web.structure_edits import straight
 from support import free_bodies, newton
@@ -485,7 +484,7 @@ def test_a_body_with_a_slot_keeps_its_axes() -> None:
     bare = replace(PLATE, mass=None, center_of_mass=None, inertia=None)
     machine = on_plate()
     machine = replace(machine, links={**machine.links, "plate": bare})
-    sketch = sketch_of(solved(Design("mine", machine)), 0)
+    sketch = solved(Design("mine", machine)).sketch(0)
     assert straight(sketch, ["plate"]).links["plate"].points == bare.points
     straightened = straight(replace(sketch, rest={**sketch.rest, "curved_slots": ()}), ["plate"])
     assert straightened.links["plate"].points["T"][1] == 0.0

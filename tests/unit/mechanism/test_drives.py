@@ -21,7 +21,6 @@ from equipoise.mechanism.parts.motors import Motor
 from equipoise.results.remarks import linkage_remarks
 from equipoise.web.design import Design
 from equipoise.web.edits import solved
-from equipoise.web.sketch import Sketch
 from equipoise.web.state import status_of
 from laws.subjects import gravity_power, kinetic_power
 from support.machines import make
@@ -177,9 +176,9 @@ def test_a_page_can_take_such_a_machine_apart_and_put_it_together_again():
     """Its crank angle is the phase, which the pose of no link tells."""
     machine = eq.load("pick-and-place")
     solution = solved(Design("pick-and-place", machine, {}))
-    again = Sketch.of(solution, 100).finished()
-    assert again.design.own.drives == machine.drives
-    assert again.design.own.assembly == machine.assembly
+    again = solution.sketch(100).finished()
+    assert again.own.drives == machine.drives
+    assert again.own.assembly == machine.assembly
     status = status_of(solution)
     assert (status["mobility"], status["drive"]) == (2, None)
 

@@ -18,7 +18,6 @@ from equipoise.mechanism.parts.run_plans import RunPlan
 from equipoise.schema.models import text_of
 from equipoise.web import documents as played_module
 from equipoise.web import interactive as interactive_module
-from equipoise.web.edits import Computed
 from equipoise.web.figures import CHARTS
 from equipoise.web.gallery import titles
 from equipoise.web.replies import Reply
@@ -38,7 +37,7 @@ def kept(session: Session, **values: Any) -> Reply:
 def charts_of(session: Session) -> dict[str, list[str]]:
     """Choices of every chart that a page is told of, by its name."""
     texts = [*session.state_replies(None), *session.deferred_replies()]
-    if isinstance(session.base(), Computed) and session.current().design.machine.run is not None:
+    if session.base().finished and session.current().design.machine.run is not None:
         texts += ask(session, "run", seq=1)
     charts = [chart for reply in texts for chart in reply.content.get("charts", [])]
     return {chart["name"]: [item["name"] for item in chart["choices"]] for chart in charts}

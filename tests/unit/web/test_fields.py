@@ -10,10 +10,9 @@ import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.web.design import Design
-from equipoise.web.edits import solved
+from equipoise.web.edits import computed, solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.gallery import opened_example
-from equipoise.web.incomplete import computed_or_incomplete, sketch_of
 from equipoise.web.session import Session
 from equipoise.web.structure_edits import renamed, without_link
 from support.refusals import refused
@@ -51,6 +50,22 @@ def test_every_number_can_be_set_and_lies_on_its_slider(name: str) -> None:
         others = {p: others[p] for p in before}
         free = {f"counterweights.{field.group}.{key}" for key in ("radius", "direction")}
         assert {p for p in others if others[p] != before[p]} <= free, path
+
+
+@pytest.mark.parametrize("name", ["geared-counterweight", "scotch-yoke", "spring-balanced-crank",
+                                  "cam-pusher", "slider-crank-engine"])  # fmt: skip
+def test_an_unfinished_machine_has_the_numbers_of_the_finished_one(name: str) -> None:
+    """Except those that follow from where its links are drawn."""
+    result = solved(opened_example(name))
+    sketch, finished = result.sketch(0), fields_of(result.design)
+    fields = fields_of(sketch)
+    drawn = {path for path in finished if path.endswith("].start")}
+    assert fields.keys() == finished.keys() - drawn
+    for path, field in fields.items():
+        assert field.value == finished[path].value and field.label == finished[path].label
+        near = 1.01 * field.value + (0.0 if field.value else 0.001)
+        value = fields_of(field.put(sketch, near))[path].value
+        assert value == pytest.approx(near, rel=1e-9)  # places have 12 digits
 
 
 def test_a_number_keeps_its_unit() -> None:
@@ -123,10 +138,8 @@ def test_planes_of_links_and_points_are_fields() -> None:
 def test_a_sketch_keeps_planes_and_bearings() -> None:
     """Also under other names; what is gone takes its own with it."""
     machine = eq.load("twin-engine").with_link("crank", planes={"B1": -0.04})
-    sketch = sketch_of(solved(Design("twin", machine)), 0)
-    result = computed_or_incomplete(
-        renamed(renamed(sketch, "point", "B1", "P"), "link", "crank", "shaft")
-    )
+    sketch = solved(Design("twin", machine)).sketch(0)
+    result = computed(renamed(renamed(sketch, "point", "B1", "P"), "link", "crank", "shaft"))
     made = result.design.machine
     assert made.links["shaft"].planes == {"P": -0.04}
     assert {bearing.link for bearing in made.bearings.values()} == {"shaft"}

@@ -33,7 +33,6 @@ from equipoise.web.design import Design
 from equipoise.web.desk import PageBackend
 from equipoise.web.edits import Computed
 from equipoise.web.gallery import opened_example
-from equipoise.web.incomplete import Incomplete
 from equipoise.web.lanes import MOMENT, EndedError, Lanes, PageWork, print_no_endings
 from equipoise.web.replies import CANCELLED
 from equipoise.web.server import (
@@ -487,7 +486,7 @@ def test_a_balance_that_changes_the_machine_is_not_cancelled(
     cancelled, changing = threading.Event(), threading.Event()
     go_to = Session.go_to
 
-    def slowly(self: Session, computed: Computed | Incomplete, label: str) -> None:
+    def slowly(self: Session, computed: Computed, label: str) -> None:
         changing.set()
         assert cancelled.wait(300)
         go_to(self, computed, label)

@@ -15,6 +15,7 @@ from equipoise.web.messages import message_of
 from equipoise.web.session import Session
 from equipoise.web.sketch import Sketch
 from support.chosen import few
+from unit.schema.test_parameters import FOUR_BAR
 from unit.web.pages import ask, edit, move, opened, refusal, state
 
 Content = dict[str, Any]
@@ -310,6 +311,41 @@ def test_numbers_of_what_is_unfinished_are_typed() -> None:
     assert sentence == "got a length of -5 mm; give more than 0"
 
 
+def test_masses_and_parameters_of_what_is_unfinished_are_typed() -> None:
+    """By expressions too, which follow their parameters as in a finished machine."""
+    page = Maker()
+    ask(page.session, "open", name="m.toml", text=FOUR_BAR)
+    page.do("separate", point="C")
+    assert not page.seen.content["status"]["finished"]
+
+    def typed(path: str, text: str) -> Any:
+        edits = [{"set": path, "text": text}]
+        return state(ask(page.session, "edit", edits=edits, label="x")[0])
+
+    reported = typed("links.rod.mass", "3*weight")
+    assert reported.field("links.rod.mass")["text"] == "=3*weight"
+    assert reported.field("links.rod.mass")["value"] == pytest.approx(0.6)
+    assert typed("parameters.weight", "300 g").field("links.rod.mass")["value"] == 0.9
+    assert typed("links.crank.mass", "250 g").field("links.crank.mass")["value"] == 0.25
+    sentence = refusal(
+        ask(page.session, "edit", edits=[{"set": "links.rod.mass", "text": "=2*wieght"}], label="x")
+    )
+    assert "weight" in sentence
+    page.do("pin", point="E", to="C")
+    assert page.seen.content["status"]["finished"]
+    assert (page.machine.links["rod"].mass, page.machine.links["crank"].mass) == (0.9, 0.25)
+
+
+def test_a_centre_of_mass_is_dragged_while_a_machine_is_unfinished() -> None:
+    page = Maker(opened("yamashita-1")[0])
+    page.do("free", point="D")
+    place = page.session.base().design.pose("coupler").out((0.03, 0.01))
+    drag = {"move_mass": "coupler", "to": [place.real, place.imag], "at": 0}
+    state(ask(page.session, "edit", edits=[drag], label="centre of mass")[0])
+    center = page.session.base().design.links["coupler"].center_of_mass
+    assert center == pytest.approx((0.03, 0.01), abs=1e-8)
+
+
 def test_one_slider_or_pair_of_gears_is_deleted() -> None:
     maker = Maker()
     maker.session = opened("slider-crank-engine")[0]
@@ -342,7 +378,7 @@ def test_a_machine_that_is_drawn_on_keeps_its_expressions_and_added_shafts() -> 
     shown = opened("yamashita-1")[0].shown
     expressions = {"links.coupler.lengths.B-P": "=160 mm + 5 mm"}
     design = replace(shown.design, shafts=frozenset({"crank", "gone"}), expressions=expressions)
-    after = Sketch.of(replace(shown, design=design)).finished().design
+    after = Sketch.of(design, shown.motion).finished()
     assert (after.expressions, after.shafts) == (expressions, {"crank"})
 
 
@@ -565,7 +601,7 @@ def test_a_step_that_the_program_cannot_draw_is_no_step(monkeypatch: pytest.Monk
     maker = Maker(opened("knife-drive")[0])
     good = maker.session.current_state, maker.session.history
     with monkeypatch.context() as broken:
-        broken.setattr("equipoise.web.session.state_of_sketch", lambda *_: 1 / 0)
+        broken.setattr("equipoise.web.session.state_of", lambda *_, **__: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             ask(maker.session, "make", do="delete", what="link", name="rod")
     assert (maker.session.current_state, maker.session.history) == good

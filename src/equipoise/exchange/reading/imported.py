@@ -111,7 +111,7 @@ class Imported:
 
         open_now = [f"# missing: {item}\n" for item in self.missing]
         notes = [f"# {note}\n" for note in self.notes]
-        machine = self.machine or self.outline.machine()
+        machine = self.machine or self.outline.to_machine()
         text = text_of(machine, {})
         for name in self.massless:
             head = _header(name)
@@ -196,7 +196,7 @@ def _check(outline: MachineDraft) -> None:
         raise ModelError("", Note("there is no link in it; give a file with at least one"))
     if not outline.frame:
         raise ModelError("", Note("nothing in it is the frame; name what stands still by --frame"))
-    outline.machine()
+    outline.to_machine()
 
 
 def _crank(outline: MachineDraft, wanted: str, given: str) -> tuple[str, str]:

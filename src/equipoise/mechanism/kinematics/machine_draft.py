@@ -167,7 +167,7 @@ class MachineDraft:
         parts = [z.real for z in places], [z.imag for z in places]
         return max(max(part) - min(part) for part in parts) or USUAL_SIZE
 
-    def machine(self) -> Machine:
+    def to_machine(self) -> Machine:
         """What is drawn as a machine, with the place where it is drawn.
 
         Raises
@@ -191,7 +191,7 @@ class MachineDraft:
         ------
         EquipoiseError : it does not make a linkage; the sentence says why.
         """
-        machine = self.machine()
+        machine = self.to_machine()
         pushed = {pusher.link: self.pose(pusher.link).angle for pusher in machine.pushers}
         turning = Standing(pushed) if pushed else None
         machine = replace(machine, assembly=sides_at_position(machine, turning))
