@@ -67,7 +67,7 @@ class Sketch(PageDraft, MachineDraft):
     counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
     shafts: frozenset[str] = frozenset()
     expressions: Mapping[str, str] = field(default_factory=dict)
-    drawn_keys: ClassVar[tuple[str, ...]] = ("start",)
+    drawn_keys: ClassVar[tuple[str, ...]] = ("start", "angle", "travel")
 
     @classmethod
     def of(cls, design: PageDraft, motion: Motion, at: int = 0) -> Sketch:

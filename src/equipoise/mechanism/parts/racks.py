@@ -92,6 +92,10 @@ class Rack(Coupling):
         return self.rack if self.drives == "pinion" else self.pinion
 
     @property
+    def idle_keys(self) -> tuple[str, ...]:
+        return ("angle",) if self.drives == "pinion" else ("travel",)
+
+    @property
     def foot(self) -> complex:
         """From the pinion's pin to where both mesh, m, across the direction of the guide."""
         return -1j * self.left * self.radius
