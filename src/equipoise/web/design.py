@@ -183,7 +183,7 @@ class PageDraft(ABC):
         weight = self.counterweights.get(link)
         if weight is None or not weight.mass:
             return center
-        mass = self.own.links[link].mass or 0.0
+        mass = self.links[link].mass or 0.0
         if not mass:
             raise UsageError(
                 Note(

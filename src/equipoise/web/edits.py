@@ -305,15 +305,17 @@ def _moved(base: Computed, design: PageDraft, change: Drag) -> tuple[PageDraft, 
 
 def _mass_moved(base: Computed, design: PageDraft, change: Drag) -> PageDraft:
     """The centre of mass of a link, with its counterweight, dragged to a place of the frame."""
-    machine = design.own
-    having = [name for name, link in machine.links.items() if link.has_mass]
+    having = [name for name, link in design.links.items() if link.has_mass]
     if change.name not in having:
         raise UsageError(unknown(change.name, having, "link with a mass"))
     if isinstance(design, Sketch):
-        place = design.pose(change.name).into(change.to)
-    else:
-        _check_sample(base.motion, change.at)
-        place = complex(*_local(base.motion, change.name, change.at, change.to))
+        center = design.own_center(change.name, design.pose(change.name).into(change.to))
+        there = clean_place(center, design.size, DRAGGED)
+        link = design.links[change.name].altered(center_of_mass=there)
+        return replace(design, links={**design.links, change.name: link})
+    machine = design.own
+    _check_sample(base.motion, change.at)
+    place = complex(*_local(base.motion, change.name, change.at, change.to))
     center = design.own_center(change.name, place)
     there = clean_place(center, extent_of(machine), DRAGGED)
     return design.with_machine(machine.with_link(change.name, center_of_mass=there))

@@ -17,6 +17,7 @@ from typing import Any, ClassVar
 from equipoise.dataclass import dataclass
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, all_of, localized, say, to_say
+from equipoise.keys import changed
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.joints import Structure, held_too_often, undetermined
 from equipoise.mechanism.checks import unknown
@@ -31,7 +32,7 @@ from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.bodies import MATERIALS, Body
 from equipoise.mechanism.parts.constraints import changed_points
 from equipoise.mechanism.parts.element_kinds import PartKind, part_kinds
-from equipoise.mechanism.parts.links import MASS_FIELDS
+from equipoise.mechanism.parts.links import MASS_FIELDS, wrong_link
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Slider, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import DIGITS, clean, clean_place
@@ -175,6 +176,8 @@ class Sketch(PageDraft, MachineDraft):
             _, _, point, axis = path
             x, y = self.frame[str(point)]
             return self.with_point(FRAME, str(point), (value, y) if axis == "x" else (x, value))
+        if self.known_machine is None:
+            return self._with_number_alone(path, value)
         sketch = self.with_machine(self.own.with_number(path, value))
         places: dict[str, complex] = {}
         bodies: dict[str, list[str]] = {}
@@ -183,6 +186,23 @@ class Sketch(PageDraft, MachineDraft):
             bodies.setdefault(point, []).append(body)
         for point, place in places.items():
             sketch = moved(sketch, point, place, DIGITS, bodies[point])
+        return sketch
+
+    def _with_number_alone(self, path: KeyPath, value: float) -> Sketch:
+        """Return the sketch with another number of a link or the drive, where what else there is
+        makes no machine yet, as before anything is pinned to the frame.
+        """
+        if path[0] == "drive" and self.drive is not None:
+            return replace(self, drive=replace(self.drive, speed=value))
+        name = str(path[1])
+        before = self.links[name]
+        link = changed(before, path[2:], lambda _: value)
+        for problem in wrong_link(f"links.{name}", name, link):
+            raise problem
+        sketch = replace(self, links={**self.links, name: link})
+        for point, place in link.points.items():
+            if place != before.points[point]:
+                sketch = moved(sketch, point, self.pose(name).out(place), DIGITS, (name,))
         return sketch
 
     def with_point(self, body: str, point: str, place: Vector) -> Sketch:
@@ -377,7 +397,7 @@ def _without_drive(cranks: Sequence[str]) -> str:
 
 def _loose(sketch: Sketch, joints: Structure) -> str:
     """What moves besides, and what to do about it."""
-    left = undetermined(joints, sketch.driven)
+    left = [name for name in undetermined(joints, sketch.driven) if name in sketch.links]
     for link in left:
         free = [point for point in sketch.links[link].points if point not in joints.pins]
         constrained = len(sketch.links[link].points) - len(free)

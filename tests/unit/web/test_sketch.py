@@ -336,6 +336,28 @@ def test_masses_and_parameters_of_what_is_unfinished_are_typed() -> None:
     assert (page.machine.links["rod"].mass, page.machine.links["crank"].mass) == (0.9, 0.25)
 
 
+def test_numbers_of_a_link_that_nothing_joins_to_the_frame_are_typed() -> None:
+    page = Maker()
+    page.do("new")
+    page.do("link", **{"from": at(0j), "to": at(0.03 + 0j)})
+    path = "links.coupler.bodies[1].width"
+    asked = [{"set": path, "text": "12 mm"}]
+    reported = state(ask(page.session, "edit", edits=asked, label="width")[0])
+    assert reported.field(path)["value"] == 0.012
+    asked = [{"set": "links.coupler.points.B.x", "text": "50 mm"}]
+    reported = state(ask(page.session, "edit", edits=asked, label="B")[0])
+    assert reported.place("B")[0] == pytest.approx(0.05, abs=1e-9)
+    asked = [{"set": path, "text": "-12 mm"}]
+    refusal(ask(page.session, "edit", edits=asked, label="width"))
+
+
+def test_a_pin_that_slides_in_a_slot_is_no_link_that_hangs_free() -> None:
+    page = Maker(opened("flap-folder")[0])
+    for link in [*page.machine.links]:
+        page.session, _ = opened("flap-folder")
+        assert page.do("delete", what="link", name=link)
+
+
 def test_a_centre_of_mass_is_dragged_while_a_machine_is_unfinished() -> None:
     page = Maker(opened("yamashita-1")[0])
     page.do("free", point="D")
