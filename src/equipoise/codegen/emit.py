@@ -23,12 +23,12 @@ from equipoise.codegen.steps import (
     traced_element,
 )
 from equipoise.codegen.strokes import SPEED, can_trace_strokes
-from equipoise.codegen.terms import angle_of
 from equipoise.codegen.trace import Trace
 from equipoise.dataclass import dataclass
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.keys.paths import KeyPath
+from equipoise.mechanism.assembly.cam_shapes import pressure_angle
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.loops import LoopGroup
@@ -239,8 +239,7 @@ class Signals:
 
     def pressure_angle(self, item: str) -> Any:
         self._reaction(item)
-        forth, normal = (self.forces[f"{key}({item})"] for key in ("forth", "normal"))
-        return angle_of(forth.conjugate() * normal)
+        return pressure_angle(item, self.forces)
 
     def coupling_part(self, item: str, part: str) -> Any:
         """A part of a coupling's force by its name."""

@@ -323,6 +323,10 @@ def _plane(trace: Trace, link: str, point: str | None) -> Any:
 def bearing_force(trace: Trace, bearing: str, exerted: Callable[[str], Any]) -> Any:
     """The force of a bearing: both of a link bear what its pin in the frame does, with its couple.
 
+    Analyses have that couple as an output and take it as a number; here the plane of the pin is
+    collected with those of other contacts first, as it cancels wherever the pin bears what its link
+    needs, and no design has to read it.
+
     exerted : the force in a joint or mesh, by name.
     """
     given = trace.machine.bearings

@@ -18,11 +18,12 @@ from equipoise.codegen.terms import greatest, rotation
 from equipoise.codegen.trace import Trace
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loops import LoopGroup
-from equipoise.mechanism.assembly.steps import demand_names, size_of_bodies, u
+from equipoise.mechanism.assembly.steps import demand_names, size_of_bodies
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.reactions import PUSH
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.kinematics.cylinders import push_lines, slider_of
+from equipoise.mechanism.kinematics.cylinders import push_lines
+from equipoise.mechanism.kinematics.motion import pushed_length, slider_of
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.signals import Array
@@ -122,22 +123,9 @@ def _turned(linkage: Linkage, link: str, theta: Array) -> Array:
 
 
 def _length(trace: Trace, pusher: Pusher) -> tuple[Any, Any, Any]:
-    """As of `Motion.lengths`."""
-    values: tuple[Any, Any, Any]
-    if pusher.slider:
-        slider = slider_of(trace.machine, pusher)
-        at, base = trace.point(slider.link, slider.point), trace.point(slider.on, slider.through)
-        turn, w, a = (trace.state[name] for name in u(slider.on))
-        values = kernels.travelled(*at, *base, turn, w, a, rotation(_direction(trace, pusher)))
-    else:
-        values = kernels.apart(*(b - a for a, b in zip(*_ends(trace, pusher), strict=True)))
-    return values
-
-
-def _ends(trace: Trace, pusher: Pusher) -> list[tuple[Any, Any, Any]]:
-    """Both ends of a cylinder, with their derivatives."""
-    bodies = pusher.ends(trace.machine.bodies)
-    return [trace.point(*end) for end in zip(bodies, pusher.between or (), strict=True)]
+    """Length that a drive pushes, m, and both derivatives by crank angle."""
+    along = rotation(_direction(trace, pusher)) if pusher.slider else 1.0
+    return pushed_length(trace.machine, pusher, trace.point, trace.state, along)
 
 
 def _direction(trace: Trace, pusher: Pusher) -> Any:

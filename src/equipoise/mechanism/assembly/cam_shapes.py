@@ -423,16 +423,16 @@ def fits_of(machine: Machine, joints: Structure) -> tuple[CamFit, ...]:
     return tuple(fitted(machine, joints, cam) for cam in couplings)
 
 
-def pressure_angle(cam: Cam, state: State) -> Array:
-    """From the way in which a follower rises to the common normal, rad, as of a motion's state."""
-    forth, normal = state[f"forth({cam.name})"], state[f"normal({cam.name})"]
-    return _slant(forth, normal)
+def pressure_angle(name: str, state: State) -> Any:
+    """From the way in which the follower of a cam rises to the common normal, rad, by the name of
+    the cam; of a motion's state, or of terms.
+    """
+    return _slant(state[f"forth({name})"], state[f"normal({name})"])
 
 
-def _slant(forth: Any, normal: Any) -> Array:
+def _slant(forth: Any, normal: Any) -> Any:
     """Angle from one direction to another (N,), rad."""
-    slant: Array = np.arctan2(cross(forth, normal), dot(forth, normal))
-    return slant
+    return np.arctan2(cross(forth, normal), dot(forth, normal))
 
 
 def sharpest(fit: CamFit) -> tuple[float, float]:

@@ -76,7 +76,7 @@ def contact_values(motion: Motion, cam: Cam) -> Mapping[str, Array]:
     ends = [links[body].angle if body in links else 0.0 for body in (cam.driver, cam.carrier)]
     shape = fit.shape(np.asarray(ends[0] - ends[1]))
     return {
-        "pressure_angle": pressure_angle(cam, motion.state),
+        "pressure_angle": pressure_angle(cam.name, motion.state),
         "curvature": shape.surface_curvature,
     }
 

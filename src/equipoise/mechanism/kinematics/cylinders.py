@@ -29,19 +29,14 @@ from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.reach import reach
 from equipoise.mechanism.assembly.steps import run, u
 from equipoise.mechanism.formulas.rolling import Levels
-from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
+from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, slider_of
 from equipoise.mechanism.kinematics.swinging import Followed
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.laws import LengthLaw
-from equipoise.mechanism.parts.machine import Machine, Slider
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import angle, format_exact
 from equipoise.signals import Array
-
-
-def slider_of(machine: Machine, drive: Drive | FurtherDrive) -> Slider:
-    """The sliding joint that is driven."""
-    return next(slider for slider in machine.sliders if slider.name == drive.slider)
 
 
 def ends_of(machine: Machine, drive: Drive | FurtherDrive) -> tuple[str, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from math import degrees, pi
@@ -263,15 +263,13 @@ class Motion(Displayed):
         """Length between the points that a drive pushes apart, or travel of its sliding joint, m,
         and both derivatives by crank angle, each (N,).
         """
-        if drive.slider:
-            item = next(slider for slider in self.machine.sliders if slider.name == drive.slider)
-            slid = self.slider(item)
-            return slid.travel, slid.travel_1, slid.travel_2
-        a, b = (self.point(name) for name in drive.between or ())
-        length, first, second = kernels.apart(
-            b.place - a.place, b.place_1 - a.place_1, b.place_2 - a.place_2
-        )
-        return length, first, second
+        along = np.exp(1j * slider_of(self.machine, drive).direction) if drive.slider else 1.0
+        return pushed_length(self.machine, drive, self._levels, self.state, along)
+
+    def _levels(self, _: str, point: str) -> tuple[Array, Array, Array]:
+        """A point, whose name tells of which body, and its two derivatives by crank angle."""
+        at = self.point(point)
+        return at.place, at.place_1, at.place_2
 
     def way(self, link: str) -> Array:
         """By crank angle (N,): what the drive of a link goes, m, or turns, rad."""
@@ -338,18 +336,9 @@ class Motion(Displayed):
 
     def slider(self, slider: Slider) -> SliderMotion:
         """Motion of one of the sliding joints, likewise."""
-        point, base = self.point(slider.point), self.point(slider.through)
-        rotation, w, a = (self.state[name] for name in u(slider.on))
-        way = kernels.along_line(
-            point.place - base.place,
-            point.place_1 - base.place_1,
-            point.place_2 - base.place_2,
-            self._full(rotation * np.exp(1j * slider.direction), complex),
-            w,
-            a,
-        )
-        travel, first, second = (part.real for part in way)
-        return SliderMotion(travel, first, second, self.speed, self.acceleration)
+        along = np.exp(1j * slider.direction)
+        way = travel_of(slider, self._levels, self.state, along)
+        return SliderMotion(*way, self.speed, self.acceleration)
 
     def _transmission(self, group: Group) -> Array:
         assert group.margin is not None
@@ -428,6 +417,41 @@ class Motion(Displayed):
         if isinstance(value, np.ndarray) and value.shape == self.crank_angle.shape:
             return value
         return np.full(self.crank_angle.shape, value, dtype=kind)
+
+
+PointLevels = Callable[[str, str], tuple[Any, Any, Any]]
+"""From a body and its point to its place, m, and both derivatives by crank angle."""
+
+
+def slider_of(machine: Machine, drive: Drive | FurtherDrive) -> Slider:
+    """The sliding joint that is driven."""
+    return next(slider for slider in machine.sliders if slider.name == drive.slider)
+
+
+def pushed_length(
+    machine: Machine, drive: Drive | FurtherDrive, point: PointLevels, state: State, along: Any
+) -> tuple[Any, Any, Any]:
+    """Length between the points that a drive pushes apart, or travel of its sliding joint, m, and
+    both derivatives by crank angle; arrays or terms.
+
+    along : direction of that joint, in the axes of the body that it is on, as a unit vector.
+    """
+    if drive.slider:
+        return travel_of(slider_of(machine, drive), point, state, along)
+    ends = zip(drive.ends(machine.bodies), drive.between or (), strict=True)
+    a, b = (point(*end) for end in ends)
+    length, first, second = kernels.apart(*(y - x for x, y in zip(a, b, strict=True)))
+    return length, first, second
+
+
+def travel_of(slider: Slider, point: PointLevels, state: State, along: Any) -> tuple[Any, Any, Any]:
+    """Travel of a sliding joint, m, and both derivatives by crank angle; along : as of
+    `pushed_length`.
+    """
+    at, base = point(slider.link, slider.point), point(slider.on, slider.through)
+    turn = (state[name] for name in u(slider.on))
+    travel, first, second = kernels.travelled(*at, *base, *turn, along)
+    return travel, first, second
 
 
 class StateBodies(ABC):
