@@ -39,7 +39,7 @@ from equipoise.mechanism.assembly.loops import (
     Riding,
     poses_in,
 )
-from equipoise.mechanism.assembly.steps import along, p, planar, size_of_bodies, u
+from equipoise.mechanism.assembly.steps import along, p, size_of_bodies, u
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.signals import Array
@@ -115,8 +115,10 @@ class TracedGroup:
 
             return slotted(trace, getattr(group, key), f"{key} {number}", read)
 
-        self.group = replace(group, tree=parts("tree"), equations=parts("equations"))
         self.size = trace.slot("size", lambda linkage: size_of_bodies(linkage.machine))
+        self.group = replace(
+            group, tree=parts("tree"), equations=parts("equations"), size=self.size
+        )
         self.known = {body: self.pose_of(body) for body, _ in group.known}
         self.step, self.marked, self.steady = (trace.graph.argument(item, ANGLE) for item in MARCH)
 
@@ -163,9 +165,9 @@ class TracedGroup:
         ahead = [h * rate + h * h * 0.5 * two for rate, two in zip(rates, bends, strict=True)]
         q = self.moved(before, ahead)
         minors = Minors(self.slopes(q))
-        jump = minors.solve(self.gaps(q))
-        q = self.moved(q, [-item for item in jump])
-        q = self.moved(q, [-item for item in minors.solve(self.gaps(q))])
+        jump = minors.balanced(self.gaps(q))
+        q = self.moved(q, jump)
+        q = self.moved(q, minors.balanced(self.gaps(q)))
         minors = Minors(self.slopes(q))
         left = minors.solve(self.gaps(q))
         w, a = self.put(q, minors)
@@ -177,7 +179,7 @@ class TracedGroup:
         self.carry_on(bends, a)
         self.carry_on(self.carried([0.0], "open"), [self.apart(q, marked)])
         farthest, longest = (
-            reduce(greatest, map(abs, self.scaled(steps))) for steps in (left, jump)
+            reduce(greatest, map(abs, self.group.scaled(steps))) for steps in (left, jump)
         )
         (astray,) = self.carried([0.0], "astray")
         off = reduce(greatest, self.misplaced(poses), farthest)
@@ -190,9 +192,9 @@ class TracedGroup:
         """
         q = [self.of_base(k, turns) for k, turns in enumerate(self.group.turning.tolist())]
         for _ in range(FROM_BASE):
-            q = self.moved(q, [-item for item in Minors(self.slopes(q)).solve(self.gaps(q))])
+            q = self.moved(q, Minors(self.slopes(q)).balanced(self.gaps(q)))
         minors = Minors(self.slopes(q))
-        left = reduce(greatest, map(abs, self.scaled(minors.solve(self.gaps(q)))))
+        left = reduce(greatest, map(abs, self.group.scaled(minors.solve(self.gaps(q)))))
         self.put(q, minors)
         _, start = self.known_pose()
         whole = minors.whole
@@ -216,8 +218,7 @@ class TracedGroup:
 
     def put(self, q: list[Any], minors: Minors) -> tuple[list[Any], list[Any]]:
         """Add poses to the state, with their rates; those of the unknowns."""
-        w = [-item for item in minors.solve(self.group.gaps(self.poses(self.known, q), 1))]
-        a = [-item for item in minors.solve(self.group.gaps(self.poses(self.known, q, w), 2))]
+        w, a = self.group.derivatives_by(minors.balanced, self.unknowns(q), self.known)
         poses = self.final = self.poses(self.known, q, w, a)
         self.reached, self.still = q, {body: pose.still for body, pose in self.known.items()}
         for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
@@ -238,32 +239,14 @@ class TracedGroup:
         """Of each point: above 0 where it is too far from its position in the file."""
         machine = self.machine
         assert machine.position is not None
-        for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
-            for name in machine.assembled_points(link):
-                if name not in machine.position.points:
-                    continue
-
-                def arm(
-                    linkage: Linkage, link: str = link, name: str = name, to: str = anchor
-                ) -> Any:
-                    points = linkage.machine.assembled_points(link)
-                    return planar(points[name]) - planar(points[to])
-
-                vector = self.trace.slot(f"arm({link}/{name})", arm, vector=True)
-                at = poses[link].place[0] if name == anchor else poses[link].point(vector)[0]
-                way = at - complex(*machine.position.points[name])
-                far = way.real * way.real + way.imag * way.imag
-                yield far / (self.size * self.size) - FAR**2
+        for _, way in self.group.ways_from(machine.position, machine, poses, self.trace.arm):
+            far = way.real * way.real + way.imag * way.imag
+            yield far / (self.size * self.size) - FAR**2
 
     def apart(self, q: list[Any], others: list[Any]) -> Any:
         """How far two sets of unknowns are from each other, squared."""
-        ways = self.scaled([item - other for item, other in zip(q, others, strict=True)])
+        ways = self.group.scaled(item - other for item, other in zip(q, others, strict=True))
         return sum((way * way.conjugate()).real for way in ways)
-
-    def scaled(self, values: list[Any]) -> list[Any]:
-        """Ways over the size of the machine, and angles."""
-        pairs = zip(values, self.group.turning, strict=True)
-        return [item if turns else item / self.size for item, turns in pairs]
 
     def moved(self, q: list[Any], steps: list[Any]) -> list[Any]:
         """Unknowns after steps, of which none is beyond all measure."""
@@ -273,15 +256,20 @@ class TracedGroup:
         ]
 
     def poses(self, known: Poses, q: list[Any], *rates: list[Any]) -> Poses:
+        return self.group.poses(known, self.unknowns(q), *rates)
+
+    def unknowns(self, q: list[Any]) -> list[Any]:
+        """Unknowns as poses take them: of an angle the rotation, and no angle."""
         pairs = zip(q, self.group.turning, strict=True)
-        values = [(item, 0.0) if turns else item for item, turns in pairs]
-        return self.group.poses(known, values, *rates)
+        return [(item, 0.0) if turns else item for item, turns in pairs]
 
     def gaps(self, q: list[Any]) -> list[Any]:
         return self.group.gaps(self.poses(self.known, q), 0)
 
     def slopes(self, q: list[Any]) -> list[list[Any]]:
-        """Derivative of each loop equation by each unknown."""
+        """Derivative of each loop equation by each unknown: as of `LoopGroup.slopes`, by one
+        evaluation of each unknown, as terms have no axis for all of them.
+        """
         known = {body: pose.still for body, pose in self.known.items()}
         units = np.eye(len(q)).tolist()
         columns = [self.group.gaps(self.poses(known, q, unit), 1) for unit in units]
@@ -311,6 +299,10 @@ class Minors:
             sign = -1.0 if (count - 1 - k) % 2 else 1.0
             result.append(sign * _minor(rows, others, by_name) * self.inverse)
         return result
+
+    def balanced(self, gaps: list[Any]) -> list[Any]:
+        """What makes up for gaps: minus the solution for them."""
+        return [-item for item in self.solve(gaps)]
 
 
 def _minor(rows: list[list[Any]], columns: tuple[int, ...], minors: dict[Any, Any]) -> Any:

@@ -207,16 +207,19 @@ class Trace:
     def point(self, link: str, point: str) -> tuple[Any, Any, Any]:
         """A point of a link and its derivatives."""
         if f"p2({point})" not in self.state:  # of a joint there may be its place alone
-            anchor = self.linkage.anchors[link]
-
-            def arm(linkage: Linkage) -> Any:
-                points = linkage.machine.assembled_points(link)
-                return planar(points[point]) - planar(points[anchor])
-
-            slot = self.slot(f"arm({link}/{point})", arm, vector=True)
-            self.put(p(point), kernels.point(*self.body(link), slot))
+            arm = self.arm(link, self.linkage.anchors[link], point)
+            self.put(p(point), kernels.point(*self.body(link), arm))
         place, first, second = (self.state[name] for name in p(point))
         return place, first, second
+
+    def arm(self, link: str, anchor: str, point: str) -> Any:
+        """Vector from a link's anchor to another of its points, in the link's axes."""
+
+        def read(linkage: Linkage) -> Any:
+            points = linkage.machine.assembled_points(link)
+            return planar(points[point]) - planar(points[anchor])
+
+        return self.slot(f"arm({link}/{point})", read, vector=True)
 
     def numbers(self) -> list[tuple[Any, int]]:
         """The dyads' own numbers, and what else is to be watched; each with the number of its

@@ -433,20 +433,19 @@ def _rough(
 
 def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopGroup) -> None:
     """A solution far from the position in the file may be another assembly of the links."""
-    for link, anchor in zip(group.links, group.anchors, strict=True):
-        for name in builder.machine.assembled_points(link).keys() & position.points.keys():
-            result = complex(poses[link].place_of(builder.arm(link, anchor, name)))
-            if abs(result - complex(*position.points[name])) > FAR * group.size:
-                raise ModelError(
-                    f"position.points.{name}",
-                    Note(
-                        "too rough: the links meet with {name} at ({real:.4g}, {imag:.4g}) mm; "
-                        "give a place nearer to where it is",
-                        name=name,
-                        real=result.real * 1000.0,
-                        imag=result.imag * 1000.0,
-                    ),
-                )
+    for name, way in group.ways_from(position, builder.machine, poses, builder.arm):
+        if abs(way) > FAR * group.size:
+            result = complex(*position.points[name]) + complex(way)
+            raise ModelError(
+                f"position.points.{name}",
+                Note(
+                    "too rough: the links meet with {name} at ({real:.4g}, {imag:.4g}) mm; "
+                    "give a place nearer to where it is",
+                    name=name,
+                    real=result.real * 1000.0,
+                    imag=result.imag * 1000.0,
+                ),
+            )
 
 
 def _guess(

@@ -20,7 +20,7 @@ neighbouring crank angles first, then any crank angle from the nearest one follo
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import cached_property
 from math import ceil, degrees, radians
@@ -37,6 +37,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.curves import HERMITE
 from equipoise.mechanism.formulas.kernels import on_track
 from equipoise.mechanism.formulas.rolling import Levels
+from equipoise.mechanism.parts.machine import Machine, Position
 from equipoise.signals import Array, first_below
 
 
@@ -538,16 +539,8 @@ class LoopGroup:
         count, shape = len(q), q.shape[1:]
         unit = np.eye(count).reshape(count, count, *(1 for _ in shape))
         poses = self.poses({body: pose.still for body, pose in known.items()}, q, unit)
-        rates = self.stacked(poses, 1, (count, *shape))
-        return self.stacked(poses, 0, shape), np.moveaxis(rates, (0, 1), (-2, -1))
-
-    def stacked(self, poses: Poses, level: int, shape: tuple[int, ...]) -> Array:
-        """The gaps, or their derivatives, (n, *shape)."""
-        gaps = self.gaps(poses, level)
-        result = np.empty((len(gaps), *shape))
-        for row, gap in enumerate(gaps):
-            result[row] = gap
-        return result
+        rates = gap_rows(self.gaps(poses, 1), (count, *shape))
+        return gap_rows(self.gaps(poses, 0), shape), np.moveaxis(rates, (0, 1), (-2, -1))
 
     def solve(self, guess: Array, known: Poses, theta: Any) -> Array:
         """Newton's method at all crank angles (N,), or one, together; guess, result (n, ...)."""
@@ -596,16 +589,50 @@ class LoopGroup:
 
     def sizes(self, steps: Array) -> Array:
         """Steps of the unknowns (n, ...) without dimension."""
-        sizes = np.abs(steps)
-        sizes[~self.turning] /= self.size
-        return sizes
+        return np.abs(np.array(self.scaled(steps)))
+
+    def scaled(self, steps: Iterable[Any]) -> list[Any]:
+        """Steps of the unknowns, arrays or terms: lengths over the size of the machine."""
+        pairs = zip(steps, self.turning, strict=True)
+        return [step if turns else step / self.size for step, turns in pairs]
 
     def derivatives(self, q: Array, known: Poses) -> tuple[Array, Array]:
         """First and second derivative of the unknowns by crank angle."""
         _, matrix = self.slopes(known, q)
-        q1 = -divide(matrix, self.stacked(self.poses(known, q), 1, q.shape[1:]))
-        q2 = -divide(matrix, self.stacked(self.poses(known, q, q1), 2, q.shape[1:]))
-        return q1, q2
+
+        def balanced(gaps: Sequence[Any]) -> Array:
+            return -divide(matrix, gap_rows(gaps, q.shape[1:]))
+
+        return self.derivatives_by(balanced, q, known)
+
+    def derivatives_by(
+        self, balanced: Callable[[list[Any]], Any], q: Any, known: Poses
+    ) -> tuple[Any, Any]:
+        """First and second derivative of the unknowns by crank angle, as arrays or terms.
+
+        balanced : from a derivative of the gaps in which that of the unknowns is left out, to that
+            by which it is 0.
+        """
+        q1 = balanced(self.gaps(self.poses(known, q), 1))
+        return q1, balanced(self.gaps(self.poses(known, q, q1), 2))
+
+    def ways_from(
+        self,
+        position: Position,
+        machine: Machine,
+        poses: Poses,
+        arm: Callable[[str, str, str], Any],
+    ) -> Iterator[tuple[str, Any]]:
+        """Points of the links that the file places, each with the way, m, complex, to where it is
+        by poses of arrays or terms.
+
+        arm : from a link, its anchor and another point to the vector between them.
+        """
+        for link, anchor in zip(self.links, self.anchors, strict=True):
+            for name in machine.assembled_points(link):
+                if name in position.points:
+                    vector = 0j if name == anchor else arm(link, anchor, name)
+                    yield name, poses[link].place_of(vector) - complex(*position.points[name])
 
     def follow(self, start: Array, known: Poses, theta: Array, guess: Any = None) -> Levels:
         """Follow the branch along crank angles, from the solution `start` at the first.
@@ -731,6 +758,14 @@ def divide(matrix: Array, right: Array) -> Array:
     except np.linalg.LinAlgError:
         return np.full((matrix.shape[-1], *right.shape[1:]), np.nan)
     return np.moveaxis(solution[..., 0], -1, 0)
+
+
+def gap_rows(gaps: Sequence[Any], shape: tuple[int, ...]) -> Array:
+    """Gaps, or their derivatives, as an array (n, *shape)."""
+    result = np.empty((len(gaps), *shape))
+    for row, gap in enumerate(gaps):
+        result[row] = gap
+    return result
 
 
 def between(theta: Array, posts: Array, q: Array, q1: Array, q2: Array) -> Array:
