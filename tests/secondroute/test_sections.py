@@ -143,6 +143,21 @@ def test_friction_and_a_flywheel_count() -> None:
     assert all(map(closes, analysis.forces.sections.values()))
 
 
+@pytest.mark.parametrize(
+    ("name", "mesh"),
+    [
+        ("geared-counterweight", "gears.rocker to counterweight"),
+        ("knife-drive", "belts.shaft to crank"),
+    ],
+)
+def test_losses_of_teeth_and_strands_count(name: str, mesh: str) -> None:
+    machine = sectioned(eq.load(name))
+    machine = replace(machine, joints=(JointProperties(mesh, mesh_loss=0.05),))
+    analysis = eq.analyze(machine, 24)
+    assert analysis.losses is not None and analysis.losses.loss > 0
+    assert all(map(closes, analysis.forces.sections.values()))
+
+
 def test_a_rod_that_hangs_and_a_bar_that_swings() -> None:
     """Closed forms: a uniform bar turned about one end at a constant speed is drawn by
     m w^2 (L^2 - s^2) / 2 L, and by gravity across it bent by m g (L - s)^2 / 2 L.

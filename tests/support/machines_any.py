@@ -486,6 +486,8 @@ def _sections(chance: random.Random, document: Document) -> None:
             section["between"] = chance.sample(points, min(2, len(points)))
         if chance.random() < 0.3:
             section["wall"] = mm(size * chance.uniform(0.02, 0.26))
+        elif "height" in section and size > 20:
+            section |= {"web": mm(size / 8), "flange": mm(size / 10)}
         section |= dict(chance.sample([*strengths.items()], chance.randint(0, len(strengths))))
         if "fatigue_limit" in section and chance.random() < 0.5:
             section["tensile_strength"] = "510 MPa"

@@ -354,7 +354,7 @@ def _rubbing(motion: Motion, solved: JointReactions) -> Iterator[Acting]:
         for body, sign in ((joint.on, 1.0), (joint.by, -1.0)):
             if not joint.slides:
                 torque = sign * effort * joint.lever(motion)
-                yield body, motion.state[f"p({joint.reaction.at})"], NO_FORCE, torque
+                yield body, solved.state[f"p({joint.reaction.at})"], NO_FORCE, torque
             else:
                 along = joint.direction(motion)
                 yield body, joint.place(motion), sign * effort * along, 0.0
