@@ -6,10 +6,12 @@ nothing, and fails if the file is out of date.
 
 from __future__ import annotations
 
+import ast
 import inspect
 import json
 import sys
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import (
@@ -48,9 +50,25 @@ SUFFIX = "Values"
 """Of classes in Python, where the bare name is that of the value itself."""
 
 
+@cache
+def bases(of: type) -> tuple[type, ...]:
+    """Return the TypedDicts that another one extends, from its source: Python 3.11 forgets them."""
+    try:
+        (definition,) = ast.parse(inspect.getsource(of)).body
+    except OSError:  # it is made by a call
+        return ()
+    assert isinstance(definition, ast.ClassDef)
+    names = (base.id for base in definition.bases if isinstance(base, ast.Name))
+    known = (vars(sys.modules[of.__module__])[name] for name in names)
+    return tuple(base for base in known if is_typeddict(base))
+
+
 def fields(of: type) -> Iterator[tuple[str, Any, str, bool]]:
-    """Yield name, type, comment and whether it is required of each key of a TypedDict."""
+    """Yield name, type, comment and whether it is required of each key that a TypedDict adds."""
+    inherited = {name for base in bases(of) for name in get_type_hints(base)}
     for name, declared in get_type_hints(of, include_extras=True).items():
+        if name in inherited:
+            continue
         hint, required, comment = declared, True, ""
         while get_origin(hint) in (NotRequired, Annotated):
             if get_origin(hint) is NotRequired:
@@ -97,7 +115,7 @@ def classes(of: tuple[Any, ...]) -> list[type]:
     def visit(hint: Any) -> None:
         if is_typeddict(hint) and hint not in begun:
             begun.add(hint)
-            for _, inner, _, _ in fields(hint):
+            for inner in (*bases(hint), *(item for _, item, _, _ in fields(hint))):
                 visit(inner)
             known.setdefault(hint)
         for inner in get_args(hint):
@@ -113,12 +131,13 @@ def interface(of: type) -> str:
     from equipoise.web.protocol import OPEN
 
     lines = [f"/** {' '.join((inspect.getdoc(of) or '').split())} */"]
-    lines.append(f"export interface {typescript(of)} {{")
+    extended = ", ".join(map(typescript, bases(of)))
+    lines.append(f"export interface {typescript(of)} {f'extends {extended} ' * bool(extended)}{{")
     for name, hint, comment, required in fields(of):
         if comment:
             lines.append(f"  /** {comment} */")
         lines.append(f"  {name}{'' if required else '?'}: {typescript(hint)};")
-    if of in OPEN:
+    if of in OPEN and not any(base in OPEN for base in bases(of)):
         lines.append("  [key: string]: unknown;")
     return "\n".join([*lines, "}", ""])
 

@@ -207,10 +207,7 @@ export interface Unit {
 }
 
 /** A number of the machine that can be edited. */
-export interface Field {
-  unit: string;
-  /** How many of the unit an SI unit is. */
-  factor: number;
+export interface Field extends Unit {
   path: string;
   group: string;
   /** Title of the group. */
@@ -253,10 +250,7 @@ export interface Figure {
 }
 
 /** An output that can be plotted over the crank angle; its samples are sent on request. */
-export interface Output {
-  unit: string;
-  /** How many of the unit an SI unit is. */
-  factor: number;
+export interface Output extends Unit {
   name: string;
   label: string;
   /** Heading under which it is offered. */
@@ -266,10 +260,7 @@ export interface Output {
 }
 
 /** An array as the x axis of a chart, and the machine's place on it. */
-export interface Axis {
-  unit: string;
-  /** How many of the unit an SI unit is. */
-  factor: number;
+export interface Axis extends Unit {
   array: string;
   /** Null where it follows what is played. */
   at: number | null;
@@ -286,10 +277,7 @@ export interface CurveOf {
 }
 
 /** A signal that a chart can show. */
-export interface Choice {
-  unit: string;
-  /** How many of the unit an SI unit is. */
-  factor: number;
+export interface Choice extends Unit {
   name: string;
   label: string;
   /** Whose forces have to be shown for it: "rows." of all rows, "" of one row; null for any. */
@@ -328,10 +316,7 @@ export interface MeasuredRecord {
 }
 
 /** A vector at a point over the crank angle. */
-export interface ArrowOf {
-  unit: string;
-  /** How many of the unit an SI unit is. */
-  factor: number;
+export interface ArrowOf extends Unit {
   kind: "velocity" | "acceleration" | "force";
   array: string;
   label: string;
@@ -506,10 +491,7 @@ export interface ToolMessage {
 }
 
 /** What varies in a study, or what came of it. */
-export interface ColumnOf {
-  unit: string;
-  /** How many of the unit an SI unit is. */
-  factor: number;
+export interface ColumnOf extends Unit {
   name: string;
   label: string;
   kind: "number" | "output";
@@ -748,29 +730,7 @@ export interface Asking {
 }
 
 /** A key of a table. */
-export interface Control {
-  kind: "quantity" | "number" | "text" | "choice" | "flag" | "name" | "place" | "direction" | "list" | "names" | "file" | "wording";
-  unit?: string;
-  options?: (string | number)[];
-  /** Of what it is the name. */
-  of?: "link" | "body" | "point" | "output";
-  /** The key of the same table that names the body of a point. */
-  on?: string | null;
-  /** Of places: or a point's name. */
-  named?: boolean;
-  /** Of places: with z. */
-  space?: boolean;
-  /** Of places: the key that names the link whose axes they are in. */
-  axes?: string | null;
-  item?: Asking;
-  /** How many there can be; none for one and more. */
-  sizes?: number[];
-  /** Whether one stands without brackets. */
-  bare?: boolean;
-  /** What names are of. */
-  by?: Asking;
-  /** Whether names alone may do. */
-  listed?: boolean;
+export interface Control extends Asking {
   key: string;
   word: string;
   text: string;
@@ -927,12 +887,16 @@ export interface EditRequest {
   edits: Edit[];
 }
 
-/** Parts of a machine are added, changed or taken away. */
-export interface MakeRequest {
+/** An operation on the parts of a machine, with what it needs. */
+export interface Made {
   do: string;
+  [key: string]: unknown;
+}
+
+/** Parts of a machine are added, changed or taken away. */
+export interface MakeRequest extends Made {
   type: "make";
   at: number;
-  [key: string]: unknown;
 }
 
 /** What needs to be said by its name alone. */
@@ -1052,12 +1016,6 @@ export interface DesignRequest {
 /** Questions that take long are given up. */
 export interface CancelRequest {
   type: "cancel";
-}
-
-/** An operation on the parts of a machine, with what it needs. */
-export interface Made {
-  do: string;
-  [key: string]: unknown;
 }
 
 export type Pair = [number, number];
