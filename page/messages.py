@@ -64,11 +64,8 @@ def bases(of: type) -> tuple[type, ...]:
 
 
 def fields(of: type) -> Iterator[tuple[str, Any, str, bool]]:
-    """Yield name, type, comment and whether it is required of each key that a TypedDict adds."""
-    inherited = {name for base in bases(of) for name in get_type_hints(base)}
+    """Yield name, type, comment and whether it is required of each key of a TypedDict."""
     for name, declared in get_type_hints(of, include_extras=True).items():
-        if name in inherited:
-            continue
         hint, required, comment = declared, True, ""
         while get_origin(hint) in (NotRequired, Annotated):
             if get_origin(hint) is NotRequired:
@@ -127,13 +124,16 @@ def classes(of: tuple[Any, ...]) -> list[type]:
 
 
 def interface(of: type) -> str:
-    """Return a TypedDict as an interface."""
+    """Return a TypedDict as an interface, with those keys that it does not have from others."""
     from equipoise.web.protocol import OPEN
 
+    inherited = {name for base in bases(of) for name in get_type_hints(base)}
     lines = [f"/** {' '.join((inspect.getdoc(of) or '').split())} */"]
     extended = ", ".join(map(typescript, bases(of)))
     lines.append(f"export interface {typescript(of)} {f'extends {extended} ' * bool(extended)}{{")
     for name, hint, comment, required in fields(of):
+        if name in inherited:
+            continue
         if comment:
             lines.append(f"  /** {comment} */")
         lines.append(f"  {name}{'' if required else '?'}: {typescript(hint)};")

@@ -325,8 +325,8 @@ export class App {
       menuOf(hit, {
         state: () => this.state,
         make: (made) => this.tools.make(made),
-        add: (where, values) => parts.add(where, values),
-        change: (where, values, key) => parts.change(where, values, key),
+        add: (path, values) => parts.add(path, values),
+        change: (path, key) => parts.change(path, key),
         numbers: (group) => this.inspector.enter(group),
         written: (place) => place.map((value) => parts.written(value)) as [string, string],
       })

@@ -1,9 +1,9 @@
 /** What can be done at a joint, a link or a place: by the right button, a long press, or the menu key. */
 
 import { h, set } from "./dom";
-import type { Pair, State, Values } from "./protocol";
+import { keyPath, type MenuSource, type Pair, type Plain, type State, type Values } from "./protocol";
 import type { Hit } from "./snap";
-import { say } from "./words";
+import { menuItems, say } from "./words";
 
 /** Of a finger that rests: how long, ms, and by how many pixels it may move. */
 const [LONG, STILL] = [550, 8];
@@ -158,10 +158,10 @@ interface Doing {
   state(): State | null;
   /** Do something to the machine, as a tool does. */
   make(made: { do: string } & Record<string, unknown>): void;
-  /** Open the form of a new table of a list, with some of its values. */
-  add(where: string, values: Values): void;
-  /** Open the form of a table that there is, with other values of some keys, at one of these. */
-  change(where: string, values: Values, key: string): void;
+  /** Open the form of a table that is added, with some of its values. */
+  add(path: string, values: Values): void;
+  /** Open the form of a table that there is, at a key. */
+  change(path: string, key: string): void;
   /** Show the numbers of a group, and go to the first. */
   numbers(group: string): void;
   /** A place as it is typed. */
@@ -170,10 +170,13 @@ interface Doing {
 
 const FRAME = "frame";
 
+/** What a menu is opened at, as kinds of parts and tables name it. */
+type Sources = Partial<Record<MenuSource, Plain>>;
+
 export function menuOf(hit: Hit, page: Doing): Menu | null {
   const state = page.state();
   if (!state) return null;
-  const here = placed(hit, page);
+  const here = additions({ place: page.written(hit.place) }, page);
   if (hit.point) return { of: titleOf(hit.point), actions: [...atJoint(hit.point, state, page), ...here] };
   if (hit.link) return { of: titleOf(hit.link), actions: [...atLink(hit, hit.link, state, page), ...here] };
   const point = { name: say("Point of the frame"), act: () => page.make({ do: "point", spot: { place: hit.place }, on: FRAME }) };
@@ -188,13 +191,10 @@ function atJoint(point: string, state: State, page: Doing): Action[] {
   const fixed = frame.includes(point);
   const meets = holders.length + (fixed ? 1 : 0) > 1;
   const actions: (Action | false)[] = [
-    // A spring pulls a link at a point that moves, and ends in the frame.
-    { name: say("Spring …"), act: () => page.add("springs", link && !fixed ? { link, point } : { to: point }) },
-    !!link && { name: say("Load …"), act: () => page.add("loads", { link, point }) },
-    !!link && { name: say("Cylinder …"), act: () => page.change("drive", { link, between: [point] }, "between") },
+    ...additions({ point, ends: [point], ...(link && { link }), ...(!fixed && { moving_point: point }) }, page),
     ...blocks.map(({ name }) => ({
       name: say("Mass of {link} …", { link: name }),
-      act: () => page.change(`links.${name}`, {}, "mass"),
+      act: () => page.change(keyPath("links", name), "mass"),
     })),
     !!link && fixed && weight(link, state, page),
     fixed
@@ -213,12 +213,10 @@ function atLink(hit: Hit, link: string, state: State, page: Doing): Action[] {
   const spot = { place: hit.place, on: link };
   const part = hit.part;
   const actions: (Action | false)[] = [
-    { name: say("Mass …"), act: () => page.change(`links.${link}`, {}, "mass") },
+    { name: say("Mass …"), act: () => page.change(keyPath("links", link), "mass") },
     weight(link, state, page),
     { name: say("Point of the link"), act: () => page.make({ do: "point", spot, on: link }) },
-    { name: say("Spring …"), act: () => page.add("springs", { link }) },
-    { name: say("Load …"), act: () => page.add("loads", { link }) },
-    points.length > 1 && { name: say("Constraint …"), act: () => page.add("constraints", { line: points.slice(0, 2) }) },
+    ...additions({ link, ...(points.length > 1 && { line: points.slice(0, 2) }) }, page),
     pinned && link !== state.status.drive && { name: say("Drive"), act: () => page.make({ do: "drive", link }) },
     {
       name: say("Delete"),
@@ -234,11 +232,12 @@ function weight(link: string, { fields }: State, page: Doing): Action | false {
   return fields.some((field) => field.group === group) && { name: say("Counterweight"), act: () => page.numbers(group) };
 }
 
-/** What the support has at a place. */
-function placed({ place }: Hit, page: Doing): Action[] {
-  const at = () => ({ point: page.written(place) });
-  return [
-    { name: say("Mount of the support …"), act: () => page.add("support.mounts", at()) },
-    { name: say("Gauge of the support …"), act: () => page.add("support.gauges", at()) },
-  ];
+/** What can be added there, each with the first of its values that can be had. */
+function additions(sources: Sources, page: Doing): Action[] {
+  return menuItems().flatMap(({ name, place, values }) => {
+    const known = values.find((keys) => Object.values(keys).every((source) => source in sources));
+    if (!known) return [];
+    const given = Object.entries(known).map(([key, source]) => [key, sources[source] as Plain]);
+    return [{ name, act: () => page.add(place, Object.fromEntries(given) as Values) }];
+  });
 }

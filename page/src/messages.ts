@@ -65,6 +65,15 @@ export interface PartTool {
   options: ToolOptions | null;
 }
 
+/** A table that menus of the drawing offer to add, as it declares. */
+export interface MenuItem {
+  name: string;
+  /** Path of the table or of its list in the file. */
+  place: string;
+  /** What its keys begin with, of what the menu is opened at; the first that can be had. */
+  values: Record<string, MenuSource>[];
+}
+
 /** Korean particles by the word before them. */
 export interface Particles {
   /** Both forms, as they stand in texts -> after a consonant, after rieul, after a vowel. */
@@ -90,6 +99,8 @@ export interface Spoken {
   explained: PluralForms;
   /** As kinds of parts declare them. */
   part_tools: PartTool[];
+  /** As tables of the file declare them. */
+  menu_items: MenuItem[];
   particles: Particles | null;
   /** The sign before the decimals of a number that is shown. */
   decimal: string;
@@ -1027,6 +1038,8 @@ export type DrawnShape = [string, boolean, number, number, number[]];
 export type PluralForms = Record<string, string>;
 
 export type Edit = TypedEdit | NumberEdit | DragEdit | MassDragEdit;
+
+export type MenuSource = "link" | "point" | "moving_point" | "ends" | "line" | "place";
 
 export type DownloadKind = "model" | "csv" | "report" | "drawing" | "film" | "played" | "interactive";
 

@@ -77,21 +77,24 @@ export class Parts {
     this.wanted = null;
   }
 
-  /** Open the form of a new table of a list, with some of its values; or of what has to be there first. */
-  add(where: string, values: Values): void {
+  /**
+   * Open the form of a table with some of its values: of a new one, of the only one where it is there,
+   * or of what has to be there first.
+   */
+  add(place: string, values: Values): void {
     this.want(({ groups }) => {
-      const group = groups.find((one) => one.where === where);
-      if (group?.needs) this.begin(groups.find((one) => one.where === where.split(".")[0]), {});
+      const group = groups.find((one) => one.place === place);
+      if (group?.needs) this.begin(groups.find((one) => one.place === place.split(".")[0]), {});
       else this.begin(group, values);
     });
   }
 
-  /** Open the form of a table, with other values of some keys, at one of these. */
-  change(where: string, values: Values, key: string): void {
+  /** Open the form of a table at a key. */
+  change(place: string, key: string): void {
     this.want(({ groups }) => {
       for (const group of groups)
         for (const entry of group.entries)
-          if (entry.where === where) this.edit(group, entry, values, key);
+          if (entry.place === place) this.edit(group, entry, {}, key);
     });
   }
 
@@ -177,7 +180,7 @@ export class Parts {
   private begin(group: Group | undefined, values: Values): void {
     if (!group) return;
     const [held] = group.entries;
-    if (group.many === "one" && held) return this.edit(group, held);
+    if (group.many === "one" && held) return this.edit(group, held, values, Object.keys(values).at(-1));
     const { many, entries, place, where } = group;
     const number = many === "list" ? `[${entries.length + 1}]` : "";
     this.open({

@@ -5,7 +5,7 @@
 
 import { decimals, point } from "./format";
 import type { Particles } from "./messages";
-import type { PluralForms, PartTool, Spoken, Told, Wire, Wording } from "./protocol";
+import type { MenuItem, PluralForms, PartTool, Spoken, Told, Wire, Wording } from "./protocol";
 
 /** The function that gives every particle of a text one form. */
 export function particles({ forms, endings, closing, reach }: Particles): (text: string) => string {
@@ -32,6 +32,7 @@ let told: Omit<Spoken, "type" | "seq"> = {
   words: {},
   explained: {},
   part_tools: [],
+  menu_items: [],
   particles: null,
   decimal: ".",
   forms: {},
@@ -78,6 +79,11 @@ export function languages(): Record<string, string> {
 /** Tools that add parts, as the kinds of parts declare them. */
 export function partTools(): PartTool[] {
   return told.part_tools;
+}
+
+/** Tables that menus of the drawing offer to add, as they declare. */
+export function menuItems(): MenuItem[] {
+  return told.menu_items;
 }
 
 /** What a chart shows, and what to look for in it. */

@@ -125,7 +125,7 @@ def test_a_joint_has_a_menu_by_the_right_button(live: Live) -> None:
     live.joint("C").click(button="right")
     result = menu(live, "C")
     assert items(result) == [
-        "Spring …", "Load …", "Cylinder …", "Pin to the frame", "Separate", "Delete",
+        "Cylinder …", "Load …", "Spring …", "Pin to the frame", "Separate", "Delete",
         "Mount of the support …", "Gauge of the support …",
     ]  # fmt: skip
     live.page.screenshot(path=SCREENSHOTS / "menu-1280.png")

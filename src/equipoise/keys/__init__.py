@@ -20,6 +20,8 @@ from equipoise.keys.declaring import Frozen as Frozen
 from equipoise.keys.declaring import Key as Key
 from equipoise.keys.declaring import KeyConditions as KeyConditions
 from equipoise.keys.declaring import Keys as Keys
+from equipoise.keys.declaring import MenuItem as MenuItem
+from equipoise.keys.declaring import MenuSource as MenuSource
 from equipoise.keys.declaring import all_keys as all_keys
 from equipoise.keys.declaring import any_of as any_of
 from equipoise.keys.declaring import cached_names as cached_names

@@ -11,7 +11,7 @@ from dataclasses import field, fields, replace
 from functools import cache, cached_property
 from math import inf, isfinite
 from types import MappingProxyType
-from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
+from typing import Any, ClassVar, Literal, NamedTuple, Self, TypeVar, dataclass_transform
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, UsageError
@@ -154,6 +154,23 @@ def once(compute: Callable[[type[Frozen]], ResultT]) -> Callable[[type[Frozen]],
     return cache(compute)  # type: ignore[return-value]
 
 
+MenuSource = Literal["link", "point", "moving_point", "ends", "line", "place"]
+"""What a menu is opened at: a link; a joint by its name, the same where it is not pinned to the
+frame, or as the only one of a list; two points of a link; a place of the drawing.
+"""
+
+
+class MenuItem(NamedTuple):
+    """What menus of a drawing offer, to add a table where they are opened.
+
+    label : of it, in English.  values : what some of its keys begin with, by name; of several the
+        first whose sources are all there, and it is not offered where there is none.
+    """
+
+    label: str
+    values: tuple[Mapping[str, MenuSource], ...]
+
+
 class Frozen(TableRecord):
     """Base of the frozen dataclasses of a model: numbers as floats, lists as tuples, mappings
     read-only, each checked by its kind when the object is made.  A quantity may be given as the
@@ -165,6 +182,7 @@ class Frozen(TableRecord):
     conditions : what the JSON Schema says of keys that go together.
     called : what a number of such an object is called, around the word of its key in ``{what}``,
         with ``{name}`` or ``{number}`` of the object, or one of its texts.
+    menu_item : by which menus of a drawing offer to add one; None where only a form does.
     """
 
     extra_keys: ClassVar[Keys] = {}
@@ -172,6 +190,7 @@ class Frozen(TableRecord):
     file_order: ClassVar[tuple[str, ...]] = ()
     conditions: ClassVar[KeyConditions] = {}
     called: ClassVar[str] = ""
+    menu_item: ClassVar[MenuItem | None] = None
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     def __post_init__(self) -> None:

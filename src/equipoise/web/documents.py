@@ -19,6 +19,7 @@ from equipoise.web.edits import Computed
 from equipoise.web.figures import explained
 from equipoise.web.replies import Reply
 from equipoise.web.state import first_of
+from equipoise.web.tables import menu_items
 
 TYPES = {"equipoise.js": "text/javascript", "equipoise.css": "text/css"}
 """Everything that there is, with its type."""
@@ -144,7 +145,8 @@ def words_of(language: str) -> dict[str, str]:
 def spoken_in(language: str) -> dict[str, Any]:
     """What a page has to know to speak a language."""
     with speaking(language):
-        text = {"explained": explained(), "part_tools": [tool.content for tool in part_tools()]}
+        tools = [tool.content for tool in part_tools()]
+        text = {"explained": explained(), "part_tools": tools, "menu_items": [*menu_items()]}
     text |= {"language": language, "languages": LANGUAGES, "words": words_of(language)}
     return text | speech_of(language)
 

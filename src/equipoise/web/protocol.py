@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, NotRequired, TypedDict
 
+from equipoise.keys import MenuSource
 from equipoise.web.messages import DownloadKind, Edit, MadeValues, MakeRequest, PageRequest, Pair
-from equipoise.web.tables import TablesValues
+from equipoise.web.tables import MenuItemValues, TablesValues
 
 Arrays = dict[str, tuple[int, int]]
 """Name of an array -> its offset and length in the block of floats."""
@@ -365,6 +366,7 @@ class SpokenValues(TypedDict):
     words: Annotated[dict[str, str], "English text of the page -> text in the language."]
     explained: Annotated[dict[str, str], "Chart -> what it shows, and what to look for."]
     part_tools: Annotated[list[PartToolValues], "As kinds of parts declare them."]
+    menu_items: Annotated[list[MenuItemValues], "As tables of the file declare them."]
     particles: ParticlesValues | None
     decimal: Annotated[str, "The sign before the decimals of a number that is shown."]
     forms: Annotated[dict[str, PluralForms], "English text of the page -> its forms by a count."]
@@ -730,6 +732,7 @@ ALIASES = {
     "DrawnShape": DrawnShape,
     "PluralForms": PluralForms,
     "Edit": Edit,
+    "MenuSource": MenuSource,
     "DownloadKind": DownloadKind,
     "Sent": Sent,
     "PageRequest": PageRequest,

@@ -17,7 +17,7 @@ from typing import Annotated, Any, Literal, NotRequired, TypedDict
 from equipoise import keys
 from equipoise.errors import UsageError
 from equipoise.i18n import Worded, say, to_say
-from equipoise.keys import Frozen, Key, Named, Quantity, Tables, Wording
+from equipoise.keys import Frozen, Key, MenuSource, Named, Quantity, Tables, Wording
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.outputs.declaring import declared
 from equipoise.mechanism.parts.balance import balanced_names
@@ -119,6 +119,20 @@ def tables_of(machine: Machine) -> JsonObject:
     result = ((name, declared(name)) for name in balanced_names(machine))
     outputs = {name: item[0].say(item[1]) for name, item in result if item is not None}
     return {"groups": groups, "forms": forms_of(of), "bodies": bodies, "outputs": outputs}
+
+
+def menu_items(of: type[Frozen] = Machine, place: KeyPath = KeyPath()) -> Iterator[JsonObject]:
+    """What menus of a drawing offer to add, as tables of the file declare it, in its order and in
+    the language that is spoken; place : of the table below which they are.
+    """
+    for name, item in tables_below(of).items():
+        table = entry_of(item.kind)
+        assert table is not None
+        if (offered := table.type.menu_item) is not None:
+            values = [*offered.values]
+            yield {"name": say(offered.label), "place": str(place / name), "values": values}
+        if not isinstance(item.kind, Tables | Named):
+            yield from menu_items(table.type, place / name)
 
 
 def _groups(
@@ -579,6 +593,17 @@ class GroupValues(TypedDict):
     required: bool
     entries: list[TableEntryValues]
     result: NotRequired[Annotated[str, "What its entries are together."]]
+
+
+class MenuItemValues(TypedDict):
+    """A table that menus of the drawing offer to add, as it declares."""
+
+    name: str
+    place: Annotated[str, "Path of the table or of its list in the file."]
+    values: Annotated[
+        list[dict[str, MenuSource]],
+        "What its keys begin with, of what the menu is opened at; the first that can be had.",
+    ]
 
 
 class TablesValues(TypedDict):

@@ -19,7 +19,7 @@ from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.web.gallery import opened_example, titles
 from equipoise.web.replies import refused
 from equipoise.web.session import Session
-from equipoise.web.tables import forms_of, tables_of
+from equipoise.web.tables import forms_of, menu_items, tables_of
 from support.chosen import few
 from unit.web.pages import Content, ask, opened, refusal, state
 
@@ -58,6 +58,21 @@ def test_each_entry_put_back_as_its_form_has_it_leaves_the_machine_as_it_was(nam
             assert known >= entry["values"].keys()
             place = KeyPath.parse(entry["place"]) if entry["place"] else KeyPath(())
             assert document.put(place, entry["values"]).machine() == machine
+
+
+def test_menus_offer_what_tables_declare_with_keys_that_they_have() -> None:
+    """Each below a list or table that a form can be opened for."""
+    groups = {
+        item["place"]: item for item in tables_of(opened_example("yamashita-1").own)["groups"]
+    }
+    forms = forms_of(Machine)
+    with speaking("de"):
+        items = {item["name"]: item for item in menu_items()}
+    assert items["Feder …"]["place"] == "springs"
+    for item in items.values():
+        controls = forms[groups[item["place"]]["form"]]["controls"]
+        for values in item["values"]:
+            assert values.keys() <= {control["key"] for control in controls}
 
 
 def test_each_table_that_a_file_can_have_is_offered() -> None:

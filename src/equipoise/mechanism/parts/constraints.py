@@ -13,7 +13,7 @@ from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Frozen, Listing, TextKind, declared, key
+from equipoise.keys import Frozen, Listing, MenuItem, TextKind, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown
 from equipoise.quantities import format_quantity
 
@@ -82,6 +82,7 @@ class Constraint(Frozen):
     """What two lines have to be to each other; the second one is moved first."""
 
     called = to_say("{what} of constraint {number}")
+    menu_item = MenuItem(to_say("Constraint …"), ({"line": "line"},))
     file_order = ("kind", "line", "to")
 
     kind: str = key(

@@ -17,6 +17,7 @@ from equipoise.keys import (
     KeyConditions,
     KeyTable,
     Listing,
+    MenuItem,
     Number,
     Quantity,
     TextKind,
@@ -114,6 +115,7 @@ class Drive(Pushing, Frozen):
     """
 
     called = to_say("{what} of the drive")
+    menu_item = MenuItem(to_say("Cylinder …"), ({"link": "link", "between": "ends"},))
     file_order = ("link", "speed", "speeds")
     conditions: ClassVar[KeyConditions] = {
         "dependentRequired": {"between": ["stroke"], "slider": ["stroke"], "start": ["stroke"]}

@@ -17,6 +17,7 @@ from equipoise.keys import (
     Frozen,
     KeyConditions,
     Listing,
+    MenuItem,
     Quantity,
     TextKind,
     declared,
@@ -291,6 +292,7 @@ class Load(AlongLine, Frozen):
     """
 
     called = to_say("{what} of load {number}")
+    menu_item = MenuItem(to_say("Load …"), ({"link": "link", "point": "point"}, {"link": "link"}))
     file_order = ("link", "point", "force", "torque", "table", "gas", "indicator", "bore",
                   "back_pressure", "side", "axes", "toward", "outside", "from", "to",
                   "reaction")  # fmt: skip

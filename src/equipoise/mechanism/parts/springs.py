@@ -13,6 +13,7 @@ from equipoise.keys import (
     File,
     KeyConditions,
     Listing,
+    MenuItem,
     Quantity,
     TextKind,
     declared,
@@ -73,6 +74,10 @@ class Spring(BetweenPoints, RowLaw, ForceElement):
     """
 
     called = to_say("{what} of spring {number}")
+    menu_item = MenuItem(
+        to_say("Spring …"),  # it pulls a link at a point that moves, and ends in the frame
+        ({"link": "link", "point": "moving_point"}, {"to": "point"}, {"link": "link"}),
+    )
     list_name = "springs"
     drawn_as_spring = True
     list_text = "springs between links, or links and frame"

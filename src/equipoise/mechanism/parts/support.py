@@ -21,6 +21,7 @@ from equipoise.keys import (
     Keys,
     KeyTable,
     Listing,
+    MenuItem,
     Named,
     OneOr,
     Point,
@@ -90,6 +91,7 @@ class Mount(Frozen):
     """
 
     called = to_say("{what} of mount {name}")
+    menu_item = MenuItem(to_say("Mount of the support …"), ({"point": "place"},))
     extra_keys: ClassVar[Keys] = {
         "torsional_preload": Key(
             "torsional_preload",
@@ -163,6 +165,7 @@ class Gauge(Frozen):
     """
 
     called = to_say("{what} of gauge {name}")
+    menu_item = MenuItem(to_say("Gauge of the support …"), ({"point": "place"},))
     conditions: ClassVar[KeyConditions] = _point_or_axis()
 
     point: SpaceVector | None = key(
