@@ -5,18 +5,11 @@ import { s, set } from "./dom";
 import { length, lengths, round } from "./format";
 import type { Pair } from "./protocol";
 import type { Stage } from "./stage";
+import { ARROWS, ZOOMS } from "./view";
 import { say } from "./words";
 
 /** A joint, or an end of a line of the underlay, that is so near is meant, pixels. */
 const NEAR = 12;
-const ARROWS: Record<string, Pair> = {
-  ArrowLeft: [-1, 0],
-  ArrowRight: [1, 0],
-  ArrowUp: [0, 1],
-  ArrowDown: [0, -1],
-};
-
-const ZOOMS: Record<string, number> = { "+": 1.25, "=": 1.25, "-": 0.8 };
 
 export interface Spot {
   /** m. */

@@ -7,7 +7,7 @@ import { Charts } from "./charts";
 import { type Asking, ContextMenu, type Menu, menuOf } from "./context_menu";
 import { type Computation, Conversation, type Events } from "./conversation";
 import { cureOf } from "./cure";
-import { h, set, write } from "./dom";
+import { h, letsMove, set, write } from "./dom";
 import { dropZone, handOut, picker, save, tooLarge } from "./files";
 import { follow, measure } from "./format";
 import { Frames } from "./frames";
@@ -401,8 +401,7 @@ export class App {
       this.player.angle = 0;
       this.side.scrollTop = this.aside.scrollTop = 0;
       this.player.suit();
-      this.player.playing =
-        state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
+      this.player.playing = state.speed !== 0 && letsMove();
     } else this.player.angle = state.status.stand ?? angle;
     if (begins) this.player.suit();
     if (other) this.heading.forget();
@@ -528,7 +527,7 @@ export class App {
   private play(): void {
     this.tools.rest();
     this.player.run(this.runPanel.span);
-    this.player.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.player.playing = letsMove();
     this.switchClock();
   }
 

@@ -71,6 +71,11 @@ export function icon(path: string): SVGSVGElement {
   );
 }
 
+/** Whether things may begin to move by themselves: the reader's system has not asked for less motion. */
+export function letsMove(): boolean {
+  return !matchMedia("(prefers-reduced-motion: reduce)").matches;
+}
+
 let counted = 0;
 
 /** An id that no other view on the same document has. */

@@ -5,14 +5,9 @@ import { length, lengths, round } from "./format";
 import { type Attempts, Gesture } from "./gesture";
 import type { Drawable, Edit, Pair, State } from "./protocol";
 import { type Grip, keyOf, type Kind, type Stage } from "./stage";
+import { ARROWS } from "./view";
 import { say, toSay } from "./words";
 
-const ARROWS: Record<string, Pair> = {
-  ArrowLeft: [-1, 0],
-  ArrowRight: [1, 0],
-  ArrowUp: [0, 1],
-  ArrowDown: [0, -1],
-};
 const ROLES: Record<Kind, string> = {
   point: toSay("joint that can be moved"),
   mass: toSay("centre of mass that can be moved"),

@@ -8,7 +8,7 @@ import { say } from "./words";
 const KEPT = "equipoise-pinned";
 
 /** A figure in words: of what it is, and its values. */
-export interface Reading {
+interface Reading {
   name: string;
   label: string;
   text: string;

@@ -3,7 +3,7 @@
 import { h, put, s, set, show } from "./dom";
 import { plain, round, unbroken } from "./format";
 import { type ArrowOf, type PageRequest, Numbers, type Pair, type ResponseMessage, type Scene, type State } from "./protocol";
-import { curve, type Overlay, Piece } from "./signs";
+import { at, curve, type Overlay, Piece } from "./signs";
 import type { Stage } from "./stage";
 import { Support } from "./support";
 import { Variants } from "./variants";
@@ -145,7 +145,7 @@ class Arrows implements Overlay {
       const long = Math.hypot(dx, dy);
       const shown = long > 1 && Number.isFinite(long);
       const short = Math.max(long - HEAD, 0) / (long || 1);
-      line.setAttribute("d", shown ? `M${at(x, y)}L${at(x + dx * short, y + dy * short)}` : "");
+      line.setAttribute("d", shown ? `M${at([x, y])}L${at([x + dx * short, y + dy * short])}` : "");
       tip.setAttribute("d", shown ? head([x + dx, y + dy], Math.atan2(dy, dx)) : "");
     }
   }
@@ -153,12 +153,8 @@ class Arrows implements Overlay {
 
 function head([x, y]: Pair, angle: number): string {
   const corner = (turn: number) =>
-    at(x - HEAD * Math.cos(angle + turn), y - HEAD * Math.sin(angle + turn));
-  return `M${at(x, y)}L${corner(0.38)}L${corner(-0.38)}Z`;
-}
-
-function at(x: number, y: number): string {
-  return `${x.toFixed(1)} ${y.toFixed(1)}`;
+    at([x - HEAD * Math.cos(angle + turn), y - HEAD * Math.sin(angle + turn)]);
+  return `M${at([x, y])}L${corner(0.38)}L${corner(-0.38)}Z`;
 }
 
 export class Seeing {

@@ -3,6 +3,7 @@
 import { documentation } from "./cure";
 import { h } from "./dom";
 import { tools } from "./palette";
+import { ZOOMS } from "./view";
 import { say, toSay } from "./words";
 
 interface Shortcuts {
@@ -56,8 +57,7 @@ function draw(event: KeyboardEvent, page: Shortcuts): void {
   if (key === " ") page.toggle();
   else if (key === ",") page.turn(-1);
   else if (key === ".") page.turn(1);
-  else if (key === "+" || key === "=") page.zoom(1.25);
-  else if (key === "-") page.zoom(0.8);
+  else if (ZOOMS[key]) page.zoom(ZOOMS[key]);
   else if (key === "0") page.fit();
   else if (!page.tool(key)) return;
   event.preventDefault();

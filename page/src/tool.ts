@@ -2,7 +2,7 @@
 
 import { Chart } from "./chart";
 import type { Conversation } from "./conversation";
-import { h, s, set, write } from "./dom";
+import { h, letsMove, s, set, write } from "./dom";
 import { measure, unbroken } from "./format";
 import { Heading } from "./heading";
 import { Inspector, Locks } from "./inspector";
@@ -216,7 +216,7 @@ export class ToolView {
   private readonly watcher = new ResizeObserver(() => this.measure());
   private tool: ToolMessage | null = null;
   private numbers: Numbers | null = null;
-  private playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+  private playing = letsMove();
   private frame = 0;
   private begun = 0;
 

@@ -8,16 +8,11 @@ import { Palette, partTool, tools } from "./palette";
 import type { Made, Pair, State } from "./protocol";
 import { type Hit, meant, type Snapping, step } from "./snap";
 import type { Grip } from "./stage";
+import { ARROWS } from "./view";
 import { say } from "./words";
 
 /** Pixels from which on a press is a drag from one place to another. */
 const FAR = 10;
-const ARROWS: Record<string, Pair> = {
-  ArrowLeft: [-1, 0],
-  ArrowRight: [1, 0],
-  ArrowUp: [0, 1],
-  ArrowDown: [0, -1],
-};
 
 /** Tools that need two clicks. */
 const TWO = new Set(["link", "pin", "slider"]);

@@ -7,6 +7,16 @@ import { s } from "./dom";
 import { lengths, multiples, plain, round } from "./format";
 import type { Pair } from "./protocol";
 
+/** The direction of each arrow key on a drawing, y upward. */
+export const ARROWS: Record<string, Pair> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, 1],
+  ArrowDown: [0, -1],
+};
+/** By how much a key makes a drawing larger. */
+export const ZOOMS: Record<string, number> = { "+": 1.25, "=": 1.25, "-": 0.8 };
+
 const MARGIN = 0.05;
 
 export class View {

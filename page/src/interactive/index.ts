@@ -1,6 +1,6 @@
 /** An interactive file: a machine that is dragged and changed, and computes itself. */
 
-import { h, icon, write } from "../dom";
+import { h, icon, letsMove, write } from "../dom";
 import { follow, measure } from "../format";
 import type { Attempts } from "../gesture";
 import { Hands, turnable } from "../hands";
@@ -136,7 +136,7 @@ class Page implements Attempts {
     this.player.angle = data.begin;
     this.transport.take();
     this.show(this.solution, true);
-    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.toggle();
+    if (letsMove()) this.toggle();
     const tick = (now: number) => {
       if (this.player.tick(now)) this.point();
       requestAnimationFrame(tick);
