@@ -214,3 +214,18 @@ def work_per_crank_angle(machine: Machine, poses: Poses) -> Array:
         moment = torque + cross(arm, force)
         power += np.sum(force * poses.velocity[link], -1) + moment * poses.omega[link]
     return power / machine.drive.speed
+
+
+def with_loads_in_lines() -> tuple[Machine, Machine]:
+    """A machine without loads, and with two: one in the line to a point of the frame, one in that
+    to a point of its crank, N.
+    """
+    bare = replace(eq.load("yamashita-1"), balance=None, loads=())
+    bare = replace(bare, frame={**bare.frame, "S": (0.1, 0.6)})
+    for link, points in {"coupler": {"Q": (0.07, 0.11)}, "crank": {"R": (-0.05, 0.02)}}.items():
+        bare = bare.with_link(link, points={**bare.links[link].points, **points})
+    loads = (
+        Load("coupler", "Q", (35.0, 0.0), toward="S", reaction=FRAME),
+        Load("coupler", "Q", (-20.0, 0.0), toward="R", reaction="crank"),
+    )
+    return bare, replace(bare, loads=loads)

@@ -113,6 +113,12 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
     for write in job.writers("exudyn"):
         write(model, tree, job)
     for _, load in constant_loads(job):
+        if load.toward is not None and load.point is not None and load.force is not None:
+            ends = [_end(tree, load.reaction or FRAME, load.toward),
+                    _end(tree, load.link, load.point)]  # fmt: skip
+            pull: Data = {"stiffness": 0.0, "length": 0.0, "preload": load.force[0]}
+            model["springs"].append({"ends": ends, **pull})
+            continue
         end = _end(tree, load.link, load.point or next(iter(machine.links[load.link].points)))
         force, turns = complex(*(load.force or (0.0, 0.0))), load.axes is not None
         if turns:

@@ -30,8 +30,8 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.friction_joints import rubbing_joints
 from equipoise.mechanism.kinematics.motion import PlacedBodies, move
-from equipoise.mechanism.parts.element_kinds import BetweenPoints
 from equipoise.mechanism.parts.links import Link, size_of
+from equipoise.mechanism.parts.loads import Load
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.support import FREEDOMS, Support, unit_vector
 from equipoise.signals import Array
@@ -273,7 +273,7 @@ def springs(root: ET.Element, tree: Tree, job: Job) -> None:
             job.leave_out(Note("springs that pull at every length"))
             continue
         rates = {"stiffness": repr(spring.stiffness), "springlength": repr(rest)}
-        _between(root, tree, spring, rates)
+        _between(root, tree, spring.points, rates)
 
 
 def torsion_springs(root: ET.Element, tree: Tree, job: Job) -> None:
@@ -289,11 +289,16 @@ def torsion_springs(root: ET.Element, tree: Tree, job: Job) -> None:
         _turning(root, tree, (torsion.link, torsion.on), rates)
 
 
-def _between(root: ET.Element, tree: Tree, item: BetweenPoints, rates: Mapping[str, str]) -> None:
-    """A tendon between two points, in the plane of the first."""
+def _between(
+    root: ET.Element,
+    tree: Tree,
+    ends: Sequence[tuple[str, str]],
+    rates: Mapping[str, str],
+) -> None:
+    """A tendon between two points of bodies, in the plane of the first."""
     tendon = ET.SubElement(_part(root, "tendon"), "spatial", dict(rates))
-    plane = _plane(tree, item.link, item.point)
-    for body, point in ((item.link, item.point), (item.on, item.to)):
+    plane = _plane(tree, *ends[0])
+    for body, point in ends:
         ET.SubElement(tendon, "site", site=_in_plane(root, tree, body, point, plane))
 
 
@@ -310,7 +315,7 @@ def dampers(root: ET.Element, tree: Tree, job: Job) -> None:
     """Tendons with damping."""
     for damper in tree.machine.dampers:
         if damper.linear:
-            _between(root, tree, damper, {"damping": repr(damper.damping)})
+            _between(root, tree, damper.points, {"damping": repr(damper.damping)})
         else:
             job.leave_out(Note("dampers with a table"))
 
@@ -413,6 +418,9 @@ def _loads(root: ET.Element, world: ET.Element, tree: Tree, job: Job) -> None:
     """Loads that are always the same."""
     for number, load in constant_loads(job):
         name = f"load {number}{tree.suffix}"
+        if load.toward is not None:
+            _pull(root, tree, load, name)
+            continue
         point = load.point or next(iter(tree.machine.links[load.link].points))
         force = complex(*(load.force or (0, 0)))
         site, turns = _place(tree, load.link, point), load.axes is not None
@@ -422,6 +430,14 @@ def _loads(root: ET.Element, world: ET.Element, tree: Tree, job: Job) -> None:
             _site(world, name, (0, 0, 0))
         gear = (force.real, force.imag, 0, 0, 0, load.torque or 0)
         _push(root, name, site, None if turns else name, gear, (1.0, 0.0, 0.0))
+
+
+def _pull(root: ET.Element, tree: Tree, load: Load, name: str) -> None:
+    """A load in the line between two points: a tendon that an actuator shortens."""
+    assert load.point is not None and load.toward is not None and load.force is not None
+    ends = (load.link, load.point), (load.reaction or FRAME, load.toward)
+    _between(root, tree, ends, {"name": name})
+    _actuator(root, name, {"tendon": name}, (-load.force[0], 0.0, 0.0))
 
 
 def _push(
@@ -436,20 +452,18 @@ def _push(
     """A force on a site along a direction of another, or of its own where there is none: at the
     start, less by way and by speed.
     """
-    limits = {"forcerange": _row((0.0, FAR))} if one_sided else {}
+    where = {"site": site, "gear": _row(gear)}
+    if one_sided:
+        where["forcerange"] = _row((0.0, FAR))
     if against is not None:
-        limits["refsite"] = against
-    ET.SubElement(
-        _part(root, "actuator"),
-        "general",
-        limits,
-        name=name,
-        site=site,
-        gear=_row(gear),
-        gainprm="0",
-        biastype="affine",
-        biasprm=_row(push),
-    )
+        where["refsite"] = against
+    _actuator(root, name, where, push)
+
+
+def _actuator(root: ET.Element, name: str, where: Mapping[str, str], push: Sequence[float]) -> None:
+    """An actuator without a control: its force at the start, by way and by speed."""
+    law = {"gainprm": "0", "biastype": "affine", "biasprm": _row(push)}
+    ET.SubElement(_part(root, "actuator"), "general", {"name": name, **where, **law})
 
 
 def _drive(root: ET.Element, tree: Tree, job: Job) -> None:

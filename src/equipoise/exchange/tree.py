@@ -230,23 +230,22 @@ def preloads(machine: Machine) -> Mapping[str, float]:
 def constant_loads(job: Job, *, between: bool = False) -> Iterator[tuple[int, Load]]:
     """Constant loads by number; notes name the others, and soil, which are left out.
 
-    between : whether the format can hold those whose opposite another link bears.
+    between : whether the format can hold those whose opposite another link bears at the same point;
+    all hold those in the line between two points.
     """
     job.leave_out_soil()
     for number, load in enumerate(job.machine.loads, 1):
         if not load.constant:
             job.leave_out(Note("load {number}, which is not constant", number=number))
             continue
-        if load.toward is not None and not between:
-            note = Note("load {number}, which acts in the line between two points", number=number)
-            job.leave_out(note)
-            continue
-        if load.reaction_link is not None and not between:
+        in_line = load.toward is not None
+        if load.reaction_link is not None and not (between or in_line):
             note = Note("load {number}, whose opposite {link!r} bears", number=number,
                         link=load.reaction_link)  # fmt: skip
             job.leave_out(note)
             continue
-        if load.reaction == FRAME and job.machine.support is not None:
+        on_support = load.reaction == FRAME and job.machine.support is not None
+        if on_support and (between or not in_line):
             job.leave_out(Note("the reaction of load {number} on the frame", number=number))
         yield number, load
 

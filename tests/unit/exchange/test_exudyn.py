@@ -14,6 +14,7 @@ import pytest
 import equipoise as eq
 from equipoise.mechanism.parts.support import unit_vector
 from support.conformance import compared
+from support.loads import with_loads_in_lines
 from support.machines import make
 from support.rated import HELD, LAWS, LINEAR, ON_LINKS, machine_with
 from support.refusals import refused
@@ -95,6 +96,16 @@ def test_dampers_stops_and_resistances(
     result = run(machine, tmp_path / "model.py", 0.5)
     motion = eq.move(machine, result["crank_angle"])
     wanted = eq.forces(motion).drive_torque
+    apart = np.abs(result["drive_torque"] - wanted)[STEPS // 10 :]
+    assert np.max(apart) < 2e-4 * np.max(np.abs(wanted))
+
+
+def test_forces_in_the_line_between_two_points(tmp_path: Path) -> None:
+    """To the frame and to the crank, by the drive torque."""
+    _, machine = with_loads_in_lines()
+    assert eq.export(machine, tmp_path / "model.py") == ()
+    result = run(machine, tmp_path / "model.py", 0.5)
+    wanted = eq.forces(eq.move(machine, result["crank_angle"])).drive_torque
     apart = np.abs(result["drive_torque"] - wanted)[STEPS // 10 :]
     assert np.max(apart) < 2e-4 * np.max(np.abs(wanted))
 

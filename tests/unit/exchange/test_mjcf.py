@@ -16,6 +16,7 @@ from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.stops import Stop
 from equipoise.mechanism.parts.support import unit_vector
 from support.conformance import compared
+from support.loads import with_loads_in_lines
 from support.rated import HELD, LAWS, LINEAR, ON_LINKS, machine_with
 from support.refusals import refused
 from support.sources import MUJOCO
@@ -231,6 +232,14 @@ def test_a_constant_load(tmp_path: Path) -> None:
     x, y = (data.site("crank B").xpos - data.site("crank A").xpos)[:2]
     crank = model.joint("crank").qposadr[0]
     assert data.qfrc_actuator[crank] == pytest.approx(x * 4.0 - y * 3.0 + 0.5)
+
+
+@pytest.mark.parametrize("at", np.linspace(0.0, 6.0, 7))
+def test_forces_in_the_line_between_two_points(at: float, tmp_path: Path) -> None:
+    """To the frame and to the crank, by the power that they take from the drive."""
+    bare, machine = with_loads_in_lines()
+    taken = power_of(machine, bare, START + at, tmp_path)
+    assert taken == pytest.approx(energy_rate(machine, "loads", START + at), rel=1e-9)
 
 
 def test_what_is_left_out_is_reported(tmp_path: Path) -> None:
