@@ -11,13 +11,14 @@ import pytest
 
 import equipoise as eq
 from equipoise.codegen.batch import Batch
-from equipoise.codegen.emit import can_compute, can_emit
+from equipoise.codegen.emit import can_compute, can_emit, signals_in_loops
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.redundant_forces import MOST_SWITCHING
 from equipoise.errors import UsageError
 from equipoise.keys.paths import KeyPath
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.reactions import idle_teeth_notes
+from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_properties import JointProperties
@@ -89,7 +90,8 @@ def compared(
 @pytest.mark.exhaustive(but=["balance-spring", "cam-pusher"])
 @pytest.mark.parametrize("name", few(EXAMPLES, DISTINCT))
 def test_example(name: str, numpy_engine: None) -> None:
-    # what friction and resistances change is not computed in loops, nor where a finger is in soil
+    # designs by numbers are built without resistances and planting, and what friction changes is
+    # not computed in loops: see `test_fingers_in_soil` and `test_resistances_and_friction`
     base = replace(eq.load(name).without_friction(), resistances=(), planting=None)
     assert compared(base, 3, 1)
     assert compared(base, 1, 2, polar=True)
@@ -203,20 +205,37 @@ def test_forces_that_are_shared_with_a_belt(numpy_engine: None) -> None:
 @pytest.mark.parametrize("name", few(["transplanter", "rotary-transplanter"], {"transplanter"}))
 def test_fingers_in_soil(name: str, numpy_engine: None) -> None:
     """Where the motion of the tip is that of the base."""
-    base = replace(eq.load(name).without_friction(), resistances=())
+    base = eq.load(name).without_friction()
     assert base.in_soil
     signals = ["frame_force", "frame_moment", "drive_torque"]
     signals += [f"joints.{joint}" for joint in eq.analyze(base, 8).forces.joints]
     assert weighed(base, signals) != weighed(replace(base, planting=None), signals)
 
 
-def weighed(base: Machine, signals: Sequence[str]) -> list[list[float]]:
+@pytest.mark.parametrize("name", ["cutter-bar", "two-motor-mixer"])
+def test_resistances_and_friction(name: str, numpy_engine: None) -> None:
+    """What friction changes is refused, all else is as in analyses, which have the friction."""
+    base = eq.load(name)
+    assert base.rubs or base.resistances
+    analysis = eq.analyze(base, 8)
+    names = [array.name for array in analysis.outputs.arrays]
+    known = signals_in_loops(assemble(base), names)
+    free = signals_in_loops(assemble(base.without_friction()), names)
+    changed = {name for name in names if declared(name)[0].by_friction}
+    assert {*known} == {*free} - (changed if base.rubs else set())
+    # where friction sets in analyses have further angles, so that tops between angles differ
+    weighed(base, known, ["rms"] if base.rubs else ["rms", "max"])
+
+
+def weighed(
+    base: Machine, signals: Sequence[str], names: Sequence[str] = ("rms", "max")
+) -> list[list[float]]:
     """Compare designs of which a mass and the speed vary, of any machine; give their figures."""
     link = next(name for name, item in base.links.items() if item.mass)
     numbers = named(base, str(KeyPath(("links", link, "mass"))), "drive.speed")
     mass, speed = (number.value for number in numbers)
     values = np.array([[mass, speed], [1.5 * mass, 0.7 * speed]])
-    wanted = wanted_of(signals, "rms", "max")
+    wanted = wanted_of(signals, *names)
     figures, reasons = Batch(base, paths_of(numbers), wanted, angles=ANGLES)(values)
     assert not reasons.any()
     for row, got in zip(values, figures, strict=True):
