@@ -65,7 +65,12 @@ from equipoise.mechanism.dynamics.out_of_plane import (
     held_preload,
     statics,
 )
-from equipoise.mechanism.dynamics.reactions import Acting
+from equipoise.mechanism.dynamics.reactions import (
+    Acting,
+    HoldingWrench,
+    added_up,
+    holding_wrench,
+)
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.indicators import loads_of
 from equipoise.mechanism.kinematics.motion import ROUNDING, StateBodies, track_of
@@ -82,8 +87,6 @@ SURFACE = "surface"
 ANGLE_MARGIN = 0.4
 """Added to the cosine of an angle, which is watched as that of a running angle is: beyond 154 deg
 from its middle a design is computed by itself."""
-HoldingWrench = tuple[str, Any, Any]
-"""Link, and force and moment that hold something against it."""
 
 
 def trace_load(trace: Trace, number: int, load: Load) -> list[Acting]:
@@ -224,16 +227,15 @@ def trace_preload(trace: Trace, number: int) -> Iterator[Acting]:
     yield from preload_on_links(trace.linkage, coupling, rate_term, at)
 
 
-def holding_wrench(
-    trace: Trace, link: str, point: str | None, force: Any, torque: Any
-) -> HoldingWrench:
-    """What holds a force at a point of a link, and a torque on it."""
-    at = anchor = trace.body(link)[0]
-    if point is not None:
-        bodies = trace.machine.bodies
+def trace_wrenches(trace: Trace, acting: Iterable[Acting]) -> list[HoldingWrench]:
+    """What holds forces at points of links, and torques on them."""
+    bodies = trace.machine.bodies
+
+    def place_of(link: str, point: str) -> Any:
         body = link if point in bodies[link] else next(b for b in bodies if point in bodies[b])
-        at = TracedBodies(trace, point).point(body, point)
-    return link, *kernels.load_demand(anchor, at, force, torque)
+        return TracedBodies(trace, point).point(body, point)
+
+    return [holding_wrench(trace.body(item[0])[0], place_of, item) for item in acting]
 
 
 @dataclass(frozen=True)
@@ -269,7 +271,7 @@ class TracedForces:
     @property
     def outer(self) -> list[Acting]:
         """What comes from outside of the machine."""
-        loads = (acting for load, acting in self.loads if load.reaction is None)
+        loads = (acting for load, acting in self.loads if load.is_external)
         return [*chain(*loads), *self.soil]
 
     @property
@@ -520,14 +522,10 @@ def trace_demands(trace: Trace) -> None:
     if machine.has_planes:
         trace_across(trace, acting)
     _on_frame(trace, "shaking", moving)
-    outer = [holding_wrench(trace, *item) for item in acting.outer]
-    _on_frame(trace, "frame", [*moving, *weights, *outer])
-    wrenches = [*moving, *weights, *(holding_wrench(trace, *item) for item in acting.every)]
+    _on_frame(trace, "frame", [*moving, *weights, *trace_wrenches(trace, acting.outer)])
+    demands = added_up([*moving, *weights, *trace_wrenches(trace, acting.every)])
     for link in trace.linkage.joints.bodies[1:]:
-        parts = [wrench for wrench in wrenches if wrench[0] == link]
-        force, moment = demand_names(link)
-        state[force] = sum(force for _, force, _ in parts)
-        state[moment] = sum(moment for _, _, moment in parts)
+        state.update(zip(demand_names(link), demands.get(link, (0.0, 0.0)), strict=True))
     if machine.has_crank:  # else work does not determine the torque of each drive
         state["drive torque"] = sum(_drive_torques(trace))
 

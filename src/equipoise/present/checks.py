@@ -312,7 +312,7 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
                 beyond = "" if table.covers else load.outside or ""
         if load.reaction_link is not None:
             what = listed(what, say("borne by {link}", link=load.reaction_link))
-        elif load.reaction is not None:
+        elif not load.is_external:
             what = listed(what, say("borne by the frame"))
         limits = [Value(end, after=1) for end in ends if end is not None]
         acting: tuple[Cell, ...] = (*limits, beyond) if limits else (say("always"), None, None)

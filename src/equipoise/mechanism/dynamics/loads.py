@@ -317,7 +317,7 @@ def loads_between(motion: Motion) -> Iterator[Acting]:
     """Link, point, force and torque of those of the loads whose opposite a body of the machine
     bears, at each end on a link.
     """
-    return _acting(motion, lambda load: load.reaction is not None)
+    return _acting(motion, lambda load: not load.is_external)
 
 
 def acting_loads(motion: Motion) -> Iterator[Acting]:
@@ -334,7 +334,7 @@ def outer_loads(motion: Motion) -> Iterator[Acting]:
 
 def loads_from_outside(motion: Motion) -> Iterator[Acting]:
     """Link, point, force and torque of each load of the file whose opposite no part bears."""
-    return _acting(motion, lambda load: load.reaction is None)
+    return _acting(motion, lambda load: load.is_external)
 
 
 def given_loads(motion: Motion) -> Iterator[Acting]:

@@ -568,14 +568,38 @@ Acting = tuple[str, Any, Array, Any]
 
 def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
     """What holds forces (complex, N) and torques (N m), for every link that has one."""
+
+    def place_of(link: str, point: str) -> Array:
+        return motion.point(point).place
+
+    state, anchors = motion.state, motion.linkage.anchors
+    return added_up(
+        holding_wrench(state[f"p({anchors[item[0]]})"], place_of, item) for item in acting
+    )
+
+
+HoldingWrench = tuple[str, Any, Any]
+"""Link, and force, N, and moment about its anchor, N m, that hold something against it."""
+
+
+def holding_wrench(
+    anchor: Any, place_of: Callable[[str, str], Any], acting: Acting
+) -> HoldingWrench:
+    """What holds a force at a point of a link, and a torque on it; arrays or terms.
+
+    anchor : its place, m.  place_of : from a link and the name of a point to its place, m.
+    """
+    link, point, force, torque = acting
+    at = anchor if point is None else place_of(link, point) if isinstance(point, str) else point
+    return link, *kernels.load_demand(anchor, at, force, torque)
+
+
+def added_up(wrenches: Iterable[HoldingWrench]) -> dict[str, Demand]:
+    """Sum of the wrenches on each link that has some."""
     result: dict[str, Demand] = {}
-    for link, point, force, torque in acting:
-        anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
-        named = isinstance(point, str)
-        at = anchor if point is None else motion.point(point).place if named else point
-        f, m = kernels.load_demand(anchor, at, force, torque)
+    for link, force, moment in wrenches:
         before = result.get(link, (0.0, 0.0))
-        result[link] = (before[0] + f, before[1] + m)
+        result[link] = before[0] + force, before[1] + moment
     return result
 
 

@@ -428,6 +428,11 @@ class Load(AlongLine, Frozen):
         return None if self.reaction == FRAME else self.reaction
 
     @property
+    def is_external(self) -> bool:
+        """Whether no body of the machine bears its opposite."""
+        return self.reaction is None
+
+    @property
     def area(self) -> float | None:
         """On which gas acts, m2; None without a bore."""
         return None if self.bore is None else pi / 4 * self.bore**2
