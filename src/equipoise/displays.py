@@ -8,8 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from importlib import import_module
-from typing import Any, cast
+from typing import Any, Literal, cast
 
+PictureFormat = Literal["svg", "png", "pdf"]
+"""In which a picture is written to a file."""
 MOST_NAMES = 8
 """Names in a line."""
 LONGEST = 40

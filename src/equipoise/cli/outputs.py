@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -20,6 +20,7 @@ from equipoise.cli.options import (
     count,
 )
 from equipoise.dataclass import dataclass
+from equipoise.displays import PictureFormat
 from equipoise.errors import UsageError, at_place
 from equipoise.fence import hold_place, may_be_replaced
 from equipoise.i18n import Note, in_each, localized, say, to_say
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.blocks import Block, ReportSection
 
-PictureFormatOption = Literal["svg", "png", "pdf"]
 CsvColumns = Sequence[tuple[str, str, "np.ndarray[Any, Any]"]]
 ValueSource = Callable[[], Mapping[str, Any]]
 BlockSource = Callable[[], "Iterable[Block | ReportSection]"]
@@ -88,7 +88,7 @@ class PlottedOutput(Printed):
 
     plot: NewFolder = None
     """Save plots to this folder."""
-    format: PictureFormatOption | None = None
+    format: PictureFormat | None = None
     """With --plot: file format of the plots. Default: svg."""
 
     def __post_init__(self) -> None:
@@ -104,7 +104,7 @@ class Pictures(Shown):
 
     out: Out = None
     """Folder for the plots. Default: FILE-pictures in the current folder."""
-    format: PictureFormatOption = "svg"
+    format: PictureFormat = "svg"
     """Kind of the pictures."""
 
     def of(self, file: str) -> str:
@@ -188,9 +188,7 @@ def boxes(signs: str, otherwise: Note) -> list[str]:
     return [missing]
 
 
-def write_pictures(
-    figures: Mapping[str, Picture], folder: str, kind: PictureFormatOption
-) -> list[str]:
+def write_pictures(figures: Mapping[str, Picture], folder: str, kind: PictureFormat) -> list[str]:
     """Write pictures into a folder."""
     from equipoise.figures import render, unwritten
     from equipoise.schema.files import write_all

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from equipoise.displays import PictureFormat
 from equipoise.errors import UsageError
-from equipoise.results.charts import Chart, PictureFormat
+from equipoise.results.charts import Chart
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

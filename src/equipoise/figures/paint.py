@@ -21,10 +21,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 
+from equipoise.displays import PictureFormat
 from equipoise.figures.sheet import Canvas, CanvasStroke, Markers, SheetItem, Words, box_of
 from equipoise.figures.style import PAPER
 from equipoise.figures.vector import BACK, SHAPES
-from equipoise.results.charts import PictureFormat
 
 PARAMETERS: Any = {
     "font.sans-serif": ["DejaVu Sans", "Verdana"],

@@ -21,8 +21,6 @@ from equipoise.symbols.shapes import Shape
 
 Across = Literal["x", "y"]
 """Which axis a line, a band or bars stand on."""
-PictureFormat = Literal["svg", "png", "pdf"]
-"""In which a chart is written to a file."""
 
 PLAIN = Display("", 1.0)
 DEGREES = Display("deg", 180 / pi)

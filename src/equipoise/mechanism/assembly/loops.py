@@ -589,7 +589,7 @@ class LoopGroup:
 
     def sizes(self, steps: Array) -> Array:
         """Steps of the unknowns (n, ...) without dimension."""
-        return np.abs(np.array(self.scaled(steps)))
+        return np.asarray(np.abs(self.scaled(steps)))
 
     def scaled(self, steps: Iterable[Any]) -> list[Any]:
         """Steps of the unknowns, arrays or terms: lengths over the size of the machine."""

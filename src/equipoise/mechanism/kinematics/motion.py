@@ -449,8 +449,8 @@ def travel_of(slider: Slider, point: PointLevels, state: State, along: Any) -> t
     `pushed_length`.
     """
     at, base = point(slider.link, slider.point), point(slider.on, slider.through)
-    turn = (state[name] for name in u(slider.on))
-    travel, first, second = kernels.travelled(*at, *base, *turn, along)
+    turn, w, a = (state[name] for name in u(slider.on))
+    travel, first, second = kernels.travelled(*at, *base, turn, w, a, along)
     return travel, first, second
 
 
