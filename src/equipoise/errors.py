@@ -19,6 +19,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
+from functools import lru_cache
 from importlib import import_module
 from typing import Any, ClassVar, Self
 from unicodedata import normalize
@@ -326,14 +327,20 @@ def unknown(given: str, known: Iterable[str], kind: str) -> Note:
 
 def meant(given: str, names: Sequence[str]) -> Note | None:
     """Ask whether the nearest of some names is meant; empty where none is near."""
+    name = _nearest(given, tuple(names))
+    return None if name is None else Note("did you mean {name!r}?", name=name)
+
+
+@lru_cache(256)  # one mistake may stand in a file a hundred thousand times
+def _nearest(given: str, names: tuple[str, ...]) -> str | None:
     from difflib import get_close_matches
 
     by_form = {form_of(name): name for name in reversed(names)}
     form = form_of(given)
-    matches = [
+    matches = (
         name for name in get_close_matches(form, by_form, 5, 0.5) if _is_misspelt(form, name)
-    ]
-    return Note("did you mean {name!r}?", name=by_form[matches[0]]) if matches else None
+    )
+    return next((by_form[match] for match in matches), None)
 
 
 SHORTEST = 2
