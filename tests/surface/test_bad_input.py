@@ -675,7 +675,7 @@ def test_huge_files_are_answered_soon(huge: str) -> None:
     text = HUGE[huge]()
     assert len(text) < 2_000_000
     Path("huge.toml").write_text(text)
-    with within(8):
+    with within(15):  # twice what the slowest takes
         result = equipoise("check", "huge.toml")
     assert result.status in (0, 2)
     if result.status:
