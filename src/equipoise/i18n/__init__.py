@@ -157,6 +157,30 @@ class KeyName(str):
         return _key_words.get()(str(self))
 
 
+class PartName(str):
+    """A name of a file in a sentence, in the words that a function has for it: as a `str` in
+    English.
+
+    name : as the file has it.  spoken : says it in the language that is spoken.
+    """
+
+    name: str
+    spoken: Callable[[str], str]
+
+    def __new__(cls, name: str, spoken: Callable[[str], str]) -> Self:
+        with speaking("en"):
+            text = super().__new__(cls, spoken(name))
+        text.name, text.spoken = name, spoken
+        return text
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return self.name, self.spoken
+
+    def localized(self) -> str:
+        """The name, in the language that is spoken."""
+        return self.spoken(self.name)
+
+
 def key_names(*names: str) -> dict[str, KeyName]:
     """Keys of a file, for the placeholders of a sentence that are called like them."""
     return {name: KeyName(name) for name in names}
@@ -190,7 +214,7 @@ def worded(text: str | Mapping[str, str]) -> str:
 
 def localized(text: Note | str) -> str:
     """A sentence, a part of one, or a text of a file, in the language that is spoken."""
-    return text.localized() if isinstance(text, Note | Worded | KeyName) else text
+    return text.localized() if isinstance(text, Note | Worded | KeyName | PartName) else text
 
 
 def capital(text: str) -> str:

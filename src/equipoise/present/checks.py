@@ -12,7 +12,17 @@ from equipoise.errors import ModelError, lacking
 from equipoise.handheld.blocks import varied_named
 from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.shaft import Section
-from equipoise.i18n import Note, all_of, coordinates, listed, localized, say, series, to_say
+from equipoise.i18n import (
+    Note,
+    PartName,
+    all_of,
+    coordinates,
+    listed,
+    localized,
+    say,
+    series,
+    to_say,
+)
 from equipoise.mechanism.assembly.joints import moving_links
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import numbered
@@ -270,11 +280,11 @@ def _build_up(linkage: Linkage) -> Iterable[str]:
         joints = [
             Note("{joint} (slider)", joint=r.name) if r.kind == "slider"
             else Note("{joint} (pin in a slot)", joint=r.name) if r.name in structure.riders
-            else Note("{joint} (pin on {body})", joint=r.name, body=body_named(r.by))
+            else Note("{joint} (pin on {body})", joint=r.name, body=PartName(r.by, body_named))
             if r.kind == "pin"
             else Note(
                 "{joint} ({kind} on {body})",
-                joint=r.name, kind=Note(r.kind), body=body_named(r.by),
+                joint=r.name, kind=Note(r.kind), body=PartName(r.by, body_named),
             )
             for r in visible
         ]  # fmt: skip

@@ -44,7 +44,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from equipoise.dataclass import dataclass
-from equipoise.i18n import Note, capital, say, to_say
+from equipoise.i18n import Note, PartName, capital, say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.dynamics.forces import joint_properties
 from equipoise.mechanism.dynamics.loads import acting_loads, outer_loads
@@ -689,7 +689,9 @@ def _least_figures(group: str, name: str, figures: Any, part: Any) -> Iterator[F
         if least is None or value is None:
             continue
         dimension = item.metadata["dimension"]
-        what = Note("{what}, {part}", what=Note(item.metadata["label"]), part=joint_named(name))
+        what = Note(
+            "{what}, {part}", what=Note(item.metadata["label"]), part=PartName(name, joint_named)
+        )
         ratio = least / value if value > 0 else float("inf")
         output = f"{group}.{name}"
         yield FigureAssessment(

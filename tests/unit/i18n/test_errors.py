@@ -17,6 +17,7 @@ from equipoise.errors import (
     unknown,
 )
 from equipoise.i18n import Note, all_of, key_names, key_words, speaking
+from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.quantities import KINDS, as_written, parse
 from equipoise.schema.documents import loads
 from equipoise.web.replies import refused
@@ -151,3 +152,14 @@ def test_a_page_and_a_report_are_reported_in_their_language():
     with pytest.raises(ModelError) as caught:
         eq.respond(machine)
     assert "静止したクランクは何も加振しません" in caught.value.message("ja")
+
+
+def test_names_of_parts_are_said_in_the_language_of_the_reader() -> None:
+    """Not in the language of whoever made the sentence; in a copy, too."""
+    joint = DECLARED["joints.{}"]
+    with speaking("ko"):
+        notes = [joint.note("C in frame"), DECLARED["gears.{}"].note("frame to idler")]
+    for note in (*notes, *pickle.loads(pickle.dumps(notes))):
+        assert "frame" in str(note)
+        with speaking("de"):
+            assert "Gestell" in note.localized() and "frame" not in note.localized()

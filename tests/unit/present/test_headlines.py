@@ -522,7 +522,7 @@ def test_what_helps_is_reported_before_and_after_at_once() -> None:
 @pytest.mark.parametrize(
     ("name", "most"),
     few_together(
-        [("drag-link", 7), ("yamashita-1", 8), ("yamashita-rig", 12)],
+        [("drag-link", 7), ("yamashita-1", 9), ("yamashita-rig", 12)],
         {("drag-link", 7), ("yamashita-rig", 12)},
     ),
 )

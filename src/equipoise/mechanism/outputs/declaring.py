@@ -18,7 +18,7 @@ from itertools import dropwhile
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from equipoise.dataclass import dataclass
-from equipoise.i18n import Note, capital, say, speaking, spoken, to_say
+from equipoise.i18n import Note, PartName, capital, say, speaking, spoken, to_say
 from equipoise.quantities import SI, Dimension
 
 if TYPE_CHECKING:
@@ -183,7 +183,9 @@ class Declared:
 
     def note(self, item: str = "") -> Note:
         """What it is called, to be said in any language."""
-        result = Note(self.label, **({"name": self.spoken(item)} if self.is_family else {}))
+        result = Note(
+            self.label, **({"name": PartName(item, self.spoken)} if self.is_family else {})
+        )
         if self.part in ("x", "y"):
             both = to_say("{what}, {axis}") if self.is_family else to_say("{what} {axis}")
             result = Note(both, what=result, axis=self.part)
