@@ -23,6 +23,7 @@ from equipoise.balancing.outcome import (
     mounts_beside_change,
     preloads,
     proof_sentences,
+    reasons_beside_weights,
     sentences_beyond_masses,
     steadying_sentence,
     why_nothing,
@@ -95,7 +96,8 @@ def balanced_headline(
         yield from (Text(line, broken_if(True)) for line in broken_capacities(balanced))
     if balanced.advice is not None and not balanced.helps:
         if alone:
-            yield from map(Text, why_nothing(balanced))
+            others = [*reasons_beside_weights(balanced)]
+            yield from (Text(line, is_detail=line in others) for line in why_nothing(balanced))
             cure = steadying_sentence(balanced)  # what to build: first, and not left out
             beyond = sorted(sentences_beyond_masses(balanced), key=lambda line: line != cure)
             yield from (Text(line, is_detail=line != cure) for line in beyond)

@@ -151,7 +151,7 @@ def test_rows_are_turned_so_that_the_gauges_read_least() -> None:
         RIDING, Balance(phases=Phases(), objectives=(Objective("shaking_force"),))
     )
     assert any(
-        "reading at yaw, peak to peak, by 89 %" in line
+        "reading at yaw, peak to peak" in line and "(+89 %)" in line
         for line in deterioration_sentences(by_force)
     )
     assert not advice.worse
@@ -626,15 +626,12 @@ def test_little_is_added_against_what_is_not_large() -> None:
 # What is large: `test_all_that_is_large_is_named_first`.
 @pytest.mark.exhaustive
 def test_what_stays_large_is_said_first_and_by_the_yardstick_before() -> None:
-    """Added mass makes the yardstick longer, and no moment smaller; 2.22 N m over the weight of
-    1.145 kg between pivots that are 89 mm apart.
-    """
+    """Added mass makes the yardstick longer, and no moment smaller."""
     advice = advice_for("yamashita-1")
     text = " ".join(
         item.text for item in advice.headline(alone=True) if isinstance(item, TextBlock)
     )
     assert "Large after that, as before: shaking moment, peak: 2.22 N m" in text
-    assert "2.2 times the weight of the moving links at the span" in text
 
 
 # Sentences of what falls: tests/unit/present/test_summary.py.
