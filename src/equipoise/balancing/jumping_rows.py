@@ -17,13 +17,11 @@ import numpy as np
 from equipoise.balancing.rounding import TINY
 from equipoise.dataclass import dataclass
 from equipoise.design.minimax import ValuesAndSlopes
-from equipoise.signals import STEPS_BETWEEN_BENDS, Array, JumpSampling
+from equipoise.signals import JUMP_OFFSET, STEPS_BETWEEN_BENDS, Array, JumpSampling
 
 SPACING = pi / 720
 """rad, between the nodes of splines, and between samples among which tops are looked for: values
 are exact to 1e-9 of a signal of ten orders, and tops to 1e-8 after a step to a parabola's."""
-JUMP_OFFSET = 2e-8
-"""rad in a cycle of one turn, from a jump to its sides; as in `signals.JumpSampling`."""
 SAMPLE_MISS, CLOSER, NARROWER = 0.05, 2, 8
 """Share of the range by which a sample may miss its top; steps to the tops of parabolas, and by how
 much each has its neighbours nearer."""

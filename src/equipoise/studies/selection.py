@@ -14,7 +14,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, ClassVar
+from typing import Any, BinaryIO, ClassVar
 
 import numpy as np
 
@@ -36,12 +36,8 @@ from equipoise.studies.outcomes import (
     signs_of,
     why_none,
 )
-from equipoise.studies.outcomes import feasible as keep
 from equipoise.studies.store import REASON, UNKNOWN, Store, as_usage_error
 from equipoise.studies.study import Output, random_numbers
-
-if TYPE_CHECKING:
-    from equipoise.studies.study import Output
 
 DesignBlocks = Callable[[], Iterable[tuple[int, DesignBlock]]]
 """Gives all designs, each time anew, some at a time with the number of the first."""
@@ -345,7 +341,7 @@ class _Choice:
         self.reasons += block.outcome.counts
         computed = np.flatnonzero(block.outcome.computed)
         figures = block.outcome.figures[computed]
-        inside = keep(self.outputs, figures)
+        inside = feasible(self.outputs, figures)
         self.limits += np.sum(inside, axis=0)
         good = np.all(inside, axis=1)
         self.kept += int(np.sum(good))
@@ -458,7 +454,7 @@ def write_designs(store: Store, path: str | os.PathLike[str], *, kept: bool = Fa
         for start, block in store.in_blocks():
             wanted = block.outcome.reason != UNKNOWN
             if kept:
-                wanted = keep(outputs, block.outcome.figures).all(axis=1)
+                wanted = feasible(outputs, block.outcome.figures).all(axis=1)
             table = _arrow_table(schema, start, block, np.flatnonzero(wanted))
             write(table)
             rows += len(table)

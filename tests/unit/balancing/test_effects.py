@@ -501,6 +501,34 @@ def test_kept_orders(is_vector: bool) -> None:
     assert signal.with_orders((0.0, 3.0)).start == pytest.approx(np.full(N, 4.0), abs=1e-12)
 
 
+@pytest.mark.parametrize("output", ["joints.A.x", "drive_torque"])
+def test_orders_of_forces_that_jump(output: str) -> None:
+    """With friction in joints: against many equally spaced crank angles, which miss a jump by their
+    step, and against Gauss points between jumps, many more than are taken.
+    """
+    pump = eq.load("plunger-pump")
+    joints = tuple(replace(joint, friction=4 * (joint.friction or 0.0)) for joint in pump.joints)
+    machine = replace(pump, joints=joints)
+    effects = Effects(machine, (), rubbing=machine)
+    signal = effects.signal(output)
+    assert signal.sampling is not None
+    step = 2 * pi / 2**14
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    edges = np.linspace(0.0, 2 * pi, 4 * 24 + 1)  # forces jump at quarters of a turn
+    between = edges[:-1, None] + np.diff(edges)[:, None] * (1 + nodes) / 2
+    routes = (
+        (step * (np.arange(2**14) + 0.5), np.full(2**14, 2.0**-14), 2e-5),
+        (between.ravel(), np.tile(weights / (2 * 96), 96), 1e-6),
+    )
+    span, at = np.ptp(signal.start), signal.sampling.crank_angle
+    for theta, shares, miss in routes:
+        values = effects.at_angles(theta).signal(output).start * shares
+        for order in (1.0, 2.0, 5.0, 20.0, 100.0):
+            amplitude = 2 * np.sum(values * np.exp(-1j * order * theta))
+            wanted = np.real(amplitude * np.exp(1j * order * at))
+            assert signal.with_orders((order,)).start == pytest.approx(wanted, abs=miss * span)
+
+
 def test_orders_count_events_in_one_turn_of_the_crank() -> None:
     """Two turns in the samples: the second wave in them is order 1, the first order 1/2."""
     signal = Signal(np.cos(ANGLE) + np.cos(2 * ANGLE), np.zeros((0, N)), turns=2)
