@@ -27,7 +27,7 @@ from equipoise.mechanism.parts.machine import Machine
 from support import free_bodies, machines_cams
 from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of, wanted_of
 from support.chosen import DISTINCT, few, model_of
-from support.designs import design, drawn, named, numbers_of, paths_of, reason_of
+from support.designs import Number, design, drawn, named, numbers_of, paths_of, reason_of
 from support.machines import KINDS, make
 from support.machines_planes import set_apart
 from support.poses import from_motion
@@ -85,6 +85,13 @@ def compared(
         same_figures(got, wanted, known, ANGLES, TOLERANCE)
         moved += 1
     return moved
+
+
+def numbered(base: Machine, numbers: Sequence[Number], values: Sequence[float]) -> Machine:
+    """A design of a machine of which `design` does not keep everything."""
+    for number, value in zip(numbers, values, strict=True):
+        base = base.with_number(number.path, float(value))
+    return base
 
 
 @pytest.mark.exhaustive(but=["balance-spring", "cam-pusher"])
@@ -178,9 +185,7 @@ def test_forces_that_are_shared_with_teeth_or_by_stiffness(
     figures, reasons = Batch(base, paths_of(numbers), wanted, angles=ANGLES)(values)
     assert not reasons.any()
     for row, got in zip(values, figures, strict=True):
-        own = base
-        for number, value in zip(numbers, row, strict=True):
-            own = own.with_number(number.path, float(value))
+        own = numbered(base, numbers, row)
         summary = eq.analyze(own, ANGLES).summary
         known = [summary[name].rms for name in names]
         np.testing.assert_allclose(got, known, rtol=1e-9, atol=1e-9 * max(known))
@@ -239,9 +244,7 @@ def weighed(
     figures, reasons = Batch(base, paths_of(numbers), wanted, angles=ANGLES)(values)
     assert not reasons.any()
     for row, got in zip(values, figures, strict=True):
-        own = base
-        for number, value in zip(numbers, row, strict=True):
-            own = own.with_number(number.path, float(value))
+        own = numbered(base, numbers, row)
         same_figures(got, wanted, known_of(own, ANGLES, signals), ANGLES, TOLERANCE)
     return [[*map(float, row)] for row in figures]
 

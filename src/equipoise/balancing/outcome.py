@@ -567,13 +567,16 @@ def large_besides(balanced: Balanced) -> Iterator[str]:
 
 
 def large_after(advice: Advice) -> list[FigureAssessment]:
-    """What is large after a change, against the yardstick before: what is beyond a limit, as where
-    a machine is judged, then the largest.
+    """What is large after a change, against the yardstick before: first what is beyond a limit,
+    as where a machine is judged, but for what parts bear, which has sentences of its own; then the
+    largest.
     """
+
+    def rank(item: FigureAssessment) -> tuple[bool, float]:
+        return not item.is_limit or item.is_capacity, -item.excess
+
     left = (_against(new, was) for was, new in _before_and_after(advice))
-    return sorted(
-        (item for item in left if item.is_large), key=lambda item: (not item.is_limit, -item.excess)
-    )
+    return sorted((item for item in left if item.is_large), key=rank)
 
 
 def _before_and_after(advice: Advice) -> Iterator[tuple[FigureAssessment, FigureAssessment]]:
