@@ -109,7 +109,7 @@ lint: $(VENV)/.installed-test
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python page/messages.py --check
-	$(BIN)/python page/bundle.py --types
+	$(BIN)/python page/bundle.py --lint
 
 # What is handed on, in build/release, tried in an empty environment, of the newest Python here; with
 # OLDEST=--oldest of the oldest too.

@@ -1,6 +1,6 @@
 // Bundles the page into one script and one style sheet: node build.mjs FOLDER HASH (see bundle.py).
 // Beside them are the licenses of all packages that they carry, which stand at the top of the script too.
-import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { build } from "esbuild";
 

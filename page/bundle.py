@@ -1,8 +1,9 @@
-"""Bundles the live page with npm and esbuild: python page/bundle.py [--tools | --types].
+"""Bundles the live page with npm and esbuild: python page/bundle.py [--tools | --lint].
 
 The first line of a bundle holds the hash of its sources: one that is up to date is left alone, so
 that a checkout builds it once, and a source distribution, which brings it, needs no Node.
-``--tools`` installs the packages for tests and type checks as well; ``--types`` checks the types.
+``--tools`` installs the packages for tests and checks as well; ``--lint`` checks types, format
+and rules.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ Command = list[str]
 
 
 class BundleError(Exception):
-    """The page cannot be bundled, or its types are wrong; says why."""
+    """The page cannot be bundled, or its sources are not as they must be; says why."""
 
 
 def node_and_npm() -> tuple[Command, Command] | None:
@@ -102,10 +103,10 @@ def installed(name: str) -> str | None:
     return json.loads(about.read_text(encoding="utf-8"))["version"] if about.is_file() else None
 
 
-def bundle(*, tools: bool = False, types: bool = False) -> str:
+def bundle(*, tools: bool = False, lint: bool = False) -> str:
     """Bundle the page where that is needed, and return what was done; raise BundleError."""
     fresh = is_fresh()
-    if fresh and not (tools or types):
+    if fresh and not (tools or lint):
         return "The bundle of the live page is up to date"
     commands = node_and_npm()
     if commands is None:
@@ -114,19 +115,22 @@ def bundle(*, tools: bool = False, types: bool = False) -> str:
             f' or {Path(sys.executable).name} -m pip install "{NODE}"'
         )
     node, npm = commands
-    install(npm, tools=tools or types)
+    install(npm, tools=tools or lint)
     if not fresh:
         run([*node, "build.mjs", str(BUNDLE), sources()], "esbuild")
         words = json.dumps(texts(), ensure_ascii=False, indent=0)
         (BUNDLE / WORDS).write_text(words, encoding="utf-8")
-    if types:
+    if lint:
         run([*node, "node_modules/typescript/bin/tsc", "--noEmit"], "tsc")
+        biome = "node_modules/@biomejs/biome/bin/biome"
+        run([*node, biome, "check", "--error-on-warnings"], "biome")
     size = sum(file.stat().st_size for file in BUNDLE.iterdir())
-    return f"The bundle of the live page has {size / 1000:.0f} kB" + types * "; its types are right"
+    checked = "; its sources pass all checks" if lint else ""
+    return f"The bundle of the live page has {size / 1000:.0f} kB{checked}"
 
 
 if __name__ == "__main__":
     try:
-        print(bundle(tools="--tools" in sys.argv, types="--types" in sys.argv))
+        print(bundle(tools="--tools" in sys.argv, lint="--lint" in sys.argv))
     except BundleError as error:
         sys.exit(f"page/bundle.py: {error}")

@@ -15,12 +15,29 @@ export class Aids {
   private readonly own = h("div", { class: "underlay-keys", hidden: true });
   private readonly title = h("b", {});
   private readonly opacity = h("input", {
-    type: "range", min: 0.05, max: 1, step: 0.05, "aria-label": say("Opacity of the underlay"),
+    type: "range",
+    min: 0.05,
+    max: 1,
+    step: 0.05,
+    "aria-label": say("Opacity of the underlay"),
   });
   private readonly hidden = h("input", { type: "checkbox" });
-  private readonly angle = h("input", { type: "text", class: "number", "aria-label": say("Angle of the underlay, deg") });
-  private readonly distance = h("input", { type: "text", class: "number", "aria-label": say("True distance of the two places") });
-  private readonly scaling = h("form", { class: "line", hidden: true }, this.distance, h("button", { type: "submit" }, say("Scale")));
+  private readonly angle = h("input", {
+    type: "text",
+    class: "number",
+    "aria-label": say("Angle of the underlay, deg"),
+  });
+  private readonly distance = h("input", {
+    type: "text",
+    class: "number",
+    "aria-label": say("True distance of the two places"),
+  });
+  private readonly scaling = h(
+    "form",
+    { class: "line", hidden: true },
+    this.distance,
+    h("button", { type: "submit" }, say("Scale")),
+  );
   private readonly measured = s("svg", { class: "ruler", "aria-hidden": "true" });
   private readonly tape = s("path", {});
   private readonly written = s("text", { "text-anchor": "middle" });
@@ -54,7 +71,9 @@ export class Aids {
 
   private chooser(): HTMLElement {
     const file = h("input", {
-      type: "file", hidden: true, tabindex: -1,
+      type: "file",
+      hidden: true,
+      tabindex: -1,
       accept: "image/png,image/jpeg,image/webp,image/svg+xml,.dxf",
       "aria-label": say("Picture or DXF drawing"),
     });
@@ -63,8 +82,18 @@ export class Aids {
       file.value = "";
       if (chosen) void this.take(chosen);
     });
-    const told = h("p", { class: "quiet" }, say("A picture or DXF drawing to trace over: choose it, drop it on the page, or paste it."));
-    return h("div", {}, told, h("button", { type: "button", onclick: () => file.click() }, say("Choose underlay")), file);
+    const told = h(
+      "p",
+      { class: "quiet" },
+      say("A picture or DXF drawing to trace over: choose it, drop it on the page, or paste it."),
+    );
+    return h(
+      "div",
+      {},
+      told,
+      h("button", { type: "button", onclick: () => file.click() }, say("Choose underlay")),
+      file,
+    );
   }
 
   private keys(): HTMLElement[] {

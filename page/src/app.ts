@@ -17,7 +17,7 @@ import { Heading } from "./heading";
 import { Inspector, Locks } from "./inspector";
 import { Keeping } from "./keeping";
 import { Player, TransportBar } from "./player";
-import type { PageRequest, DownloadKind, Hello, Numbers, Planted, RunMessage, State, Strokes, Wire } from "./protocol";
+import type { DownloadKind, Hello, Numbers, PageRequest, Planted, RunMessage, State, Strokes, Wire } from "./protocol";
 import { BalancePanel, FigureTable, headline, Readings } from "./readings";
 import { RunPanel } from "./run_panel";
 import { Seeing } from "./seeing";
@@ -25,7 +25,7 @@ import { helpDialog, pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
 import { Theme } from "./theme";
-import { type Opened, Toolbar } from "./toolbar";
+import { type Commands, type Opened, Toolbar } from "./toolbar";
 import { Tools } from "./tools";
 import { Tour } from "./tour";
 import { record, records } from "./video";
@@ -42,6 +42,7 @@ export class App {
   private readonly root = h("div", { class: "equipoise", lang: language() });
   private readonly talk: Conversation;
   private readonly player = new Player();
+  private readonly locks = new Locks();
   private readonly theme: Theme;
   private readonly hands: Hands;
   private readonly stage: Stage;
@@ -60,10 +61,21 @@ export class App {
     alt: say("The planes of links, masses and bearings, from the side and to scale."),
     hidden: true,
   });
-  private readonly balance: BalancePanel;
+  private readonly balance = new BalancePanel(
+    () => this.keep(),
+    () => this.takeBack(),
+    () => {
+      this.takeBack();
+      this.command({ type: "balance", hold: true });
+    },
+  );
   private readonly toolbar: Toolbar;
   private readonly tools: Tools;
-  private readonly transport: TransportBar;
+  private readonly transport = new TransportBar(
+    this.player,
+    () => this.toggle(),
+    () => this.crank(),
+  );
   private readonly tour = new Tour(this.root);
   private readonly help = helpDialog(
     () => this.hello?.version ?? "",
@@ -108,64 +120,10 @@ export class App {
     shelf: Shelf | null,
     speak: (language: string) => void,
   ) {
-    const events: Events = {
-      hello: (message) => this.greet(message),
-      state: (state) => this.take(state),
-      response: (message, numbers) => {
-        this.charts.answered(message, numbers);
-        this.seeing.answered(message, numbers);
-        this.add("response", message.notes);
-      },
-      strokes: (message, numbers) => {
-        this.plant(message);
-        this.charts.loaded(message, numbers);
-      },
-      planting: (message) => this.plant(message),
-      side: ({ svg }) =>
-        set(this.across, { src: `data:image/svg+xml,${encodeURIComponent(svg)}`, hidden: false }),
-      ghost: (message, numbers) => {
-        this.seeing.pale(message.scene, numbers);
-        this.charts.pale(numbers);
-      },
-      variants: (message) => this.seeing.variants.show(message),
-      refused: (message, edit, told) => this.refuse(message, edit, cureOf(told)),
-      balanced: (message) => {
-        this.balance.show(message);
-        this.tour.did("balanced", headline(message));
-      },
-      ran: (message, numbers) => this.ran(message, numbers),
-      busy: (computed) => this.busy(computed),
-      tables: (message) => this.bench.show(message),
-      file: save,
-      pictured: (one, numbers) => (one ? this.gallery.add(one, numbers) : this.gallery.done()),
-      tool: (message, numbers) => {
-        this.opened = "";
-        this.views.showTool(message, numbers);
-        const lacking = say("a hand-held tool is changed by its numbers");
-        this.name({ ...message, lacking, downloads: ["model", "report"] });
-      },
-      stores: (message) => this.gallery.stored(message),
-      study: (message, numbers) => {
-        this.opened = "";
-        this.views.showStudy(message, numbers);
-        const { name } = message;
-        const lacking = say("open one of its designs first");
-        this.name({ name, undo: null, redo: null, lacking, file: null, downloads: [] });
-      },
-      saved: (name) => this.keeping.saved(name),
-      line: (up, other, waiting) => this.line(up, other, waiting),
-      waiting: (on) => set(this.root, { "data-waiting": on }),
-      calm: (on) => (on ? this.frames.settle(0) : this.settled(false)),
-    };
-    this.talk = new Conversation(wire, events, shelf);
+    this.talk = new Conversation(wire, this.events(), shelf);
     el.append(this.root);
-    this.theme = new Theme(this.root, () => {
-      this.charts.repaint();
-      this.runPanel.repaint();
-      this.views.repaint();
-    });
+    this.theme = new Theme(this.root, () => this.repaint());
     this.views = new Views(this.talk, this.theme, (asked) => this.command(asked));
-    const locks = new Locks();
     const page = {
       talk: this.talk,
       state: () => this.state,
@@ -173,7 +131,7 @@ export class App {
       chosen: (grip: Grip) => this.choose(grip),
       holding: (on: boolean) => this.hold(on),
       hint: (text: string) => this.board.hint(text),
-      kept: (point: string) => locks.keep(point),
+      kept: (point: string) => this.locks.keep(point),
     };
     this.keeping = new Keeping({
       root: this.root,
@@ -220,21 +178,21 @@ export class App {
       (time) => this.goToTime(time),
       (asked) => this.command(asked),
     );
-    this.inspector = new Inspector(this.talk, (on) => this.hold(on), locks);
-    this.balance = new BalancePanel(
-      () => this.keep(),
-      () => this.takeBack(),
-      () => {
-        this.takeBack();
-        this.command({ type: "balance", hold: true });
-      },
-    );
-    this.transport = new TransportBar(
-      this.player,
-      () => this.toggle(),
-      () => this.crank(),
-    );
-    this.toolbar = new Toolbar({
+    this.inspector = new Inspector(this.talk, (on) => this.hold(on), this.locks);
+    this.toolbar = new Toolbar(this.commands(speak));
+    this.toolbar.beside(this.views.back);
+    this.lay();
+    this.listen();
+    this.talk.ask({ type: "ready" });
+  }
+
+  private repaint(): void {
+    for (const part of [this.charts, this.runPanel, this.views]) part.repaint();
+  }
+
+  /** What the buttons and menus of the toolbar do. */
+  private commands(speak: (language: string) => void): Commands {
+    return {
       example: (name) => void this.open({ type: "open", example: name }, name),
       gallery: () => this.gallery.show(),
       undo: () => this.step("undo"),
@@ -250,11 +208,59 @@ export class App {
       download: (kind, language, format) => this.download(kind, language, format),
       help: () => this.help.showModal(),
       speak,
-    });
-    this.toolbar.beside(this.views.back);
-    this.lay();
-    this.listen();
-    this.talk.ask({ type: "ready" });
+    };
+  }
+
+  /** What is done with each message of the server. */
+  private events(): Events {
+    return {
+      hello: (message) => this.greet(message),
+      state: (state) => this.take(state),
+      response: (message, numbers) => {
+        this.charts.answered(message, numbers);
+        this.seeing.answered(message, numbers);
+        this.add("response", message.notes);
+      },
+      strokes: (message, numbers) => {
+        this.plant(message);
+        this.charts.loaded(message, numbers);
+      },
+      planting: (message) => this.plant(message),
+      side: ({ svg }) => set(this.across, { src: `data:image/svg+xml,${encodeURIComponent(svg)}`, hidden: false }),
+      ghost: (message, numbers) => {
+        this.seeing.pale(message.scene, numbers);
+        this.charts.pale(numbers);
+      },
+      variants: (message) => this.seeing.variants.show(message),
+      refused: (message, edit, told) => this.refuse(message, edit, cureOf(told)),
+      balanced: (message) => {
+        this.balance.show(message);
+        this.tour.did("balanced", headline(message));
+      },
+      ran: (message, numbers) => this.ran(message, numbers),
+      busy: (computed) => this.busy(computed),
+      tables: (message) => this.bench.show(message),
+      file: save,
+      pictured: (one, numbers) => (one ? this.gallery.add(one, numbers) : this.gallery.done()),
+      tool: (message, numbers) => {
+        this.opened = "";
+        this.views.showTool(message, numbers);
+        const lacking = say("a hand-held tool is changed by its numbers");
+        this.name({ ...message, lacking, downloads: ["model", "report"] });
+      },
+      stores: (message) => this.gallery.stored(message),
+      study: (message, numbers) => {
+        this.opened = "";
+        this.views.showStudy(message, numbers);
+        const { name } = message;
+        const lacking = say("open one of its designs first");
+        this.name({ name, undo: null, redo: null, lacking, file: null, downloads: [] });
+      },
+      saved: (name) => this.keeping.saved(name),
+      line: (up, other, waiting) => this.line(up, other, waiting),
+      waiting: (on) => set(this.root, { "data-waiting": on }),
+      calm: (on) => (on ? this.frames.settle(0) : this.settled(false)),
+    };
   }
 
   close(): void {
@@ -267,7 +273,7 @@ export class App {
     this.keeping.close();
     this.theme.close();
     this.watcher.disconnect();
-    this.undone.forEach((undo) => undo());
+    for (const undo of this.undone) undo();
     this.root.remove();
   }
 
@@ -289,13 +295,7 @@ export class App {
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
     const border = new Border(this.views.body, () => this.measure());
     this.views.body.append(stage, border.root, this.side, this.aside);
-    this.root.append(
-      this.toolbar.root,
-      this.lost,
-      this.keeping.offer,
-      this.tour.offer,
-      ...this.views.roots,
-    );
+    this.root.append(this.toolbar.root, this.lost, this.keeping.offer, this.tour.offer, ...this.views.roots);
     this.root.append(
       dropZone(this.root, (files) => void this.read(files)),
       this.help,
@@ -351,8 +351,7 @@ export class App {
       this.board.root.addEventListener(kind, (event) => this.toCycle(event), true);
     if (!this.full) return;
     // The page is all there is: undo and help also where nothing has the focus.
-    const key = (event: KeyboardEvent) =>
-      event.target === document.body && pressed(event, shortcuts);
+    const key = (event: KeyboardEvent) => event.target === document.body && pressed(event, shortcuts);
     document.addEventListener("keydown", key);
     this.undone.push(() => document.removeEventListener("keydown", key));
   }
@@ -397,27 +396,32 @@ export class App {
     measure(state.length);
     this.player.take(state);
     if (state.design !== this.runPanel.design) this.closeRun();
-    if (other) {
-      this.player.angle = 0;
-      this.side.scrollTop = this.aside.scrollTop = 0;
-      this.player.suit();
-      this.player.playing = state.speed !== 0 && letsMove();
-    } else this.player.angle = state.status.stand ?? angle;
+    if (other) this.forget(state);
+    else this.player.angle = state.status.stand ?? angle;
     if (begins) this.player.suit();
-    if (other) this.heading.forget();
-    if (other) this.bench.forget();
-    if (other) this.inspector.anew();
-    if (other) this.tools.anew();
-    if (other || !state.planting) this.planted.hide();
-    if (other) this.strokes.hide();
-    if (other || !state.shaken) this.gauges.hide();
-    if (other || !state.beside) this.across.hidden = true;
+    if (!state.planting) this.planted.hide();
+    if (!state.shaken) this.gauges.hide();
+    if (!state.beside) this.across.hidden = true;
     if (!state.before) this.balance.hide();
     this.board.clear(this.held || other);
     if (state.held) this.board.say(state.held, true);
     this.hands.accepted();
     this.show(state, other);
     if (!this.held && !other && state.undo) this.tour.did("dragged");
+  }
+
+  /** Another machine comes: nothing of the last stays, and it moves from its beginning. */
+  private forget(state: State): void {
+    this.player.angle = 0;
+    this.side.scrollTop = this.aside.scrollTop = 0;
+    this.player.suit();
+    this.player.playing = state.speed !== 0 && letsMove();
+    this.heading.forget();
+    this.bench.forget();
+    this.inspector.anew();
+    this.tools.anew();
+    for (const table of [this.planted, this.strokes, this.gauges]) table.hide();
+    this.across.hidden = true;
   }
 
   private name(opened = this.named): void {

@@ -85,20 +85,9 @@ export class Board {
       { class: "zooms" },
       button("M8 3v10M3 8h10", say("Zoom in"), () => stage.zoom(1.25)),
       button("M3 8h10", say("Zoom out"), () => stage.zoom(0.8)),
-      button("M2.5 6V2.5H6M10 2.5h3.5V6M13.5 10v3.5H10M6 13.5H2.5V10", say("Show all"), () =>
-        stage.fit(),
-      ),
+      button("M2.5 6V2.5H6M10 2.5h3.5V6M13.5 10v3.5H10M6 13.5H2.5V10", say("Show all"), () => stage.fit()),
     );
-    this.root = h(
-      "div",
-      { class: "board" },
-      stage.lines,
-      stage.svg,
-      stage.numbers,
-      this.hinted,
-      zooms,
-      this.spoken,
-    );
+    this.root = h("div", { class: "board" }, stage.lines, stage.svg, stage.numbers, this.hinted, zooms, this.spoken);
     this.touch = new Touch(stage);
     stage.svg.addEventListener("pointerdown", this.press);
     stage.svg.addEventListener("wheel", this.wheel, { passive: false });
@@ -142,8 +131,7 @@ export class Board {
     };
     const stop = () => {
       svg.removeEventListener("pointermove", drag);
-      for (const name of ["pointerup", "pointercancel"] as const)
-        svg.removeEventListener(name, stop);
+      for (const name of ["pointerup", "pointercancel"] as const) svg.removeEventListener(name, stop);
       if (!far && link) this.chosen(link);
     };
     svg.addEventListener("pointermove", drag);
@@ -152,8 +140,7 @@ export class Board {
 
   /** The wheel scrolls where there is something to scroll, else it zooms. */
   private readonly wheel = (event: WheelEvent): void => {
-    const still =
-      this.root.closest(".equipoise-page") && getComputedStyle(this.root).touchAction === "none";
+    const still = this.root.closest(".equipoise-page") && getComputedStyle(this.root).touchAction === "none";
     if (!still && !event.ctrlKey) return;
     event.preventDefault();
     const box = this.stage.svg.getBoundingClientRect();

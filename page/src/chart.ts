@@ -4,7 +4,7 @@
  */
 
 import { fresh, h, put, set, write } from "./dom";
-import type { PageRequest, ChartData, Choice, Numbers, State, Unit } from "./protocol";
+import type { ChartData, Choice, Numbers, PageRequest, State, Unit } from "./protocol";
 import { turning } from "./scale";
 import { type Curve, Strip } from "./strip";
 import type { Role, Theme } from "./theme";
@@ -61,9 +61,7 @@ export function column(
   if (!now) return null;
   const values = taken(now, stride, part, periodic, winds);
   const was = before ? numbers.get(`before.${name}`) : undefined;
-  return was && was.length === now.length
-    ? { values, before: taken(was, stride, part, periodic, winds) }
-    : { values };
+  return was && was.length === now.length ? { values, before: taken(was, stride, part, periodic, winds) } : { values };
 }
 
 /** What was measured of what a chart's array shows, over the same crank angles; null where nothing was. */
@@ -143,7 +141,8 @@ export class Chart {
         xAxis,
         ...(x === "angle" && { ...over, picked: whole.picked }),
         ...(x === "order" && { bars: true }),
-        ...(typeof x === "object" && (x.at === null ? { picked: (at) => whole.picked(at / x.factor) } : { quiet: true })),
+        ...(typeof x === "object" &&
+          (x.at === null ? { picked: (at) => whole.picked(at / x.factor) } : { quiet: true })),
         ...(this.choices && { control: this.choices.label }),
       },
       theme,
@@ -253,7 +252,10 @@ function drawn({ orders, turns }: State, i: number): boolean {
 /** A curve, and what was measured of the same. */
 export function besides(model: Curve, values: Float64Array): Curve[] {
   const label = [model.label, say("measured")].filter(Boolean).join(" ");
-  return [{ ...model, label: model.label || say("model") }, { label, role: "quiet", values }];
+  return [
+    { ...model, label: model.label || say("model") },
+    { label, role: "quiet", values },
+  ];
 }
 
 /** Values in SI units in those of something else. */

@@ -21,11 +21,7 @@ export class Charts {
   private readonly whose = chooser(say("Forces of"), () => this.chosen());
   private readonly whoseRow = h("div", { class: "whose" }, this.whose.label);
   private readonly pathOf = chooser(say("Path of"), () => this.chosen());
-  private readonly polar = new Plane(
-    say("Shaking force, polar"),
-    true,
-    h("b", {}, say("Polar force")),
-  );
+  private readonly polar = new Plane(say("Shaking force, polar"), true, h("b", {}, say("Polar force")));
   private readonly path = new Plane(say("Path"), false, this.pathOf.label);
   private readonly forces = h("div", { class: "group" });
   private readonly answers = h("div", { class: "group" });

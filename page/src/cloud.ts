@@ -1,7 +1,7 @@
 /** Designs as lines from axis to axis, and as points over two columns: drawn, brushed, clicked. */
 
-import { h, s, set } from "./dom";
 import type { Designs, Kind } from "./designs";
+import { h, s, set } from "./dom";
 import type { Pair } from "./protocol";
 import { levels, marked } from "./scale";
 import type { Theme } from "./theme";
@@ -118,16 +118,14 @@ abstract class Picture {
     };
     const stop = (now: PointerEvent) => {
       this.svg.removeEventListener("pointermove", drag);
-      for (const name of ["pointerup", "pointercancel"] as const)
-        this.svg.removeEventListener(name, stop);
+      for (const name of ["pointerup", "pointercancel"] as const) this.svg.removeEventListener(name, stop);
       if (far || now.type === "pointercancel") return;
       const found = this.at(...from);
       if (found === null) this.brush(from, from);
       else this.told.opened(found);
     };
     this.svg.addEventListener("pointermove", drag);
-    for (const name of ["pointerup", "pointercancel"] as const)
-      this.svg.addEventListener(name, stop);
+    for (const name of ["pointerup", "pointercancel"] as const) this.svg.addEventListener(name, stop);
   }
 }
 
@@ -211,7 +209,12 @@ export class Parallel extends Picture {
       parts.push(s("text", { x, y: ABOVE - 3, "text-anchor": "middle", class: "unit" }, told.unit));
     });
     if (designs.study.own)
-      parts.push(this.line(designs.columns.map(({ own }, k) => shareOf(designs, k, own ?? NaN)), "own"));
+      parts.push(
+        this.line(
+          designs.columns.map(({ own }, k) => shareOf(designs, k, own ?? NaN)),
+          "own",
+        ),
+      );
     if (this.hover !== null) {
       const shares = designs.columns.map((_, k) => designs.share(this.hover as number, k));
       parts.push(this.line(shares.filter(Number.isFinite), "hovered"));
@@ -330,9 +333,7 @@ export class Scatter extends Picture {
   private limit(k: number, value: number, upright: boolean): SVGElement {
     const share = this.designs ? shareOf(this.designs, k, value) : 0;
     const seen = share >= 0 && share <= 1;
-    const d = upright
-      ? `M${this.x(share)} ${this.y(0)}V${this.y(1)}`
-      : `M${this.x(0)} ${this.y(share)}H${this.x(1)}`;
+    const d = upright ? `M${this.x(share)} ${this.y(0)}V${this.y(1)}` : `M${this.x(0)} ${this.y(share)}H${this.x(1)}`;
     return s("path", { class: "bound", d: seen ? d : "" });
   }
 

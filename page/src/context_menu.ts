@@ -179,7 +179,10 @@ export function menuOf(hit: Hit, page: Doing): Menu | null {
   const here = additions({ place: page.written(hit.place) }, page);
   if (hit.point) return { of: titleOf(hit.point), actions: [...atJoint(hit.point, state, page), ...here] };
   if (hit.link) return { of: titleOf(hit.link), actions: [...atLink(hit, hit.link, state, page), ...here] };
-  const point = { name: say("Point of the frame"), act: () => page.make({ do: "point", spot: { place: hit.place }, on: FRAME }) };
+  const point = {
+    name: say("Point of the frame"),
+    act: () => page.make({ do: "point", spot: { place: hit.place }, on: FRAME }),
+  };
   return { of: titleOf(null), actions: [point, ...here] };
 }
 
@@ -229,7 +232,9 @@ function atLink(hit: Hit, link: string, state: State, page: Doing): Action[] {
 /** Only what turns about the frame, and has a mass, carries one. */
 function weight(link: string, { fields }: State, page: Doing): Action | false {
   const group = `counterweight on ${link}`;
-  return fields.some((field) => field.group === group) && { name: say("Counterweight"), act: () => page.numbers(group) };
+  return (
+    fields.some((field) => field.group === group) && { name: say("Counterweight"), act: () => page.numbers(group) }
+  );
 }
 
 /** What can be added there, each with the first of its values that can be had. */

@@ -1,10 +1,31 @@
 /** One question at a time: of edits that wait, the newest is enough. */
 
-import type { PageRequest, Edit, HandedOut, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
-import { Numbers, type Pictured, type Planted, type ResponseMessage, type Side, type State, type Strokes } from "./protocol";
-import type { GhostMessage, RunMessage, Stores, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
-import { OPENS, type Shelf, type Shown, Story, type Told as Kept } from "./story";
+import type {
+  Edit,
+  GhostMessage,
+  HandedOut,
+  PageRequest,
+  Refused,
+  RunMessage,
+  Stores,
+  StudyMessage,
+  Tables,
+  Told,
+  ToolMessage,
+  VariantsMessage,
+  Wire,
+} from "./protocol";
+import {
+  Numbers,
+  type Pictured,
+  type Planted,
+  type ResponseMessage,
+  type Side,
+  type State,
+  type Strokes,
+} from "./protocol";
+import { type Told as Kept, OPENS, type Shelf, type Shown, Story } from "./story";
 import { language, say } from "./words";
 
 /** What takes long: the kind of its question, and what is done, in words. */
@@ -296,8 +317,7 @@ export class Conversation {
   private heard(state: Shown): void {
     const { seq } = state;
     const asked = this.question(seq)?.asked;
-    if (asked && !this.repeated(seq) && !isMove(asked) && !IDLE.has(asked.type))
-      this.story.remember(asked, state);
+    if (asked && !this.repeated(seq) && !isMove(asked) && !IDLE.has(asked.type)) this.story.remember(asked, state);
     this.story.heard(state);
     this.end(seq, null);
   }

@@ -15,7 +15,16 @@ export interface Drawing {
 
 /** m in a unit of $INSUNITS. */
 const UNITS: Record<number, number> = {
-  1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1, 8: 2.54e-8, 9: 2.54e-5, 10: 0.9144, 13: 1e-6, 14: 0.1,
+  1: 0.0254,
+  2: 0.3048,
+  4: 1e-3,
+  5: 1e-2,
+  6: 1,
+  8: 2.54e-8,
+  9: 2.54e-5,
+  10: 0.9144,
+  13: 1e-6,
+  14: 0.1,
 };
 const MILLIMETRES = 4;
 /** Pieces of a whole circle, and of a span of a spline. */
@@ -58,14 +67,14 @@ type Traced = Pick<Drawing, "lines" | "snaps">;
 /** Throws an `Error` whose message is one sentence. */
 export function drawingOf(text: string, name: string): Drawing {
   const wrong = say("{name} is no DXF drawing that can be read; save it as ASCII DXF.", { name });
-  let file;
+  let file: ReturnType<DxfParser["parseSync"]>;
   try {
     file = new DxfParser().parseSync(text);
   } catch {
     throw new Error(wrong);
   }
   if (!file?.entities) throw new Error(wrong);
-  const unit = Number(file.header?.["$INSUNITS"] ?? 0);
+  const unit = Number(file.header?.$INSUNITS ?? 0);
   const size = UNITS[unit] ?? (UNITS[MILLIMETRES] as number);
   const found: Traced = { lines: [], snaps: [] };
   const blocks = (file.blocks ?? {}) as unknown as Record<string, { entities?: Entity[]; position?: Point }>;
@@ -101,25 +110,46 @@ function trace(entity: Entity, at: Place, found: Traced): void {
     found.lines.push(line.map(at));
     found.snaps.push(...snaps.map(at));
   };
-  const { type, vertices = [], center, radius = 0 } = entity;
-  const corners = vertices.map(({ x, y }): Pair => [x, y]);
-  if (type === "LINE") put(corners, corners);
-  else if (type === "LWPOLYLINE" || type === "POLYLINE") {
-    put(bulged(vertices, !!entity.shape), corners);
-  } else if ((type === "CIRCLE" || type === "ARC") && center) {
-    const whole = type === "CIRCLE";
-    const [from, to] = whole ? [0, 2 * Math.PI] : [entity.startAngle ?? 0, entity.endAngle ?? 0];
-    const line = arc([center.x, center.y], [radius, 0], 1, from, to > from ? to : to + 2 * Math.PI);
-    put(line, [[center.x, center.y], ...(whole ? [] : ends(line))]);
-  } else if (type === "ELLIPSE" && center && entity.majorAxisEndPoint) {
-    const { x, y } = entity.majorAxisEndPoint;
-    const [from, to] = [entity.startAngle ?? 0, entity.endAngle ?? 2 * Math.PI];
-    const line = arc([center.x, center.y], [x, y], entity.axisRatio ?? 1, from, to > from ? to : to + 2 * Math.PI);
-    put(line, [[center.x, center.y]]);
-  } else if (type === "SPLINE") {
+  const traced = CURVES[entity.type]?.(entity);
+  if (traced) put(...traced);
+}
+
+/** Of each kind of entity: the line to draw, and its points that are snapped to. */
+const CURVES: Record<string, (entity: Entity) => [line: Pair[], snaps: Pair[]] | null> = {
+  LINE: ({ vertices }) => [corners(vertices), corners(vertices)],
+  LWPOLYLINE: polyline,
+  POLYLINE: polyline,
+  CIRCLE: ({ center, radius = 0 }) =>
+    center ? [arc([center.x, center.y], [radius, 0], 1, 0, 2 * Math.PI), [[center.x, center.y]]] : null,
+  ARC: ({ center, radius = 0, startAngle = 0, endAngle = 0 }) => {
+    if (!center) return null;
+    const line = arc([center.x, center.y], [radius, 0], 1, startAngle, after(startAngle, endAngle));
+    return [line, [[center.x, center.y], ...ends(line)]];
+  },
+  ELLIPSE: ({ center, majorAxisEndPoint: end, axisRatio = 1, startAngle = 0, endAngle = 2 * Math.PI }) =>
+    center && end
+      ? [
+          arc([center.x, center.y], [end.x, end.y], axisRatio, startAngle, after(startAngle, endAngle)),
+          [[center.x, center.y]],
+        ]
+      : null,
+  SPLINE: (entity) => {
     const line = spline(entity);
-    put(line, ends(line));
-  }
+    return [line, ends(line)];
+  },
+};
+
+function polyline({ vertices = [], shape }: Entity): [Pair[], Pair[]] {
+  return [bulged(vertices, !!shape), corners(vertices)];
+}
+
+function corners(vertices: Point[] = []): Pair[] {
+  return vertices.map(({ x, y }): Pair => [x, y]);
+}
+
+/** The end of an arc that goes on counterclockwise from its start. */
+function after(start: number, end: number): number {
+  return end > start ? end : end + 2 * Math.PI;
 }
 
 function ends(line: Pair[]): Pair[] {
@@ -157,7 +187,12 @@ function bulged(vertices: (Point & { bulge?: number })[], closed: boolean): Pair
 }
 
 /** A B-spline by de Boor's recursion; through its fit points where it has no more. */
-function spline({ controlPoints = [], fitPoints = [], knotValues: knots = [], degreeOfSplineCurve: degree = 3 }: Entity): Pair[] {
+function spline({
+  controlPoints = [],
+  fitPoints = [],
+  knotValues: knots = [],
+  degreeOfSplineCurve: degree = 3,
+}: Entity): Pair[] {
   const points = controlPoints.map(({ x, y }): Pair => [x, y]);
   if (points.length <= degree || knots.length < points.length + degree + 1)
     return (fitPoints.length ? fitPoints : controlPoints).map(({ x, y }): Pair => [x, y]);

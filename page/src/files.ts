@@ -9,7 +9,13 @@ export function dropZone(root: HTMLElement, dropped: (files: File[]) => void): H
   const veil = h(
     "div",
     { class: "veil", hidden: true },
-    h("span", {}, say("Drop a model file (.toml) with its tables (.csv), a record (.csv), or a picture or DXF drawing to trace over")),
+    h(
+      "span",
+      {},
+      say(
+        "Drop a model file (.toml) with its tables (.csv), a record (.csv), or a picture or DXF drawing to trace over",
+      ),
+    ),
   );
   for (const name of ["dragenter", "dragover", "dragleave", "drop"] as const) {
     root.addEventListener(name, (event) => {
@@ -52,9 +58,7 @@ export function tooLarge(file: File, largest: number): string | null {
 
 /** Hand a file, and the tables that it names, to the browser's own downloads. */
 export function save({ name, mime, files = {} }: HandedOut, bytes: DataView | undefined): void {
-  const part = bytes
-    ? new Uint8Array(bytes.buffer as ArrayBuffer, bytes.byteOffset, bytes.byteLength)
-    : "";
+  const part = bytes ? new Uint8Array(bytes.buffer as ArrayBuffer, bytes.byteOffset, bytes.byteLength) : "";
   handOut(name, mime, part);
   for (const [table, text] of Object.entries(files)) handOut(table, "text/csv", text);
 }

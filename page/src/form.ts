@@ -26,11 +26,14 @@ function collect(rule: Rule, values: Values, found: Demands): void {
   for (const key of barred(rule)) found.out.add(key);
   for (const one of rule.allOf ?? []) collect(one, values, found);
   if (rule.if) collect((matches(rule.if, values) ? rule.then : rule.else) ?? {}, values, found);
-  for (const [key, needed] of Object.entries(rule.dependentRequired ?? {}))
-    if (key in values) needed.forEach((one) => found.needed.add(one));
-  for (const [key, inner] of Object.entries(rule.dependentSchemas ?? {}))
-    if (key in values) collect(inner, values, found);
+  for (const needed of present(rule.dependentRequired, values)) for (const key of needed) found.needed.add(key);
+  for (const inner of present(rule.dependentSchemas, values)) collect(inner, values, found);
   if (rule.oneOf) choose(rule.oneOf, values, found);
+}
+
+/** What depends on the keys that are given. */
+function present<Dependent>(dependents: Record<string, Dependent> | undefined, values: Values): Dependent[] {
+  return Object.entries(dependents ?? {}).flatMap(([key, dependent]) => (key in values ? [dependent] : []));
 }
 
 /** Of several ways one is taken once the others contradict what is given. */
@@ -41,9 +44,7 @@ function choose(ways: Rule[], values: Values, found: Demands): void {
   const whole = left.filter((way) => way.required?.every((key) => key in values));
   const [taken] = whole;
   if (!taken || whole.length !== 1) return;
-  for (const way of left)
-    for (const key of way.required ?? [])
-      if (!taken.required?.includes(key)) found.out.add(key);
+  for (const way of left) for (const key of way.required ?? []) if (!taken.required?.includes(key)) found.out.add(key);
 }
 
 function barred(rule: Rule): string[] {
@@ -127,8 +128,7 @@ export class Form {
     if (this.name) this.root.append(this.named(this.name, subject.name ?? ""));
     const around = this.around(tables);
     this.controls = tables.forms[subject.form]?.controls ?? [];
-    for (const control of this.controls)
-      this.root.append(this.row(control, around));
+    for (const control of this.controls) this.root.append(this.row(control, around));
     this.root.append(
       this.problem,
       h(
@@ -136,8 +136,7 @@ export class Form {
         { class: "buttons" },
         h("button", { type: "submit", class: "strong" }, say("Save")),
         h("button", { type: "button", onclick: () => events.closed() }, say("Cancel")),
-        deletable &&
-          h("button", { type: "button", onclick: () => this.delete() }, say("Delete")),
+        deletable && h("button", { type: "button", onclick: () => this.delete() }, say("Delete")),
       ),
     );
     this.listen();
@@ -189,7 +188,7 @@ export class Form {
       if (!row.hidden && (required || needed.has(key))) this.needed.add(key);
       row.querySelector(".needed")?.toggleAttribute("hidden", !this.needed.has(key));
     }
-    this.inputs.forEach((one) => one.refresh?.());
+    for (const input of this.inputs.values()) input.refresh?.();
   }
 
   /** What is given of the keys that are shown. */

@@ -72,8 +72,5 @@ export function mark(name: string, seq: number, startTime?: number): void {
     performance.clearMarks("equipoise:input");
     performance.clearMarks("equipoise:painted");
   }
-  performance.mark(
-    name,
-    startTime === undefined ? { detail: { seq } } : { startTime, detail: { seq } },
-  );
+  performance.mark(name, startTime === undefined ? { detail: { seq } } : { startTime, detail: { seq } });
 }

@@ -83,10 +83,9 @@ export class Gallery {
     this.stores.hidden = folder === null;
     const open = (name: string) =>
       h("button", { type: "button", onclick: () => this.take(() => this.wishes.store(name)) }, name);
-    const none = say(
-      "The folder “{folder}” has no store of a study; the command equipoise sweep makes one.",
-      { folder: folder ?? "" },
-    );
+    const none = say("The folder “{folder}” has no store of a study; the command equipoise sweep makes one.", {
+      folder: folder ?? "",
+    });
     this.stores.replaceChildren(
       h("h3", {}, say("Designs of a study")),
       names.length ? h("div", { class: "line" }, ...names.map(open)) : h("p", { class: "quiet" }, none),
@@ -166,7 +165,9 @@ function picture(card: HTMLElement, one: Pictured, numbers: Numbers): SVGSVGElem
     piece.redraw(view.scale);
     svg.append(piece.element);
   }
-  const pose = (k: number) => pieces.forEach((piece) => piece.pose(numbers, view, k, null));
+  const pose = (k: number) => {
+    for (const piece of pieces) piece.pose(numbers, view, k, null);
+  };
   pose(one.at);
   const count = numbers.get("crank_angle")?.length ?? 1;
   const still = matchMedia("(prefers-reduced-motion: reduce)");

@@ -4,7 +4,7 @@ import { set } from "./dom";
 import { length, lengths, round } from "./format";
 import { type Attempts, Gesture } from "./gesture";
 import type { Drawable, Edit, Pair, State } from "./protocol";
-import { type Grip, keyOf, type Kind, type Stage } from "./stage";
+import { type Grip, type Kind, keyOf, type Stage } from "./stage";
 import { ARROWS } from "./view";
 import { say, toSay } from "./words";
 
@@ -186,8 +186,7 @@ export class Hands<S extends Drawable = State> {
     let moved = false;
     const drag = (now: PointerEvent) => {
       if (now.pointerId !== event.pointerId) return;
-      if (!moved && Math.hypot(now.clientX - event.clientX, now.clientY - event.clientY) < 2)
-        return;
+      if (!moved && Math.hypot(now.clientX - event.clientX, now.clientY - event.clientY) < 2) return;
       if (!moved) this.begin(grip, false);
       moved = true;
       const to = this.stage.view.metres(now.clientX + offX, now.clientY + offY);
@@ -196,13 +195,11 @@ export class Hands<S extends Drawable = State> {
     const stop = (now: PointerEvent) => {
       if (now.pointerId !== event.pointerId) return;
       element.removeEventListener("pointermove", drag);
-      for (const name of ["pointerup", "pointercancel"] as const)
-        element.removeEventListener(name, stop);
+      for (const name of ["pointerup", "pointercancel"] as const) element.removeEventListener(name, stop);
       if (moved) this.gesture?.end();
     };
     element.addEventListener("pointermove", drag);
-    for (const name of ["pointerup", "pointercancel"] as const)
-      element.addEventListener(name, stop);
+    for (const name of ["pointerup", "pointercancel"] as const) element.addEventListener(name, stop);
   }
 
   private key(event: KeyboardEvent, grip: Grip): void {
@@ -310,8 +307,7 @@ function follow<S extends Drawable>(page: Turning<S>, event: PointerEvent, link:
   const stop = (now: PointerEvent) => {
     if (now.pointerId !== event.pointerId) return;
     stage.svg.removeEventListener("pointermove", drag);
-    for (const name of ["pointerup", "pointercancel"] as const)
-      stage.svg.removeEventListener(name, stop);
+    for (const name of ["pointerup", "pointercancel"] as const) stage.svg.removeEventListener(name, stop);
     if (!moved) page.chosen(link);
   };
   stage.svg.setPointerCapture(event.pointerId);

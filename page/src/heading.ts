@@ -25,10 +25,7 @@ export class Heading {
     if (told !== this.shown) {
       this.shown = told;
       const text = state.description.trim() || say("This file has no description.");
-      this.about.replaceChildren(
-        h("summary", {}, h("h1", {}, state.title || state.name)),
-        h("p", {}, text),
-      );
+      this.about.replaceChildren(h("summary", {}, h("h1", {}, state.title || state.name)), h("p", {}, text));
     }
     const notes = [...new Set([state.notes, ...this.later.values()].flat())];
     if (this.notes.textContent !== notes.join("")) {

@@ -184,11 +184,7 @@ function namesOf(of: Asking["of"], on: string | undefined, around: Around): stri
 
 function pickButton(name: string, onclick: () => void): HTMLButtonElement {
   const title = say("Show {name} on the drawing", { name });
-  return h(
-    "button",
-    { type: "button", class: "pick", "aria-label": title, title, onclick },
-    icon(TARGET),
-  );
+  return h("button", { type: "button", class: "pick", "aria-label": title, title, onclick }, icon(TARGET));
 }
 
 /** A place by x and y, or distance and direction, or the name of a point. */
@@ -204,7 +200,7 @@ const place: Maker = (asking, name, around) => {
     const one = typeof value === "string";
     if (names) names.value = one ? value : "";
     const texts = one || value === undefined ? [] : componentsOf(value);
-    boxes.forEach((element, i) => (element.value = decimals(texts[i] ?? "")));
+    for (const [i, box] of boxes.entries()) box.value = decimals(texts[i] ?? "");
   };
   const picked = (found: Picked) => put(named && found.point ? found.point : [...found.place]);
   const button = pickButton(name, () => around.pick(body(), !!named, picked));
@@ -218,8 +214,7 @@ const place: Maker = (asking, name, around) => {
       const last = space && texts[2] === "" ? 2 : texts.length;
       if (texts.every((one) => one === "")) return undefined;
       const [distance, direction] = texts;
-      if (!space && direction && ANGLE.test(direction))
-        return { distance: withUnit(distance ?? "", unit), direction };
+      if (!space && direction && ANGLE.test(direction)) return { distance: withUnit(distance ?? "", unit), direction };
       return texts.slice(0, last).map((one) => withUnit(one, unit));
     },
   };
@@ -277,7 +272,9 @@ const list: Maker = (asking, name, around, hint) => {
   return {
     element: h("span", { class: "several list" }, held, more, less),
     set: put,
-    refresh: () => items.forEach((one) => one.refresh?.()),
+    refresh: () => {
+      for (const item of items) item.refresh?.();
+    },
     value: () => {
       const values = items.map((one) => one.value());
       if (values.every((one) => one === undefined)) return undefined;
@@ -315,13 +312,20 @@ const names: Maker = (asking, name, around, hint) => {
   const put = (value: Plain | undefined) => {
     rows.splice(0);
     held.replaceChildren();
-    if (Array.isArray(value)) value.forEach((one) => grow(String(one)));
-    else Object.entries((value ?? {}) as Values).forEach(([key, one]) => grow(key, one));
+    if (Array.isArray(value)) for (const key of value) grow(String(key));
+    else for (const [key, inner] of Object.entries((value ?? {}) as Values)) grow(key, inner);
   };
   return {
-    element: h("span", { class: "several list" }, held, step("+", say("One more"), () => grow())),
+    element: h(
+      "span",
+      { class: "several list" },
+      held,
+      step("+", say("One more"), () => grow()),
+    ),
     set: put,
-    refresh: () => rows.forEach((row) => [row.called, row.item].forEach((one) => one.refresh?.())),
+    refresh: () => {
+      for (const { called, item } of rows) for (const input of [called, item]) input.refresh?.();
+    },
     value: () => {
       const given = rows.filter((row) => (row.called.value() ?? row.item.value()) !== undefined);
       if (!given.length) return undefined;
@@ -343,11 +347,7 @@ const file: Maker = (_, name, around) => {
     around.file(one.name, await one.text());
     shown.value = one.name;
   });
-  const button = h(
-    "button",
-    { type: "button", class: "pick", onclick: () => chosen.click() },
-    say("Choose file"),
-  );
+  const button = h("button", { type: "button", class: "pick", onclick: () => chosen.click() }, say("Choose file"));
   return {
     element: h("span", { class: "several" }, shown, chosen, button),
     value: () => shown.value.trim() || undefined,

@@ -102,14 +102,7 @@ export class Row {
     const label = slider
       ? h("span", { class: "name", "aria-hidden": "true" }, breakable(field.label))
       : h("span", { class: "axis", "aria-hidden": "true" }, axis);
-    this.root = h(
-      "div",
-      { class: slider ? "row" : "half" },
-      label,
-      this.slider,
-      this.input,
-      this.error,
-    );
+    this.root = h("div", { class: slider ? "row" : "half" }, label, this.slider, this.input, this.error);
   }
 
   show(field: Field): void {
@@ -177,8 +170,7 @@ export class Row {
   private nudge(by: number, stamp: number): void {
     this.typing = false;
     const { min, max, step, value } = this.field;
-    const size =
-      step ?? (typeof min === "number" && typeof max === "number" ? (max - min) / STEPS : 0);
+    const size = step ?? (typeof min === "number" && typeof max === "number" ? (max - min) / STEPS : 0);
     if (size) this.attempt(value + by * size, stamp);
     this.gesture?.endSoon(PAUSE);
   }
@@ -217,8 +209,7 @@ export class Row {
     });
     // Keys tell of each step that it is the last one; a pointer tells when it lets go.
     slider.addEventListener("change", () => this.gesture?.endSoon(PAUSE));
-    for (const name of ["pointerup", "blur"])
-      slider.addEventListener(name, () => this.gesture?.end());
+    for (const name of ["pointerup", "blur"]) slider.addEventListener(name, () => this.gesture?.end());
     return slider;
   }
 
@@ -229,8 +220,7 @@ export class Row {
     const [step, shown] = [String(Math.round(part * STEPS)), part.toFixed(3)];
     // Most numbers stay while one is dragged, and what is written is laid out again.
     put(slider, step);
-    if (slider.style.getPropertyValue("--part") !== shown)
-      slider.style.setProperty("--part", shown);
+    if (slider.style.getPropertyValue("--part") !== shown) slider.style.setProperty("--part", shown);
     set(slider, { "aria-valuetext": decimals(this.field.shown) });
   }
 
@@ -293,8 +283,7 @@ export class Inspector {
     const list = this.root.parentElement;
     if (list && list.scrollHeight > list.clientHeight + 1) {
       const above = found.offsetTop - list.offsetTop;
-      const inside =
-        above >= list.scrollTop && above + found.offsetHeight <= list.scrollTop + list.clientHeight;
+      const inside = above >= list.scrollTop && above + found.offsetHeight <= list.scrollTop + list.clientHeight;
       if (!inside) list.scrollTo({ top: above, behavior: "smooth" });
     }
   }
@@ -371,7 +360,5 @@ function ordered(fields: Field[]): Map<string, Field[]> {
 
 function partner(x: Field | undefined, y: Field | undefined): Field | null {
   const [first, second] = [x && AXIS.exec(x.path), y && AXIS.exec(y.path)];
-  return first && second && y && first[1] === second[1] && first[2] === "x" && second[2] === "y"
-    ? y
-    : null;
+  return first && second && y && first[1] === second[1] && first[2] === "x" && second[2] === "y" ? y : null;
 }

@@ -2,7 +2,7 @@
 
 import type { Conversation } from "./conversation";
 import { h } from "./dom";
-import type { PageRequest, Hello } from "./protocol";
+import type { Hello, PageRequest } from "./protocol";
 import { stepCount, type Told } from "./story";
 import type { Opened } from "./toolbar";
 import { say } from "./words";
@@ -78,7 +78,8 @@ const PIECE = 1024;
 function slowly(bytes: Uint8Array<ArrayBuffer>): ReadableStream<Uint8Array<ArrayBuffer>> {
   let at = 0;
   const pull = (to: ReadableStreamDefaultController<Uint8Array<ArrayBuffer>>) => {
-    to.enqueue(bytes.slice(at, (at += PIECE)));
+    to.enqueue(bytes.slice(at, at + PIECE));
+    at += PIECE;
     if (at >= bytes.length) to.close();
   };
   return new ReadableStream({ pull }, { highWaterMark: 0 });
@@ -129,7 +130,7 @@ export class Keeping {
   }
 
   close(): void {
-    this.undone.forEach((undo) => undo());
+    for (const undo of this.undone) undo();
   }
 
   /** Whether there is a file that does not hold what is shown. */
@@ -207,10 +208,7 @@ export class Keeping {
     if (address.length > LONGEST) {
       const values = { length: address.length, most: LONGEST };
       return this.page.say(
-        say(
-          "the link would have {length} characters; at most {most} are reliable: download the model",
-          values,
-        ),
+        say("the link would have {length} characters; at most {most} are reliable: download the model", values),
         true,
       );
     }
@@ -220,7 +218,10 @@ export class Keeping {
     } catch {
       const field = h("input", { class: "address", readonly: true, value: address });
       field.setAttribute("aria-label", say("Link to this model"));
-      this.offer.replaceChildren(field, this.button(say("Close"), () => undefined));
+      this.offer.replaceChildren(
+        field,
+        this.button(say("Close"), () => undefined),
+      );
       this.offer.hidden = false;
       field.select();
     }

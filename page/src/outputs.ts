@@ -140,7 +140,7 @@ class Finder {
   private go(at: number): void {
     this.at = at;
     const options = [...this.list.children];
-    options.forEach((option, i) => set(option, { "aria-selected": String(i === at) }));
+    for (const [i, option] of options.entries()) set(option, { "aria-selected": String(i === at) });
     const option = options[at];
     set(this.input, { "aria-activedescendant": option?.id ?? null });
     option?.scrollIntoView({ block: "nearest" });
@@ -191,10 +191,8 @@ export class Outputs {
     private readonly wanted: (names: string[]) => void,
     private readonly made: (strip: Strip, output: Output) => void,
   ) {
-    this.finder = new Finder(
-      say("Any output over crank angle"),
-      say("No output has such a name"),
-      (name) => this.add(name),
+    this.finder = new Finder(say("Any output over crank angle"), say("No output has such a name"), (name) =>
+      this.add(name),
     );
     this.root.append(this.finder.root);
   }

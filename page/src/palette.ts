@@ -31,7 +31,8 @@ export const tools = (): Tool[] => [
     name: say("Link"),
     first: say("click where the link begins: a joint, a link, or a free place"),
     then: say("click where the link ends; Shift keeps it level, upright or in steps of 15°"),
-    picture: "M4.500 11.500l7-7M2.500 13.500a1.600 1.600 0 1 0 2-2 1.600 1.600 0 0 0-2 2M11.500 4.500a1.600 1.600 0 1 0 2-2 1.600 1.600 0 0 0-2 2",
+    picture:
+      "M4.500 11.500l7-7M2.500 13.500a1.600 1.600 0 1 0 2-2 1.600 1.600 0 0 0-2 2M11.500 4.500a1.600 1.600 0 1 0 2-2 1.600 1.600 0 0 0-2 2",
   },
   {
     tool: "pin",
@@ -123,7 +124,9 @@ export class Palette {
 
   /** What a part that a tool adds is to have beside its links. */
   optionsOf({ options }: PartTool): Record<string, string | number> {
-    const inputs = this.asked.get(options?.word ?? "")?.querySelectorAll<HTMLInputElement | HTMLSelectElement>("[name]");
+    const inputs = this.asked
+      .get(options?.word ?? "")
+      ?.querySelectorAll<HTMLInputElement | HTMLSelectElement>("[name]");
     return Object.fromEntries(
       [...(inputs ?? [])].map(({ name, value, type }) => [name, type === "text" ? Math.round(Number(value)) : value]),
     );

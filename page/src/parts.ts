@@ -6,7 +6,16 @@ import { h } from "./dom";
 import { Form, type Subject } from "./form";
 import { lengths, round } from "./format";
 import type { Picked } from "./inputs";
-import { type Group, keyPath, type Pair, type State, stepsOf, type TableEntry, type Tables, type Values } from "./protocol";
+import {
+  type Group,
+  keyPath,
+  type Pair,
+  type State,
+  stepsOf,
+  type TableEntry,
+  type Tables,
+  type Values,
+} from "./protocol";
 import { say } from "./words";
 
 /** What of the page it needs. */
@@ -84,7 +93,11 @@ export class Parts {
   add(place: string, values: Values): void {
     this.want(({ groups }) => {
       const group = groups.find((one) => one.place === place);
-      if (group?.needs) this.begin(groups.find((one) => one.place === place.split(".")[0]), {});
+      if (group?.needs)
+        this.begin(
+          groups.find((one) => one.place === place.split(".")[0]),
+          {},
+        );
       else this.begin(group, values);
     });
   }
@@ -93,8 +106,7 @@ export class Parts {
   change(place: string, key: string): void {
     this.want(({ groups }) => {
       for (const group of groups)
-        for (const entry of group.entries)
-          if (entry.place === place) this.edit(group, entry, {}, key);
+        for (const entry of group.entries) if (entry.place === place) this.edit(group, entry, {}, key);
     });
   }
 
@@ -126,9 +138,7 @@ export class Parts {
   private offer(group: Group, i: number): HTMLOptionElement | null {
     if (group.many === "one" && group.entries.length) return null;
     const { word, of, text, needs } = group;
-    const what = needs
-      ? say("{what} (first add: {needs})", { what: word, needs })
-      : `${titleOf(group)}: ${text}`;
+    const what = needs ? say("{what} (first add: {needs})", { what: word, needs }) : `${titleOf(group)}: ${text}`;
     return h("option", { value: i, disabled: !!needs, title: of ? `${of}: ${text}` : text }, what);
   }
 
@@ -161,13 +171,7 @@ export class Parts {
     });
     const result = group.result ? h("p", { class: "quiet" }, group.result) : null;
     const heading = group.many !== "one" && h("h3", { title: group.text }, titleOf(group));
-    return h(
-      "section",
-      { "aria-label": titleOf(group) },
-      heading,
-      h("ul", {}, ...lines),
-      result,
-    );
+    return h("section", { "aria-label": titleOf(group) }, heading, h("ul", {}, ...lines), result);
   }
 
   private choose(): void {
@@ -263,11 +267,7 @@ export class Parts {
   }
 
   /** Let a place be shown on the drawing; told in the axes of a body. */
-  private async pick(
-    body: string,
-    named: boolean,
-    taken: (picked: Picked) => void,
-  ): Promise<void> {
+  private async pick(body: string, named: boolean, taken: (picked: Picked) => void): Promise<void> {
     const prompt = named
       ? say("Click a point or a link on the drawing, or go there with the arrow keys and press Enter.")
       : say("Click the place on the drawing, or go there with the arrow keys and press Enter.");

@@ -154,10 +154,7 @@ export class Plane {
 
   private place(x: number, y: number): [number, number] {
     const [width, height] = this.size;
-    return [
-      width / 2 + (x - this.middle[0]) * this.scale,
-      height / 2 - (y - this.middle[1]) * this.scale,
-    ];
+    return [width / 2 + (x - this.middle[0]) * this.scale, height / 2 - (y - this.middle[1]) * this.scale];
   }
 
   /** Whether a number has room there. */
@@ -260,9 +257,7 @@ export class Plane {
       for (const gap of [4, 8, 13, 19]) {
         const [px, py] = [x + ux * (gap + wide), y + uy * (gap + high)];
         const room = Math.min(px - wide, width - px - wide, py - high, height - py - high);
-        const taken = this.named.some(
-          ([nx, ny]) => Math.abs(nx - px) < wide + 14 && Math.abs(ny - py) < 12,
-        );
+        const taken = this.named.some(([nx, ny]) => Math.abs(nx - px) < wide + 14 && Math.abs(ny - py) < 12);
         if (room < 0 || taken) continue;
         if (6 + 3 * outward - gap / 4 <= most) continue; // no curve is so far away that it would be better
         const clear = clearance(curve, px, py, wide, high, 6);
@@ -290,9 +285,7 @@ export class Plane {
       numbers = numbers.filter(([, x, y]) => this.inside(x, y));
       return numbers.length >= FEWEST;
     };
-    const found = APART.some((apart) =>
-      take(round((apart / this.scale) * plot.factor) / plot.factor),
-    );
+    const found = APART.some((apart) => take(round((apart / this.scale) * plot.factor) / plot.factor));
     if (!found) {
       // Two circles and the origin, then: as far as there is room in that direction.
       let far = 0;
@@ -302,8 +295,7 @@ export class Plane {
     }
     if (numbers.length < FEWEST) this.text(ox + 6, oy - 3, 0);
     for (const [r, x, y] of numbers) this.text(x, y + 4, (r / this.scale) * plot.factor);
-    const circle = (r: number) =>
-      `M${ox + r} ${oy}A${r} ${r} 0 1 0 ${ox - r} ${oy}A${r} ${r} 0 1 0 ${ox + r} ${oy}`;
+    const circle = (r: number) => `M${ox + r} ${oy}A${r} ${r} 0 1 0 ${ox - r} ${oy}A${r} ${r} 0 1 0 ${ox + r} ${oy}`;
     set(this.grid, { d: radii.map(circle).join("") });
     set(this.axes, { d: `M0 ${oy}H${width}M${ox} 0V${height}` });
   }
@@ -362,8 +354,7 @@ export class Plane {
 /** The least distance between two of several places. */
 function apart(some: Spot[], others: Spot[]): number {
   let least = Infinity;
-  for (const [x, y] of some)
-    for (const [ox, oy] of others) least = Math.min(least, (x - ox) ** 2 + (y - oy) ** 2);
+  for (const [x, y] of some) for (const [ox, oy] of others) least = Math.min(least, (x - ox) ** 2 + (y - oy) ** 2);
   return Math.sqrt(least);
 }
 

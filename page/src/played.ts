@@ -1,6 +1,6 @@
 /** A wire without a server: it answers from what a page was told, which the file holds. */
 
-import type { PageRequest, Heard, StateMessage, Told, Wire } from "./protocol";
+import type { Heard, PageRequest, StateMessage, Told, Wire } from "./protocol";
 import { say } from "./words";
 
 type Reply = [content: Told, bytes: string];
@@ -41,12 +41,9 @@ export class Played implements Wire {
   private reply(asked: PageRequest, seq: number): void {
     if (asked.type === "speak") this.tell(["spoken"], seq);
     else if (asked.type === "outputs") this.tell(["state"], seq);
-    else if (asked.type === "ready")
-      this.tell(["hello", "state", "response", "planting", "strokes", "side"], seq);
+    else if (asked.type === "ready") this.tell(["hello", "state", "response", "planting", "strokes", "side"], seq);
     else {
-      const message = say(
-        "this file plays what was computed; to change the machine, open its model in Equipoise",
-      );
+      const message = say("this file plays what was computed; to change the machine, open its model in Equipoise");
       this.say({ type: "refused", seq, message, what: message }, []);
     }
   }

@@ -206,11 +206,10 @@ export class TransportBar {
     const seconds = time === null ? "" : time.toFixed(3);
     write(this.told, seconds ? unbroken(`${decimals(seconds)} s`) : `${signed(angle.toFixed(1))}°`);
     put(this.slider, String(step));
-    this.slider.style.setProperty(
-      "--part",
-      (step / Math.max(Number(this.slider.max), 1)).toFixed(3),
-    );
-    const spoken = seconds ? say("{time} s after the start", { time: seconds }) : say("{angle} degrees", { angle: angle.toFixed(1) });
+    this.slider.style.setProperty("--part", (step / Math.max(Number(this.slider.max), 1)).toFixed(3));
+    const spoken = seconds
+      ? say("{time} s after the start", { time: seconds })
+      : say("{angle} degrees", { angle: angle.toFixed(1) });
     set(this.slider, { "aria-valuetext": spoken });
   }
 }

@@ -53,8 +53,7 @@ export type Drawable = Pick<State, "scene" | "angles" | "status"> & { numbers: R
 /** Notebooks may hand over bytes that start anywhere; arrays of floats need multiples of four. */
 function floats(view: DataView): Float32Array {
   const length = view.byteLength >> 2;
-  if (view.byteOffset % 4 === 0)
-    return new Float32Array(view.buffer as ArrayBuffer, view.byteOffset, length);
+  if (view.byteOffset % 4 === 0) return new Float32Array(view.buffer as ArrayBuffer, view.byteOffset, length);
   const bytes = new Uint8Array(view.buffer as ArrayBuffer, view.byteOffset, length * 4);
   return new Float32Array(bytes.slice().buffer);
 }

@@ -40,7 +40,7 @@ class Pins {
       this.root.replaceChildren(...pinned.map(({ label }) => h("li", {}, h("span", {}, label), h("b"))));
       this.root.hidden = !pinned.length;
     }
-    pinned.forEach(({ text }, i) => write(this.root.children[i]?.lastElementChild as Element, text));
+    for (const [i, { text }] of pinned.entries()) write(this.root.children[i]?.lastElementChild as Element, text);
   }
 }
 
@@ -144,9 +144,7 @@ export class Readings {
       { class: "unseen" },
       state.compared ? say("Figures, and what they were before") : say("Figures"),
     );
-    this.root.replaceChildren(
-      h("table", {}, caption, h("thead", {}, head), h("tbody", {}, ...rows)),
-    );
+    this.root.replaceChildren(h("table", {}, caption, h("thead", {}, head), h("tbody", {}, ...rows)));
   }
 }
 
@@ -163,12 +161,7 @@ export class FigureTable {
         "tr",
         {},
         h("th", { scope: "row" }, capital(label)),
-        h(
-          "td",
-          {},
-          h("span", { class: "value" }, text),
-          planted.compared && h("span", { class: "was" }, was ?? ""),
-        ),
+        h("td", {}, h("span", { class: "value" }, text), planted.compared && h("span", { class: "was" }, was ?? "")),
         h("td", { class: "unit" }, unbroken(unit)),
       ),
     );
@@ -230,16 +223,10 @@ export class BalancePanel {
         h("button", { type: "button", class: "strong", onclick: () => this.keep() }, say("Keep")),
         h("button", { type: "button", onclick: () => this.takeBack() }, say("Take back")),
         found.gauges_worse &&
-          h(
-            "button",
-            { type: "button", onclick: () => this.hold() },
-            say("Balance so that no gauge reads more"),
-          ),
+          h("button", { type: "button", onclick: () => this.hold() }, say("Balance so that no gauge reads more")),
       ),
       comparison(main),
-      ...(others.length
-        ? [h("details", {}, h("summary", {}, say("All other figures")), comparison(others))]
-        : []),
+      ...(others.length ? [h("details", {}, h("summary", {}, say("All other figures")), comparison(others))] : []),
       ...found.worse.map((text) => h("p", { class: "worse" }, unbroken(text))),
       ...[found.proof, ...found.notes].map((text) => h("p", { class: "quiet" }, unbroken(text))),
     );
@@ -262,20 +249,12 @@ export function headline({ aims, figures }: Balanced): string {
 }
 
 /** Figures before and after, and by how much they have changed. */
-export function comparison(
-  figures: Change[],
-  heads = [say("before"), say("after"), say("change")],
-): HTMLTableElement {
+export function comparison(figures: Change[], heads = [say("before"), say("after"), say("change")]): HTMLTableElement {
   const rows = figures.map(({ label, unit, texts: [before, after, change], way }) =>
     h(
       "tr",
       {},
-      h(
-        "th",
-        { scope: "row" },
-        capital(label),
-        h("span", { class: "unit" }, `\u00a0${unbroken(unit)}`),
-      ),
+      h("th", { scope: "row" }, capital(label), h("span", { class: "unit" }, `\u00a0${unbroken(unit)}`)),
       h("td", {}, before),
       h("td", { class: "after" }, after),
       h("td", { class: way }, unbroken(change)),

@@ -36,7 +36,9 @@ function tableOf({ title, heads, rows, numbers, emphasized }: TableBlock): HTMLE
   const body = rows.map((row, k) => h("tr", {}, ...row.map((text, i) => cell(k, text, i))));
   const table = h("table", {}, h("caption", {}, title), h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...body));
   // Where it may have to be moved from side to side, keys can do so too.
-  return heads.length > NARROW ? h("div", { class: "wide", tabindex: 0, role: "group", "aria-label": title }, table) : table;
+  return heads.length > NARROW
+    ? h("div", { class: "wide", tabindex: 0, role: "group", "aria-label": title }, table)
+    : table;
 }
 
 /** A run that can be played: its instants, s, and the crank angle at each, in cycles. */
@@ -48,8 +50,18 @@ interface Run {
 }
 
 export class RunPanel {
-  readonly root = h("section", { class: "panel run", "aria-label": say("Result of the run"), hidden: true, tabindex: -1 });
-  readonly charts = h("div", { class: "charts timed", role: "group", "aria-label": say("Run over time"), hidden: true });
+  readonly root = h("section", {
+    class: "panel run",
+    "aria-label": say("Result of the run"),
+    hidden: true,
+    tabindex: -1,
+  });
+  readonly charts = h("div", {
+    class: "charts timed",
+    role: "group",
+    "aria-label": say("Run over time"),
+    hidden: true,
+  });
   private readonly turn: HTMLButtonElement;
   private readonly drawn = new Map<string, Chart>();
   private run: Run | null = null;

@@ -117,9 +117,7 @@ function powers([low, high]: Pair, room: number): number[] {
     if (Math.ceil(count / every) < FEWEST) every = Math.max(every - 1, 1);
     return range(first, last, every).map((power) => 10 ** power);
   }
-  const fine = range(first - 1, last, 1).flatMap((power) =>
-    [1, 2, 5].map((part) => part * 10 ** power),
-  );
+  const fine = range(first - 1, last, 1).flatMap((power) => [1, 2, 5].map((part) => part * 10 ** power));
   const all = fine.filter((value) => value >= low * 0.9999 && value <= high * 1.0001);
   // Where there is no room for all, each is as many times the one before.
   const some = [1, 2, 3].map((every) => all.filter((_, i) => i % every === 0));

@@ -2,7 +2,7 @@
 
 import { h, put, s, set, show } from "./dom";
 import { plain, round, unbroken } from "./format";
-import { type ArrowOf, type PageRequest, Numbers, type Pair, type ResponseMessage, type Scene, type State } from "./protocol";
+import type { ArrowOf, Numbers, PageRequest, Pair, ResponseMessage, Scene, State } from "./protocol";
 import { at, curve, type Overlay, Piece } from "./signs";
 import type { Stage } from "./stage";
 import { Support } from "./support";
@@ -152,8 +152,7 @@ class Arrows implements Overlay {
 }
 
 function head([x, y]: Pair, angle: number): string {
-  const corner = (turn: number) =>
-    at([x - HEAD * Math.cos(angle + turn), y - HEAD * Math.sin(angle + turn)]);
+  const corner = (turn: number) => at([x - HEAD * Math.cos(angle + turn), y - HEAD * Math.sin(angle + turn)]);
   return `M${at([x, y])}L${corner(0.38)}L${corner(-0.38)}Z`;
 }
 
@@ -232,10 +231,7 @@ export class Seeing {
     this.recorded = text;
     this.record.hidden = !text;
     const remove = () => this.ask({ type: "record", name: "", text: "" });
-    this.record.replaceChildren(
-      `${text} `,
-      h("button", { type: "button", onclick: remove }, say("Remove the record")),
-    );
+    this.record.replaceChildren(`${text} `, h("button", { type: "button", onclick: remove }, say("Remove the record")));
   }
 
   answered(message: ResponseMessage, numbers: Numbers): void {

@@ -79,7 +79,18 @@ const KEYS: [keys: string | (() => string), what: string | (() => string)][] = [
   ["Ctrl + Z", toSay("undo")],
   ["Ctrl + Shift + Z", toSay("redo")],
   ["Ctrl + S", toSay("save the file that was opened, or download the model")],
-  [() => lettered().map(({ key }) => key.toUpperCase()).join(" "), () => say("tools: {tools}", { tools: lettered().map(({ name }) => name).join(", ") })],
+  [
+    () =>
+      lettered()
+        .map(({ key }) => key.toUpperCase())
+        .join(" "),
+    () =>
+      say("tools: {tools}", {
+        tools: lettered()
+          .map(({ name }) => name)
+          .join(", "),
+      }),
+  ],
   ["Delete", toSay("delete the joint or link that is chosen")],
   [() => say("menu key"), toSay("what can be done with the chosen joint or link (also: right button, long press)")],
   ["?", toSay("this list")],
@@ -87,7 +98,12 @@ const KEYS: [keys: string | (() => string), what: string | (() => string)][] = [
 
 export function helpDialog(version: () => string, tour: () => void): HTMLDialogElement {
   const rows = KEYS.map(([keys, what]) =>
-    h("tr", {}, h("th", { scope: "row" }, h("kbd", {}, typeof keys === "string" ? keys : keys())), h("td", {}, typeof what === "string" ? say(what) : what())),
+    h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, h("kbd", {}, typeof keys === "string" ? keys : keys())),
+      h("td", {}, typeof what === "string" ? say(what) : what()),
+    ),
   );
   const uses = tools().map(({ name, first, then }) =>
     h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, [first, then].filter((one) => one).join(" → "))),

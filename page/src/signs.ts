@@ -4,7 +4,7 @@
  */
 
 import { s, set } from "./dom";
-import type { Drawable, Pair, Rows, Scene, DrawnShape, Sign, State } from "./protocol";
+import type { Drawable, DrawnShape, Pair, Rows, Scene, Sign, State } from "./protocol";
 import type { View } from "./view";
 
 /** A layer of its own on the drawing. */
@@ -86,14 +86,15 @@ export class Piece {
   /** Draw the shapes of a sign of the same build, with so many pixels a metre. */
   draw(sign: Sign, scale: number): void {
     this.sign = sign;
-    runs(sign.shapes).forEach((run, i) => {
+    for (const [i, run] of runs(sign.shapes).entries()) {
       const element = this.parts[i] as SVGElement;
       const [, , radius, grown, corners] = run[0] as DrawnShape;
-      if (!isRound(run[0] as DrawnShape)) return set(element, { d: run.map(shapePath(scale)).join("") });
-      const [cx, cy] = corner(corners, 0, scale);
-      const r = (radius * scale + grown).toFixed(2);
-      set(element, { cx: cx.toFixed(2), cy: cy.toFixed(2), r });
-    });
+      if (isRound(run[0] as DrawnShape)) {
+        const [cx, cy] = corner(corners, 0, scale);
+        const r = (radius * scale + grown).toFixed(2);
+        set(element, { cx: cx.toFixed(2), cy: cy.toFixed(2), r });
+      } else set(element, { d: run.map(shapePath(scale)).join("") });
+    }
   }
 
   /** Draw the same with so many pixels a metre. */
@@ -206,11 +207,7 @@ export function quarters(radius: number): string {
 const NEAR = 1;
 
 /** A curve through x and y in turn; every so many samples suffice. */
-export function curve(
-  points: Float32Array,
-  px: (x: number, y: number) => Pair,
-  closed: boolean,
-): string {
+export function curve(points: Float32Array, px: (x: number, y: number) => Pair, closed: boolean): string {
   const step = Math.max(Math.round(points.length / 720), 1) * 2;
   let [d, x0, y0] = ["", 0, 0];
   for (let i = 0; i + 1 < points.length; i += step) {

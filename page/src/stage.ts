@@ -6,7 +6,7 @@
 import { s, set, write } from "./dom";
 import { degrees, length, lengths, signed } from "./format";
 import type { Circle, Drawable, Pair, Scene, State } from "./protocol";
-import { at, build, curve, outside, type Overlay, Piece, quarters, type Swing, swung } from "./signs";
+import { at, build, curve, type Overlay, outside, Piece, quarters, type Swing, swung } from "./signs";
 import { ruled, View } from "./view";
 import { say } from "./words";
 
@@ -105,9 +105,7 @@ export class Stage<S extends Drawable = State> {
   constructor(private readonly dress: (grip: Grip, element: SVGGElement) => void) {
     for (const name of LAYERS) {
       const hidden = name !== "grips";
-      this.layer[name] = this.svg.appendChild(
-        s("g", { class: name, "aria-hidden": hidden && "true" }),
-      );
+      this.layer[name] = this.svg.appendChild(s("g", { class: name, "aria-hidden": hidden && "true" }));
     }
     this.svg.append(this.dims.layer);
   }
@@ -138,9 +136,7 @@ export class Stage<S extends Drawable = State> {
 
   resize(width: number, height: number): void {
     if (width === this.view.width && height === this.view.height) return;
-    const scale = this.view.width
-      ? Math.min(width / this.view.width, height / this.view.height)
-      : 1;
+    const scale = this.view.width ? Math.min(width / this.view.width, height / this.view.height) : 1;
     [this.view.width, this.view.height] = [width, height];
     for (const svg of [this.svg, this.lines, this.numbers]) set(svg, { viewBox: `0 0 ${width} ${height}` });
     if (this.fitted) this.fit();
@@ -223,8 +219,7 @@ export class Stage<S extends Drawable = State> {
     this.dims.choose(link ? [...points] : []);
     this.dims.pose((name) => this.place({ kind: "point", name }), this.view);
     this.mark();
-    for (const { name, element } of this.paths)
-      element.classList.toggle("chosen", points.has(name));
+    for (const { name, element } of this.paths) element.classList.toggle("chosen", points.has(name));
     const key = grip && keyOf(grip);
     for (const [name, element] of this.grips) element.classList.toggle("chosen", name === key);
   }
@@ -290,7 +285,13 @@ export class Stage<S extends Drawable = State> {
     for (const { name, element, near, footed } of this.labels) {
       const [x, y] = spot(name);
       const [dx, dy] = outside([x, y], near.map(spot), footed);
-      const ways = [[dx, dy], [dx, -dy], [dy, dx], [-dy, -dx], [-dx, dy]] as const;
+      const ways = [
+        [dx, dy],
+        [dx, -dy],
+        [dy, dx],
+        [-dy, -dx],
+        [-dx, dy],
+      ] as const;
       const places = ways.map(([across, up]): Pair => [x + across * AWAY, y + up * AWAY + 4]);
       const wide = (WIDE * name.length) / 2;
       const apart = ([px, py]: Pair) =>
@@ -341,8 +342,7 @@ export class Stage<S extends Drawable = State> {
 
   /** Show which link is chosen. */
   private mark(): void {
-    for (const { link, element } of this.pieces)
-      element.classList.toggle("chosen", !!link && link === this.link);
+    for (const { link, element } of this.pieces) element.classList.toggle("chosen", !!link && link === this.link);
   }
 
   /** What has the name of a point or link: paths, names, and what can be taken hold of. */
@@ -372,16 +372,13 @@ export class Stage<S extends Drawable = State> {
       this.layer.grips?.append(element);
     };
     // Those that are added later are above: joints are, because they are asked for more often.
-    for (const { name } of circles) add({ kind: "radius", name }, s("path", { class: "knob", d: "M0-6L6 0L0 6L-6 0z" }));
+    for (const { name } of circles)
+      add({ kind: "radius", name }, s("path", { class: "knob", d: "M0-6L6 0L0 6L-6 0z" }));
     for (const name of mass_centers) {
-      const signs = [
-        s("circle", { class: "rim", r: 6.5 }),
-        s("path", { class: "quarters", d: quarters(6.5) }),
-      ];
+      const signs = [s("circle", { class: "rim", r: 6.5 }), s("path", { class: "quarters", d: quarters(6.5) })];
       add({ kind: "mass", name }, ...signs);
     }
-    for (const name of movable)
-      add({ kind: "point", name }, s("circle", { class: "knob", r: 5.5 }));
+    for (const name of movable) add({ kind: "point", name }, s("circle", { class: "knob", r: 5.5 }));
   }
 }
 

@@ -61,13 +61,7 @@ interface Ways {
   marks(low: number, high: number): number[];
 }
 
-export function optionsOf(
-  look: Look,
-  theme: Theme,
-  curves: Curve[],
-  width: number,
-  ways: Ways,
-): uPlot.Options {
+export function optionsOf(look: Look, theme: Theme, curves: Curve[], width: number, ways: Ways): uPlot.Options {
   const none = (_u: uPlot, splits: number[]) => splits.map(() => null);
   const axis = {
     grid: { stroke: () => theme.colours.grid, width: 1 },
@@ -327,13 +321,7 @@ export class Strip {
       this.readings.push(reading);
       const key = h("i", { class: `key ${curve.role}${this.look.bars ? " box" : ""}` });
       this.legend.append(
-        h(
-          "span",
-          { class: "entry" },
-          key,
-          curve.label,
-          this.look.bars || this.look.quiet ? null : reading,
-        ),
+        h("span", { class: "entry" }, key, curve.label, this.look.bars || this.look.quiet ? null : reading),
       );
     }
   }
@@ -389,10 +377,7 @@ export class Strip {
     if (event.button || event.pointerType === "touch") return;
     const pick = (moved: PointerEvent) => {
       const box = over.getBoundingClientRect();
-      const x = this.plot?.posToVal(
-        Math.min(Math.max(moved.clientX - box.left, 0), box.width),
-        "x",
-      );
+      const x = this.plot?.posToVal(Math.min(Math.max(moved.clientX - box.left, 0), box.width), "x");
       if (x !== undefined) this.look.picked?.(x);
     };
     over.setPointerCapture(event.pointerId);

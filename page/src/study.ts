@@ -4,7 +4,7 @@ import { Parallel, Scatter, type Told } from "./cloud";
 import { Designs } from "./designs";
 import { h, write } from "./dom";
 import { shown, unbroken } from "./format";
-import type { PageRequest, Numbers, Pair, StudyMessage } from "./protocol";
+import type { Numbers, PageRequest, Pair, StudyMessage } from "./protocol";
 import { capital } from "./readings";
 import type { Theme } from "./theme";
 import { say } from "./words";
@@ -84,12 +84,8 @@ export class StudyView {
       ["itself", say("the model itself"), study.own !== null],
     ];
     const shown = keys.filter(([, , there]) => there);
-    this.keys.replaceChildren(
-      ...shown.map(([kind, text]) => h("li", {}, h("i", { class: `key-${kind}` }), text)),
-    );
-    this.refused.replaceChildren(
-      ...study.refused.map(({ why, count }) => h("li", {}, `${count} × ${why}`)),
-    );
+    this.keys.replaceChildren(...shown.map(([kind, text]) => h("li", {}, h("i", { class: `key-${kind}` }), text)));
+    this.refused.replaceChildren(...study.refused.map(({ why, count }) => h("li", {}, `${count} × ${why}`)));
     this.measure();
     this.again();
   }
@@ -156,7 +152,10 @@ export class StudyView {
     const best = designs.study.best.map((number) => designs.indexOf(number));
     const inside = new Set(chosen);
     const good = designs.ranges.size ? [] : best.filter((i) => i >= 0 && inside.has(i));
-    const others = designs.best(chosen.filter((i) => !good.includes(i) && designs.kind(i) !== "failed"), LISTED);
+    const others = designs.best(
+      chosen.filter((i) => !good.includes(i) && designs.kind(i) !== "failed"),
+      LISTED,
+    );
     const rows = [...good, ...others].slice(0, LISTED);
     const { columns } = designs;
     const head = ["", ...columns.map(({ told }) => `${capital(told.label)} ${told.unit}`)];
@@ -221,9 +220,7 @@ export class StudyView {
     this.scatter.mark(i);
     const { designs } = this;
     if (!designs || i === null) return write(this.reading, "");
-    const values = designs.columns.map(
-      ({ told, values: all }) => `${told.label} ${shown(all[i] ?? NaN)} ${told.unit}`,
-    );
+    const values = designs.columns.map(({ told, values: all }) => `${told.label} ${shown(all[i] ?? NaN)} ${told.unit}`);
     const name = say("design {number}", { number: designs.numberOf(i) });
     const why = designs.why(i);
     write(this.reading, unbroken([name, ...(why ? [why] : []), ...values].join(" · ")));

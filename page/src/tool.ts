@@ -6,9 +6,9 @@ import { h, letsMove, s, set, write } from "./dom";
 import { measure, unbroken } from "./format";
 import { Heading } from "./heading";
 import { Inspector, Locks } from "./inspector";
-import type { Numbers, DrawnShape, State, ToolMessage, ToolScene } from "./protocol";
+import type { DrawnShape, Numbers, State, ToolMessage, ToolScene } from "./protocol";
 import { comparison } from "./readings";
-import { at as spot, runs, shapePath } from "./signs";
+import { runs, shapePath, at as spot } from "./signs";
 import type { Theme } from "./theme";
 import { ruled, View } from "./view";
 import { say } from "./words";
@@ -116,8 +116,7 @@ class ToolSide {
     const { clientWidth, clientHeight } = this.root;
     if (!clientWidth || (clientWidth === this.view.width && clientHeight === this.view.height)) return;
     [this.view.width, this.view.height] = [clientWidth, clientHeight];
-    for (const svg of [this.svg, this.lines])
-      set(svg, { viewBox: `0 0 ${clientWidth} ${clientHeight}` });
+    for (const svg of [this.svg, this.lines]) set(svg, { viewBox: `0 0 ${clientWidth} ${clientHeight}` });
     this.fit();
     this.draw();
   }
@@ -128,11 +127,7 @@ class ToolSide {
     const [cos, sin] = [Math.cos(2 * Math.PI * phase), Math.sin(2 * Math.PI * phase)];
     const along = this.tool?.along ?? [];
     const still = !shape.length;
-    this.now?.pose(
-      along.map((_, i) =>
-        still ? 0 : (shape[2 * i] ?? 0) * cos - (shape[2 * i + 1] ?? 0) * sin,
-      ),
-    );
+    this.now?.pose(along.map((_, i) => (still ? 0 : (shape[2 * i] ?? 0) * cos - (shape[2 * i + 1] ?? 0) * sin)));
   }
 
   private fit(): void {
@@ -271,9 +266,7 @@ export class ToolView {
     const state = tool as unknown as State;
     this.heading.show(state);
     this.inspector.show(state);
-    this.figures.replaceChildren(
-      comparison(tool.figures, [say("as opened"), say("now"), say("change")]),
-    );
+    this.figures.replaceChildren(comparison(tool.figures, [say("as opened"), say("now"), say("change")]));
     this.chart();
     this.pose();
   }

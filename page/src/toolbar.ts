@@ -2,8 +2,8 @@
 
 import type { Computation } from "./conversation";
 import { h, icon, put, set } from "./dom";
-import type { Example, DownloadKind, State } from "./protocol";
-import { language as spoken, languages, say } from "./words";
+import type { DownloadKind, Example, State } from "./protocol";
+import { languages, say, language as spoken } from "./words";
 
 const ICONS = {
   undo: "M5.5 3 2.5 6l3 3M3 6h6.5a3.5 3.5 0 0 1 0 7H6",
@@ -22,7 +22,7 @@ export type Opened = Pick<State, "name" | "undo" | "redo" | "lacking" | "file"> 
   downloads?: DownloadKind[];
 };
 
-interface Commands {
+export interface Commands {
   example(name: string): void;
   gallery(): void;
   undo(): void;
@@ -94,16 +94,13 @@ export class Toolbar {
   }
 
   offer(examples: Example[], tools: Example[]): void {
-    const options = (some: Example[]) =>
-      some.map(({ name, title }) => h("option", { value: name, title }, name));
+    const options = (some: Example[]) => some.map(({ name, title }) => h("option", { value: name, title }, name));
     const group = h("optgroup", { label: say("Hand-held tools") }, ...options(tools));
     this.examples.replaceChildren(...options(examples), group);
   }
 
   show(state: Opened): void {
-    const known = [...this.examples.options].some(
-      (option) => option !== this.own && option.value === state.name,
-    );
+    const known = [...this.examples.options].some((option) => option !== this.own && option.value === state.name);
     if (known) this.own.remove();
     else {
       this.own.textContent = state.name;
@@ -120,7 +117,12 @@ export class Toolbar {
     for (const item of this.menu.querySelectorAll<HTMLButtonElement>("[data-kind]"))
       item.hidden = !!downloads && !downloads.includes(item.dataset.kind as DownloadKind);
     this.save.hidden = !state.file;
-    able(this.save, say("Save"), state.file?.saved === false ? state.file.name : null, say("the file holds what is shown"));
+    able(
+      this.save,
+      say("Save"),
+      state.file?.saved === false ? state.file.name : null,
+      say("the file holds what is shown"),
+    );
   }
 
   /** Put something beside what is open. */
@@ -136,8 +138,14 @@ export class Toolbar {
   /** What takes long is computed, and can be given up by `cancel`, if that is possible. */
   busy(computed: Computation[], cancel?: () => void): void {
     set(this.root, { "data-busy": computed.at(-1)?.what ?? null });
-    for (const [kind, element] of [["balance", this.balance], ["run", this.run]] as const)
-      element.classList.toggle("working", computed.some((one) => one.kind === kind));
+    for (const [kind, element] of [
+      ["balance", this.balance],
+      ["run", this.run],
+    ] as const)
+      element.classList.toggle(
+        "working",
+        computed.some((one) => one.kind === kind),
+      );
     this.cancel.hidden = !computed.length || !cancel;
     this.cancel.onclick = () => cancel?.();
   }
@@ -194,7 +202,12 @@ function downloads(commands: Commands): HTMLDetailsElement {
       item(say("Drawing as SVG"), "drawing", "svg"),
       item(say("Drawing as PNG"), "drawing", "png"),
       item(say("Motion as GIF"), "film"),
-      film && h("button", { type: "button", "data-kind": "film", onclick: () => close(film) }, say("Drawing and charts as video")),
+      film &&
+        h(
+          "button",
+          { type: "button", "data-kind": "film", onclick: () => close(film) },
+          say("Drawing and charts as video"),
+        ),
       item(say("Page that plays without a server"), "played"),
       item(say("Page that computes without a server"), "interactive"),
       h("button", { type: "button", onclick: () => close(commands.link) }, say("Copy link")),
@@ -207,25 +220,14 @@ function downloads(commands: Commands): HTMLDetailsElement {
     menu.querySelector("summary")?.focus();
   });
   menu.addEventListener("focusout", (event) => {
-    if (!menu.contains(event.relatedTarget as Node | null) && event.relatedTarget)
-      menu.open = false;
+    if (!menu.contains(event.relatedTarget as Node | null) && event.relatedTarget) menu.open = false;
   });
   return menu;
 }
 
-function button(
-  text: string,
-  picture: keyof typeof ICONS,
-  onclick: () => void,
-  name = text,
-): HTMLButtonElement {
+function button(text: string, picture: keyof typeof ICONS, onclick: () => void, name = text): HTMLButtonElement {
   const word = text ? h("span", { class: "word" }, text) : null;
-  return h(
-    "button",
-    { type: "button", "aria-label": name, title: name, onclick },
-    icon(ICONS[picture]),
-    word,
-  );
+  return h("button", { type: "button", "aria-label": name, title: name, onclick }, icon(ICONS[picture]), word);
 }
 
 /** What a command would do, and why it cannot (where `what` is null), is told to the eye and to the ear. */

@@ -3,7 +3,7 @@
 import type { Conversation } from "./conversation";
 import { s, set } from "./dom";
 import { degrees, length, lengths, signed } from "./format";
-import { turnable, type Turning } from "./hands";
+import { type Turning, turnable } from "./hands";
 import { Palette, partTool, tools } from "./palette";
 import type { Made, Pair, State } from "./protocol";
 import { type Hit, meant, type Snapping, step } from "./snap";
@@ -324,9 +324,7 @@ export class Tools {
       case "drive":
         return link ? { do: "drive", link } : null;
       case "delete":
-        if (hit.part) return { do: "delete", ...hit.part };
-        if (hit.point) return { do: "delete", what: "point", name: hit.point };
-        return link ? { do: "delete", what: "link", name: link } : null;
+        return deleted(hit, link);
       default:
         return null;
     }
@@ -374,6 +372,12 @@ export class Tools {
 function where({ point, place: [x, y] }: Hit): string {
   const told = `${length(x)}, ${length(y)} ${lengths().unit}`;
   return point ? say("{name}: {place}", { name: point, place: told }) : told;
+}
+
+function deleted({ part, point }: Hit, link: string | undefined): Made | null {
+  if (part) return { do: "delete", ...part };
+  if (point) return { do: "delete", what: "point", name: point };
+  return link ? { do: "delete", what: "link", name: link } : null;
 }
 
 function toolOf(key: string) {

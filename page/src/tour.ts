@@ -45,7 +45,9 @@ const STEPS: Step[] = [
   {
     where: ".balance",
     what: toSay("See the reduction"),
-    text: toSay("{figure}. Keep the change or take it back; undo works on whole steps, also after the page is reloaded."),
+    text: toSay(
+      "{figure}. Keep the change or take it back; undo works on whole steps, also after the page is reloaded.",
+    ),
     until: "decided",
   },
   {

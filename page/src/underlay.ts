@@ -1,7 +1,7 @@
 /** A picture or drawing below the linkage, to trace over; it is of the page, not of the model. */
 
-import { type Drawing, drawingOf } from "./dxf";
 import { s, set } from "./dom";
+import { type Drawing, drawingOf } from "./dxf";
 import type { Pair } from "./protocol";
 import type { Stage } from "./stage";
 import { say } from "./words";
@@ -70,7 +70,12 @@ export class Underlay {
     const { held } = this;
     if (!held || held.hidden) return [];
     const [x, y] = (held.picture?.size ?? [0, 0]).map((size) => size / 2) as Pair;
-    const corners: Pair[] = [[-x, -y], [x, -y], [x, y], [-x, y]];
+    const corners: Pair[] = [
+      [-x, -y],
+      [x, -y],
+      [x, y],
+      [-x, y],
+    ];
     return (held.drawing?.lines.flat() ?? corners).map((one) => toFrame(held, one));
   }
 
@@ -78,9 +83,7 @@ export class Underlay {
   async take(file: File): Promise<string> {
     if (file.size > LARGEST) {
       const values = { name: file.name, size: (file.size / 1e6).toFixed(1), most: LARGEST / 1e6 };
-      throw new Error(
-        say("{name} has {size} MB; at most {most} MB are drawn below the linkage.", values),
-      );
+      throw new Error(say("{name} has {size} MB; at most {most} MB are drawn below the linkage.", values));
     }
     const common = { name: file.name, opacity: 0.5, hidden: false, turn: 0 };
     if (DXF.test(file.name)) {

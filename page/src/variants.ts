@@ -91,7 +91,11 @@ export class Variants {
     );
     const caption = h("caption", {}, say("Variants"));
     this.root.replaceChildren(
-      h("div", { class: "scrolled", tabindex: 0 }, h("table", {}, caption, h("thead", {}, head), h("tbody", {}, ...lines))),
+      h(
+        "div",
+        { class: "scrolled", tabindex: 0 },
+        h("table", {}, caption, h("thead", {}, head), h("tbody", {}, ...lines)),
+      ),
     );
   }
 

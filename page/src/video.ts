@@ -147,8 +147,7 @@ function clone(area: HTMLElement): HTMLElement {
     else for (const option of one.options) option.toggleAttribute("selected", option.value === value);
   });
   for (const one of copy.querySelectorAll("canvas, script")) one.replaceWith(blank(one));
-  for (const child of copy.children)
-    if (child instanceof HTMLElement) child.style.translate = `0 ${-area.scrollTop}px`;
+  for (const child of copy.children) if (child instanceof HTMLElement) child.style.translate = `0 ${-area.scrollTop}px`;
   copy.style.cssText += ";position:absolute;inset:0;margin:0;overflow:hidden;width:100%;height:100%";
   return copy;
 }

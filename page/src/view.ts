@@ -31,26 +31,17 @@ export class View {
     const [x0, y0, x1, y1] = box;
     const [w, h] = [Math.max(x1 - x0, 1e-9), Math.max(y1 - y0, 1e-9)];
     const room = Math.min(this.width, this.height) * MARGIN + least;
-    const [freeX, freeY] = [
-      Math.max(this.width - 2 * room, 20),
-      Math.max(this.height - 2 * room, 20),
-    ];
+    const [freeX, freeY] = [Math.max(this.width - 2 * room, 20), Math.max(this.height - 2 * room, 20)];
     this.scale = Math.min(freeX / w, freeY / h);
     this.center = [(x0 + x1) / 2, (y0 + y1) / 2];
   }
 
   px(x: number, y: number): Pair {
-    return [
-      this.width / 2 + (x - this.center[0]) * this.scale,
-      this.height / 2 - (y - this.center[1]) * this.scale,
-    ];
+    return [this.width / 2 + (x - this.center[0]) * this.scale, this.height / 2 - (y - this.center[1]) * this.scale];
   }
 
   metres(px: number, py: number): Pair {
-    return [
-      this.center[0] + (px - this.width / 2) / this.scale,
-      this.center[1] - (py - this.height / 2) / this.scale,
-    ];
+    return [this.center[0] + (px - this.width / 2) / this.scale, this.center[1] - (py - this.height / 2) / this.scale];
   }
 
   /** Zoom so that what is at a pixel stays there. */
@@ -93,10 +84,7 @@ export function ruled(view: View): { lines: SVGElement[]; numbers: SVGElement[] 
     const py = down(y);
     if (py > 14 && py < height - 22) texts.push(text(6, py + 3.5, plain(y * factor), "start"));
   }
-  const fine = [
-    s("path", { class: "fine", d: every(step / 5) }),
-    s("path", { class: "bold", d: every(step) }),
-  ];
+  const fine = [s("path", { class: "fine", d: every(step / 5) }), s("path", { class: "bold", d: every(step) })];
   return { lines: fine, numbers: texts };
 }
 

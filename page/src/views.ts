@@ -2,7 +2,7 @@
 
 import type { Conversation } from "./conversation";
 import { h } from "./dom";
-import type { PageRequest, Numbers, StudyMessage, ToolMessage } from "./protocol";
+import type { Numbers, PageRequest, StudyMessage, ToolMessage } from "./protocol";
 import { StudyView } from "./study";
 import type { Theme } from "./theme";
 import { ToolView } from "./tool";

@@ -5,7 +5,7 @@
 
 import { decimals, point } from "./format";
 import type { Particles } from "./messages";
-import type { MenuItem, PluralForms, PartTool, Spoken, Told, Wire, Wording } from "./protocol";
+import type { MenuItem, PartTool, PluralForms, Spoken, Told, Wire, Wording } from "./protocol";
 
 /** The function that gives every particle of a text one form. */
 export function particles({ forms, endings, closing, reach }: Particles): (text: string) => string {

@@ -1,7 +1,7 @@
 /** Numbers that were changed, as lines of a model file. */
 
-import type { Machine } from "./machine";
 import type { Field } from "./data";
+import type { Machine } from "./machine";
 
 /** Fields whose number is another than in the model. */
 export function changed(machine: Machine, design: Float64Array): number[] {
@@ -23,7 +23,9 @@ export function toml(machine: Machine, design: Float64Array): string {
     tables.set(head, lines);
   }
   return [...tables]
-    .map(([head, lines]) => [head, ...[...lines].map(([key, value]) => `${key} = ${value}`), ""].filter((line, i) => i || line).join("\n"))
+    .map(([head, lines]) =>
+      [head, ...[...lines].map(([key, value]) => `${key} = ${value}`), ""].filter((line, i) => i || line).join("\n"),
+    )
     .join("\n");
 }
 

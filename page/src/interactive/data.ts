@@ -3,12 +3,7 @@
 import type { NumberRules, Scene, Unit } from "../protocol";
 
 /** Computes signals (rows of `out`) at all crank angles from the numbers of a machine. */
-export type States = (
-  design: Float64Array,
-  grid: Float64Array,
-  angles: number,
-  out: Float64Array,
-) => void;
+export type States = (design: Float64Array, grid: Float64Array, angles: number, out: Float64Array) => void;
 
 /**
  * Highest and lowest sample of a signal; its highest value with the crank angle of that, and its

@@ -1,9 +1,9 @@
 /** The drawing of a machine with other numbers: its signs tied to points, and where these are. */
 
-import type { Drawable, Pair, Rows, Scene, DrawnShape, Sign, Status } from "../protocol";
+import type { Drawable, DrawnShape, Pair, Rows, Scene, Sign, Status } from "../protocol";
 import type { Corner, Tie } from "./data";
 import { guideWay, massesMovable, movable } from "./edits";
-import { dot, type Machine, minus, mirrored, plus, ratio, scaled, size, type Solution, times } from "./machine";
+import { dot, type Machine, minus, mirrored, plus, ratio, type Solution, scaled, size, times } from "./machine";
 
 /** Positions and angles at the equally spaced crank angles, as the drawing wants them. */
 class Poses implements Rows {
@@ -13,11 +13,12 @@ class Poses implements Rows {
     const { data, frames } = solution.machine;
     const pairs = (name: string, of: (at: number) => Pair) => {
       const row = new Float32Array(2 * frames.length);
-      frames.forEach((at, k) => row.set(of(at), 2 * k));
+      for (const [k, at] of frames.entries()) row.set(of(at), 2 * k);
       this.rows.set(name, row);
     };
     for (const name of pointsOf(data.scene)) pairs(`place.${name}`, (at) => solution.point(name, at));
-    for (const link of data.scene.mass_centers) pairs(`mass_center.${link}`, (at) => solution.vector(`center(${link})`, at));
+    for (const link of data.scene.mass_centers)
+      pairs(`mass_center.${link}`, (at) => solution.vector(`center(${link})`, at));
     for (const slider of data.sliders) pairs(`guide.${slider.name}`, (at) => guideWay(solution, slider, at));
     for (const { name } of data.scene.bodies) {
       const angle = (at: number) => {
@@ -140,10 +141,17 @@ export class Drawing {
   /** Both ends of a block's path on its guide, in the axes of the body that has that, and its direction there. */
   private guide(name: string, solution: Solution): [Pair, Pair, Pair] {
     const slider = this.machine.data.sliders.find((slider) => slider.name === name);
-    if (!slider) return [[0, 0], [0, 0], [1, 0]];
+    if (!slider)
+      return [
+        [0, 0],
+        [0, 0],
+        [1, 0],
+      ];
     const [first] = this.machine.frames as [number];
     const way = times(guideWay(solution, slider, first), mirrored(solution.rotation(slider.on, first)));
-    const places = this.machine.frames.map((at) => this.inside(solution.point(slider.point, at), slider.on, solution, at));
+    const places = this.machine.frames.map((at) =>
+      this.inside(solution.point(slider.point, at), slider.on, solution, at),
+    );
     const along = places.map((place) => dot(place, way));
     const [start] = places as [Pair];
     const end = (value: number) => plus(start, scaled(way, value - dot(start, way)));
@@ -157,7 +165,12 @@ export class Drawing {
     return [role, closed && around.length > 2, radius, grown, around.flatMap(([x, y]) => [x, y, 0, 0])];
   }
 
-  private turned([role, closed, radius, grown, corners]: DrawnShape, { about, between, of }: NonNullable<Tie["turned"]>, body: string, solution: Solution): DrawnShape {
+  private turned(
+    [role, closed, radius, grown, corners]: DrawnShape,
+    { about, between, of }: NonNullable<Tie["turned"]>,
+    body: string,
+    solution: Solution,
+  ): DrawnShape {
     const vector = (design: Solution): Pair =>
       between && of ? minus(this.local(between[1], of, design), this.local(between[0], of, design)) : [1, 0];
     const by = ratio(vector(solution), vector(this.base));
@@ -172,7 +185,12 @@ export class Drawing {
   }
 
   /** A strand of a belt, as `mechanism/formulas/rolling.py` has it. */
-  private strand([role, closed, radius, grown]: DrawnShape, { side, between, radii }: NonNullable<Tie["strand"]>, body: string, solution: Solution): DrawnShape {
+  private strand(
+    [role, closed, radius, grown]: DrawnShape,
+    { side, between, radii }: NonNullable<Tie["strand"]>,
+    body: string,
+    solution: Solution,
+  ): DrawnShape {
     const [start, end] = between.map((pin) => this.local(pin, body, solution)) as [Pair, Pair];
     const apart = minus(end, start);
     const far = size(apart) || 1;

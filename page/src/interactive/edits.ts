@@ -4,7 +4,7 @@ import { asTyped } from "../format";
 import { keyPath, type Pair } from "../protocol";
 import { say } from "../words";
 import type { Field, Measure } from "./data";
-import { dot, type Machine, minus, mirrored, plus, scaled, size, type Solution, times, towards } from "./machine";
+import { dot, type Machine, minus, mirrored, plus, type Solution, scaled, size, times, towards } from "./machine";
 
 /** Digits of a dragged number over the size of the machine. */
 const DIGITS = 7;
@@ -26,7 +26,8 @@ function isMovable({ data, numbers }: Machine, name: string): boolean {
 
 /** Links whose centre of mass can be dragged. */
 export function massesMovable({ data, numbers }: Machine): string[] {
-  const there = (link: string) => ["x", "y"].every((axis) => numbers.has(keyPath("links", link, "center_of_mass", axis)));
+  const there = (link: string) =>
+    ["x", "y"].every((axis) => numbers.has(keyPath("links", link, "center_of_mass", axis)));
   return data.scene.mass_centers.filter(there);
 }
 
@@ -61,7 +62,8 @@ export function moved(solution: Solution, name: string, to: Pair, at: number): F
   for (const [link, { points, sized }] of Object.entries(data.links)) {
     if (!points.includes(name) || points.length < 2) continue;
     const others = points.filter((point) => point !== name);
-    if (sized === "points") putPoint(put, keyPath("links", link, "points", name), local(solution, link, others[0] as string, target, at));
+    if (sized === "points")
+      putPoint(put, keyPath("links", link, "points", name), local(solution, link, others[0] as string, target, at));
     else
       for (const other of others) {
         const path = lengthPath(machine, link, name, other);
@@ -119,7 +121,11 @@ function reachable(solution: Solution, name: string, to: Pair, at: number): Pair
 }
 
 /** Direction of a guide at a crank angle. */
-export function guideWay(solution: Solution, slider: { name: string; on: string; direction: number }, at: number): Pair {
+export function guideWay(
+  solution: Solution,
+  slider: { name: string; on: string; direction: number },
+  at: number,
+): Pair {
   const number = solution.machine.data.sliders.findIndex(({ name }) => name === slider.name);
   const direction = solution.number(keyPath("sliders", number, "direction")) ?? slider.direction;
   return times(solution.rotation(slider.on, at), towards(direction));
@@ -141,7 +147,10 @@ export function withLength(solution: Solution, measure: Measure, value: number):
   const way = minus(pointOf(solution, measure.path, [0, 0]), start);
   const [x, y] = plus(start, scaled(way, value / (size(way) || 1)));
   const next = solution.design.slice();
-  for (const [axis, coordinate] of [["x", x], ["y", y]] as const)
+  for (const [axis, coordinate] of [
+    ["x", x],
+    ["y", y],
+  ] as const)
     next[solution.machine.numbers.get(`${measure.path}.${axis}`) as number] = coordinate;
   return next;
 }
@@ -156,8 +165,13 @@ export function typed(text: string, field: Pick<Field, "units" | "unit" | "facto
   const unit = match?.[2]?.trim() ?? "";
   const factor = unit === "" || unit === field.unit ? 1 / field.factor : field.units[unit];
   if (!match || factor === undefined) {
-    const example = `12.5 ${Object.keys(field.units).find((other) => field.units[other] === 1 / field.factor) ?? field.unit}`.trim();
-    return say("{label}: got {text}; give a number, such as {example}", { label: field.label, text: text.trim() || "–", example });
+    const example =
+      `12.5 ${Object.keys(field.units).find((other) => field.units[other] === 1 / field.factor) ?? field.unit}`.trim();
+    return say("{label}: got {text}; give a number, such as {example}", {
+      label: field.label,
+      text: text.trim() || "–",
+      example,
+    });
   }
   const value = Number((match[1] as string).replace("−", "-"));
   // 1 / factor of 1000 is exact, but 0.001 times a number is not always the number nearest to it

@@ -18,8 +18,8 @@ import { Plots } from "./plot";
 import { Shaking } from "./shaking";
 
 export { toml } from "./changes";
-export { moved, outside, typed, withLength } from "./edits";
 export { Drawing } from "./drawing";
+export { moved, outside, typed, withLength } from "./edits";
 export { Machine } from "./machine";
 
 class Page implements Attempts {
@@ -36,7 +36,11 @@ class Page implements Attempts {
   private readonly shaking: Shaking | null;
   private readonly status = h("p", { class: "said", role: "status" });
   private readonly hint = h("p", { class: "hint", "aria-hidden": "true" });
-  private readonly lines = h("textarea", { readonly: true, rows: 6, "aria-label": say("Changed numbers as lines of the model file") });
+  private readonly lines = h("textarea", {
+    readonly: true,
+    rows: 6,
+    "aria-label": say("Changed numbers as lines of the model file"),
+  });
   private readonly undoButton: HTMLButtonElement;
   private readonly resetButton: HTMLButtonElement;
   private readonly copies: HTMLElement;
@@ -68,7 +72,11 @@ class Page implements Attempts {
     );
     this.stage = this.hands.made;
     if (this.shaking) this.stage.overlay(this.shaking, "grips");
-    this.transport = new TransportBar(this.player, () => this.toggle(), () => this.point());
+    this.transport = new TransportBar(
+      this.player,
+      () => this.toggle(),
+      () => this.point(),
+    );
     this.plots = new Plots(machine, (degrees) => this.turn(degrees));
     const attempt = (design: Float64Array) => this.commit(design);
     this.inputs = new Inputs(machine, this.original, attempt, (sentence) => this.tell(sentence, !!sentence));
@@ -79,7 +87,11 @@ class Page implements Attempts {
       "details",
       { class: "copies", hidden: true },
       h("summary", {}, say("Changed numbers")),
-      h("p", { class: "quiet" }, say("Put these lines in the place of those in the model file, or copy them to whoever keeps it.")),
+      h(
+        "p",
+        { class: "quiet" },
+        say("Put these lines in the place of those in the model file, or copy them to whoever keeps it."),
+      ),
       this.lines,
       h("button", { type: "button", onclick: () => void this.copy() }, say("Copy")),
     );
@@ -89,32 +101,25 @@ class Page implements Attempts {
 
   private lay(root: HTMLElement): void {
     const { data } = this.machine;
+    const sheet = h("div", { class: "sheet" });
     root.className = "equipoise equipoise-page interactive";
     root.dataset.settled = ""; // nothing is waited for: all is computed at once
-    const fit = h("button", { type: "button", class: "fit", title: say("Show all"), "aria-label": say("Show all"), onclick: () => this.stage.fit() }, icon("M2.500 6v-3.500h3.500M10 2.500h3.500v3.500M13.500 10v3.500h-3.500M6 13.500h-3.500v-3.500"));
-    const sheet = h("div", { class: "sheet" });
+    const fit = h(
+      "button",
+      {
+        type: "button",
+        class: "fit",
+        title: say("Show all"),
+        "aria-label": say("Show all"),
+        onclick: () => this.stage.fit(),
+      },
+      icon("M2.500 6v-3.500h3.500M10 2.500h3.500v3.500M13.500 10v3.500h-3.500M6 13.500h-3.500v-3.500"),
+    );
     sheet.append(this.stage.lines, this.stage.svg, this.stage.numbers, this.hint, this.status, fit);
     root.replaceChildren(
       h("header", {}, h("h1", {}, data.title), h("p", { class: "quiet" }, data.description)),
-      h(
-        "section",
-        { class: "motion", "aria-label": say("Linkage") },
-        sheet,
-        this.transport.root,
-        h("details", { class: "about" }, h("summary", {}, say("What a drag changes")), h("p", {}, say("A joint that is dragged gets new coordinates in each link that has it, or new lengths to the other joints of the link. At the crank angle shown, all other joints stay where they are. On a guide it moves along the guide. Masses and moments of inertia stay as they are."))),
-      ),
-      h(
-        "div",
-        { class: "beside" },
-        h("section", { class: "figures", "aria-label": say("Figures") }, h("h2", {}, say("Figures")), this.readout.root),
-        h(
-          "section",
-          { class: "values", "aria-label": say("Numbers") },
-          h("h2", {}, say("Numbers"), this.undoButton, this.resetButton),
-          this.copies,
-          data.fields.length ? this.inputs.root : h("p", { class: "quiet" }, say("The numbers of this machine cannot be changed here; open its model in Equipoise.")),
-        ),
-      ),
+      this.motion(sheet),
+      this.beside(),
       h("section", { class: "charts", "aria-label": say("Charts") }, this.plots.root),
     );
     new ResizeObserver(() => this.stage.resize(sheet.clientWidth, sheet.clientHeight)).observe(sheet);
@@ -127,6 +132,49 @@ class Page implements Attempts {
       turn: (degrees) => this.turn(degrees),
       chosen: () => undefined,
     });
+  }
+
+  private motion(sheet: HTMLElement): HTMLElement {
+    return h(
+      "section",
+      { class: "motion", "aria-label": say("Linkage") },
+      sheet,
+      this.transport.root,
+      h(
+        "details",
+        { class: "about" },
+        h("summary", {}, say("What a drag changes")),
+        h(
+          "p",
+          {},
+          say(
+            "A joint that is dragged gets new coordinates in each link that has it, or new lengths to the other joints of the link. At the crank angle shown, all other joints stay where they are. On a guide it moves along the guide. Masses and moments of inertia stay as they are.",
+          ),
+        ),
+      ),
+    );
+  }
+
+  private beside(): HTMLElement {
+    const { data } = this.machine;
+    return h(
+      "div",
+      { class: "beside" },
+      h("section", { class: "figures", "aria-label": say("Figures") }, h("h2", {}, say("Figures")), this.readout.root),
+      h(
+        "section",
+        { class: "values", "aria-label": say("Numbers") },
+        h("h2", {}, say("Numbers"), this.undoButton, this.resetButton),
+        this.copies,
+        data.fields.length
+          ? this.inputs.root
+          : h(
+              "p",
+              { class: "quiet" },
+              say("The numbers of this machine cannot be changed here; open its model in Equipoise."),
+            ),
+      ),
+    );
   }
 
   private begin(): void {
@@ -236,15 +284,27 @@ class Page implements Attempts {
     }
     const solution = this.machine.solve(design);
     if (solution.refusal) return [solution, solution.refusal];
-    if (goal && !reaches(solution, goal.move, goal.to, at) && !reaches(solution, goal.move, this.settled.point(goal.move, at), at)) {
-      const side = this.onGuide(goal.move) ? null : say("{name} would need its links on their other side, which this file cannot do; open the model in Equipoise", { name: goal.move });
+    if (
+      goal &&
+      !reaches(solution, goal.move, goal.to, at) &&
+      !reaches(solution, goal.move, this.settled.point(goal.move, at), at)
+    ) {
+      const side = this.onGuide(goal.move)
+        ? null
+        : say(
+            "{name} would need its links on their other side, which this file cannot do; open the model in Equipoise",
+            { name: goal.move },
+          );
       return [solution, side];
     }
     return [solution, null];
   }
 
   private onGuide(name: string): boolean {
-    return this.machine.data.sliders.some(({ point }) => point === name) || this.machine.data.driven.some((link) => this.machine.data.links[link]?.sized === "length");
+    return (
+      this.machine.data.sliders.some(({ point }) => point === name) ||
+      this.machine.data.driven.some((link) => this.machine.data.links[link]?.sized === "length")
+    );
   }
 
   /** Of which bodies a drag has changed numbers. */
@@ -294,7 +354,11 @@ class Page implements Attempts {
     const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
     if (typing && (event.target as HTMLInputElement).type !== "range") return;
     if (event.key === "z" && (event.ctrlKey || event.metaKey)) this.undo();
-    else if (event.key === " " && !(event.target instanceof HTMLButtonElement) && !(event.target instanceof HTMLElement && event.target.closest("summary, select"))) {
+    else if (
+      event.key === " " &&
+      !(event.target instanceof HTMLButtonElement) &&
+      !(event.target instanceof HTMLElement && event.target.closest("summary, select"))
+    ) {
       event.preventDefault();
       this.toggle();
     }

@@ -52,12 +52,13 @@ export class Machine {
       this.at = Float64Array.from(this.shown, (k) => this.theta[k] as number);
       this.edges = floats(data.edges);
     }
-    data.names.forEach((name, k) => this.place.set(name, k));
-    data.fields.forEach(({ path }, k) => this.numbers.set(path, k));
+    for (const [k, name] of data.names.entries()) this.place.set(name, k);
+    for (const [k, { path }] of data.fields.entries()) this.numbers.set(path, k);
   }
 
   /** Everything at all crank angles, of a design (numbers in SI units, in the order of the fields). */
-  solve(design: Float64Array): Solution {
+  solve(given: Float64Array): Solution {
+    let design = given;
     const run = (grid: Float64Array) => {
       const out = new Float64Array(this.data.names.length * this.data.angles);
       this.states(design, grid, this.data.angles, out);
@@ -143,7 +144,10 @@ export class Solution {
           const value = of((signal) => machine.signal(out, signal)?.[k] ?? 0, machine.data.rows[r] as MachineRow);
           return all + value;
         }, shared);
-      this.sums.set(`rows.${name}`, Float64Array.from({ length: angles }, (_, k) => at(k)));
+      this.sums.set(
+        `rows.${name}`,
+        Float64Array.from({ length: angles }, (_, k) => at(k)),
+      );
     };
     // rows on one shaft share a flywheel
     const shared = (rows.length - 1) * flywheel * (this.number("drive.acceleration") ?? acceleration);
@@ -155,7 +159,10 @@ export class Solution {
     sum("yaw_moment", (at, { lateral }) => at("rocking_moment.y") + lateral * at(x));
     sum("drive_torque", (at) => at("drive_torque"), -shared);
     const [fx, fy] = [this.row(`rows.${x}`), this.row(`rows.${y}`)] as [Float64Array, Float64Array];
-    this.sums.set("rows.shaking_force", fx.map((value, k) => Math.hypot(value, fy[k] as number)));
+    this.sums.set(
+      "rows.shaking_force",
+      fx.map((value, k) => Math.hypot(value, fy[k] as number)),
+    );
   }
 
   figures(name: string): Figures | null {
@@ -208,22 +215,39 @@ export class Solution {
 
   /** Why the links of a dyad do not reach each other over the whole cycle. */
   private unjoined(row: Float64Array, links: string[]): string | null {
-    const { frames, theta, data: { least, crank } } = this.machine;
+    const {
+      frames,
+      theta,
+      data: { least, crank },
+    } = this.machine;
     const values = frames.map((at) => (Number.isFinite(row[at]) ? (row[at] as number) : -Infinity));
     const [low, at] = lowest(values);
     if (low >= least) return null;
     const names = links.map((name) => `'${name}'`);
-    const joined = names.length > 1 ? say("{first} and {last}", { first: names[0] ?? "", last: names[1] ?? "" }) : (names[0] ?? "");
+    const joined =
+      names.length > 1 ? say("{first} and {last}", { first: names[0] ?? "", last: names[1] ?? "" }) : (names[0] ?? "");
     const angle = inDegrees(theta[frames[at] as number] as number);
     if (!values.some((value) => value > 0))
-      return say("{names} cannot be joined at any crank angle; check their lengths and where their pins are", { names: joined });
+      return say("{names} cannot be joined at any crank angle; check their lengths and where their pins are", {
+        names: joined,
+      });
     if (low >= -least || !values.some((value) => value < 0))
-      return say("change point at crank angle {angle}: {names} are stretched out or folded there, and the assembly mode after it is undetermined", { angle, names: joined });
+      return say(
+        "change point at crank angle {angle}: {names} are stretched out or folded there, and the assembly mode after it is undetermined",
+        { angle, names: joined },
+      );
     if (crank === null) return say("{names} do not reach each other at crank angle {angle}", { names: joined, angle });
-    const ranges = reaching(values, frames.map((k) => theta[k] as number), this.machine.data.turns);
+    const ranges = reaching(
+      values,
+      frames.map((k) => theta[k] as number),
+      this.machine.data.turns,
+    );
     const parts = ranges.map(([a, b]) => say("from {low} to {high}", { low: inDegrees(a), high: inDegrees(b) }));
     const where = parts.reduce((first, last) => say("{first} and {last}", { first, last }));
-    return say("the crank cannot turn fully: {names} reach each other only {ranges} of crank angle", { names: joined, ranges: where });
+    return say("the crank cannot turn fully: {names} reach each other only {ranges} of crank angle", {
+      names: joined,
+      ranges: where,
+    });
   }
 }
 

@@ -3,10 +3,10 @@
 import { h, set, show, write } from "../dom";
 import { shown, signed } from "../format";
 import { say } from "../words";
+import type { Field, Measure, Output } from "./data";
 import { lengthOf, outside, typed, withLength } from "./edits";
 import type { Machine, Solution } from "./machine";
 import { capital } from "./plot";
-import type { Field, Measure, Output } from "./data";
 
 /** Digits of a number that was not typed. */
 const DIGITS = 7;
@@ -65,7 +65,8 @@ export class Inputs {
   private measure(measure: Measure): HTMLElement {
     const field = { ...measure, least: null, above: 0, below: null };
     const put = (value: number) =>
-      outside(field as unknown as Field, value) ?? this.attempt(withLength(this.solution, measure, value), measure.label);
+      outside(field as unknown as Field, value) ??
+      this.attempt(withLength(this.solution, measure, value), measure.label);
     return this.row(measure, (solution) => lengthOf(solution, measure), put);
   }
 
@@ -74,8 +75,24 @@ export class Inputs {
     value: (solution: Solution) => number,
     put: (value: number) => string | null,
   ): HTMLElement {
-    const input = h("input", { type: "text", inputmode: "decimal", spellcheck: false, autocomplete: "off", "aria-label": quantity.label });
-    const reset = h("button", { type: "button", class: "reset", hidden: true, title: say("Reset"), "aria-label": say("reset {what}", { what: quantity.label }) }, "↺");
+    const input = h("input", {
+      type: "text",
+      inputmode: "decimal",
+      spellcheck: false,
+      autocomplete: "off",
+      "aria-label": quantity.label,
+    });
+    const reset = h(
+      "button",
+      {
+        type: "button",
+        class: "reset",
+        hidden: true,
+        title: say("Reset"),
+        "aria-label": say("reset {what}", { what: quantity.label }),
+      },
+      "↺",
+    );
     const row: Row = { input, reset, value, label: quantity.label, factor: quantity.factor };
     const take = (to: number) => {
       const why = put(to);
@@ -102,7 +119,13 @@ export class Inputs {
       if (!way) return;
       event.preventDefault();
       const size = Math.abs(value(this.original)) || 1 / quantity.factor;
-      take(Number(((value(this.solution) + way * STEP * size * (event.shiftKey ? 10 : 1)) * quantity.factor).toPrecision(DIGITS)) / quantity.factor);
+      take(
+        Number(
+          ((value(this.solution) + way * STEP * size * (event.shiftKey ? 10 : 1)) * quantity.factor).toPrecision(
+            DIGITS,
+          ),
+        ) / quantity.factor,
+      );
     });
     reset.addEventListener("click", () => {
       take(value(this.original));
@@ -110,7 +133,14 @@ export class Inputs {
     });
     this.rows.push(row);
     this.write(row);
-    return h("div", { class: "number" }, h("span", { class: "name", "aria-hidden": "true" }, capital(quantity.label)), input, h("span", { class: "unit" }, quantity.unit), reset);
+    return h(
+      "div",
+      { class: "number" },
+      h("span", { class: "name", "aria-hidden": "true" }, capital(quantity.label)),
+      input,
+      h("span", { class: "unit" }, quantity.unit),
+      reset,
+    );
   }
 
   private text({ value, factor }: Row): string {
@@ -156,23 +186,42 @@ export class Readout {
       this.root.append(h("p", { class: "quiet" }, say("Motion only, no forces.")));
       return;
     }
-    const head = h("tr", {}, h("td"), h("th", { scope: "col" }, say("RMS")), h("th", { scope: "col" }, say("peak")), h("td"));
+    const head = h(
+      "tr",
+      {},
+      h("td"),
+      h("th", { scope: "col" }, say("RMS")),
+      h("th", { scope: "col" }, say("peak")),
+      h("td"),
+    );
     const groups = [...new Set(parts.map(({ group }) => group))];
     const bodies = groups.map((group) => {
       const own = wholeFirst(parts.filter((output) => output.group === group));
       const title = h("tr", { class: "heading" }, h("th", { scope: "rowgroup", colspan: 4 }, capital(group)));
       return h("tbody", {}, title, ...own.map((output) => this.line(output)));
     });
-    this.root.append(h("table", {}, h("caption", { class: "unseen" }, say("Figures")), h("thead", {}, head), ...bodies));
+    this.root.append(
+      h("table", {}, h("caption", { class: "unseen" }, say("Figures")), h("thead", {}, head), ...bodies),
+    );
   }
 
   private line(output: Output): HTMLElement {
     const cell = (measure: "rms" | "peak") => {
-      const [value, was] = [h("span", { class: "value", "data-figure": `${output.name}.${measure}` }), h("span", { class: "was" })];
+      const [value, was] = [
+        h("span", { class: "value", "data-figure": `${output.name}.${measure}` }),
+        h("span", { class: "was" }),
+      ];
       this.cells.push({ output, measure, value, was });
       return h("td", {}, value, was);
     };
-    return h("tr", {}, h("th", { scope: "row" }, capital(output.label)), cell("rms"), cell("peak"), h("td", { class: "unit" }, output.unit));
+    return h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, capital(output.label)),
+      cell("rms"),
+      cell("peak"),
+      h("td", { class: "unit" }, output.unit),
+    );
   }
 
   show(solution: Solution, original: Solution | null): void {

@@ -4,8 +4,8 @@ import { h, s, set, write } from "../dom";
 import { steady } from "../format";
 import { extremes, levels, marked, scaleOf, share, turning } from "../scale";
 import { say } from "../words";
-import type { Machine, Solution } from "./machine";
 import type { Output } from "./data";
+import type { Machine, Solution } from "./machine";
 
 const [WIDE, HIGH, LEFT, BELOW, ABOVE] = [560, 168, 52, 20, 8];
 /** Below which a curve is drawn as none, in the unit of its output. */
@@ -75,7 +75,10 @@ export class Plot {
     const y = (value: number) => HIGH - BELOW - share(value, scale) * (HIGH - BELOW - ABOVE);
     const path = (row: Float64Array) =>
       this.machine.shown
-        .map((at, i) => `${i ? "L" : "M"}${this.x(this.machine.theta[at] as number).toFixed(1)} ${y(row[at] as number).toFixed(1)}`)
+        .map(
+          (at, i) =>
+            `${i ? "L" : "M"}${this.x(this.machine.theta[at] as number).toFixed(1)} ${y(row[at] as number).toFixed(1)}`,
+        )
         .join("");
     this.before.replaceChildren(...old.map((row) => s("path", { d: path(row) })));
     this.lines.replaceChildren(...this.rows.map((row, i) => s("path", { class: ROLES[i] ?? "main", d: path(row) })));
@@ -138,7 +141,9 @@ export class Plots {
     for (const output of outputs.filter(({ first, name }) => first && !/\.[xy]$/.test(name))) {
       const parts = ["x", "y"].flatMap((axis) => byName.get(`${output.name}.${axis}`) ?? []);
       const plot = new Plot(machine, h("b", {}, capital(output.label)), turn);
-      const curves = parts.length ? parts.map((part, i) => ({ output: part, short: "xy"[i] as string })) : [{ output, short: "" }];
+      const curves = parts.length
+        ? parts.map((part, i) => ({ output: part, short: "xy"[i] as string }))
+        : [{ output, short: "" }];
       plot.choose(curves);
       this.plots.push(plot);
     }
@@ -179,7 +184,9 @@ function grouped(outputs: Output[]): HTMLElement[] {
     h(
       "optgroup",
       { label: group },
-      ...outputs.filter((output) => output.group === group).map(({ name, label }) => h("option", { value: name }, capital(label))),
+      ...outputs
+        .filter((output) => output.group === group)
+        .map(({ name, label }) => h("option", { value: name }, capital(label))),
     ),
   );
 }

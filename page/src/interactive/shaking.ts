@@ -4,7 +4,7 @@ import { s, set } from "../dom";
 import type { Drawable, Pair } from "../protocol";
 import type { Overlay } from "../signs";
 import type { View } from "../view";
-import { plus, scaled, size, type Solution } from "./machine";
+import { plus, type Solution, scaled, size } from "./machine";
 
 /** The longest arrow of the original, over the size of its drawing. */
 const LONGEST = 0.25;

@@ -127,7 +127,9 @@ async function imported(address: URL): Promise<unknown> {
   }
 }
 
-async function start(kind: "worker.Foreground" | "worker.Background" | "cells.CellRunner"): Promise<[Pyodide, unknown]> {
+async function start(
+  kind: "worker.Foreground" | "worker.Background" | "cells.CellRunner",
+): Promise<[Pyodide, unknown]> {
   const site = (await (await fetch(new URL("site.json", base))).json()) as Site;
   unpacking(site.packed);
   const runtime = new URL(site.runtime, base);
@@ -147,13 +149,12 @@ async function start(kind: "worker.Foreground" | "worker.Background" | "cells.Ce
     indexURL: runtime.href,
     createPyodideModule: await program,
     lockFileContents: lock,
-    packages: first.filter((name) => here(lock.packages[name]!)), // while the runtime starts
+    packages: first.filter((name) => here(lock.packages[name] as Package)), // while the runtime starts
     stdout: () => undefined,
   });
   // The others come from where the runtime's own packages are published, and are checked as well.
   const published = python._api.config.cdnUrl;
-  for (const one of Object.values(python.lockfile.packages))
-    if (!here(one)) one.file_name = published + one.file_name;
+  for (const one of Object.values(python.lockfile.packages)) if (!here(one)) one.file_name = published + one.file_name;
   await python.loadPackage(first, { messageCallback: () => undefined });
   // Beside the others: texts of a language are laid over what stands in for them.
   const extractDir = python.runPython("import sysconfig; sysconfig.get_path('purelib')");
@@ -195,7 +196,10 @@ async function foreground(): Promise<void> {
   tellLoaded();
   /** It starts once the first machine is shown, so that this one has the processor to itself until then. */
   let other: Worker | null = null;
-  const hand = (task: Uint8Array): void => (other ??= begin()).postMessage({ task });
+  const hand = (task: Uint8Array): void => {
+    other ??= begin();
+    other.postMessage({ task });
+  };
   let [busy, timer, shown] = [false, 0, false];
 
   function begin(): Worker {
@@ -247,7 +251,7 @@ async function foreground(): Promise<void> {
     } else page.take(data);
     void work();
   };
-  early.forEach((text) => page.take(text));
+  for (const text of early) page.take(text);
   void work();
 }
 
