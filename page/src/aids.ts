@@ -82,7 +82,7 @@ export class Aids {
       file.value = "";
       if (chosen) void this.take(chosen);
     });
-    const told = h(
+    const note = h(
       "p",
       { class: "quiet" },
       say("A picture or DXF drawing to trace over: choose it, drop it on the page, or paste it."),
@@ -90,7 +90,7 @@ export class Aids {
     return h(
       "div",
       {},
-      told,
+      note,
       h("button", { type: "button", onclick: () => file.click() }, say("Choose underlay")),
       file,
     );
@@ -142,9 +142,9 @@ export class Aids {
   }
 
   private async pair(first: string, second: string): Promise<[Pair, Pair] | null> {
-    const one = await this.aim().ask(first);
-    const other = one && (await this.aim().ask(second, one.at));
-    return one && other ? [one.at, other.at] : null;
+    const from = await this.aim().ask(first);
+    const other = from && (await this.aim().ask(second, from.at));
+    return from && other ? [from.at, other.at] : null;
   }
 
   private async scale(): Promise<void> {
@@ -159,26 +159,26 @@ export class Aids {
   }
 
   private stretch(): void {
-    const given = metresOf(this.distance.value);
-    if (given === null) {
+    const typed = metresOf(this.distance.value);
+    if (typed === null) {
       set(this.distance, { "aria-invalid": "true" });
       return write(this.said, say("Give a length above 0 with its unit, such as 250 mm."));
     }
     set(this.distance, { "aria-invalid": null });
-    if (this.two) this.underlay.stretch(...this.two, given);
+    if (this.two) this.underlay.stretch(...this.two, typed);
     this.scaling.hidden = true;
     write(this.said, "");
   }
 
   private async move(): Promise<void> {
     const first = say("Click a place of the underlay.");
-    const found = await this.pair(first, say("Click where it is to be."));
-    if (found) this.underlay.move(...found);
+    const ends = await this.pair(first, say("Click where it is to be."));
+    if (ends) this.underlay.move(...ends);
   }
 
   private async measure(): Promise<void> {
-    const found = await this.pair(say("Click where to measure from."), say("Click where to measure to."));
-    if (found) this.lay(found);
+    const ends = await this.pair(say("Click where to measure from."), say("Click where to measure to."));
+    if (ends) this.lay(ends);
   }
 
   /** Lay the ruler from place to place, or put it away. */
@@ -220,7 +220,7 @@ function numberOf(text: string): number {
 
 /** A typed length, m; null where it is none. */
 function metresOf(text: string): number | null {
-  const found = /^([\d.eE+-]+) *([a-z]*)$/.exec(asTyped(text));
-  const given = Number(found?.[1]) * metres(found?.[2] || lengths().unit);
-  return given > 0 && Number.isFinite(given) ? given : null;
+  const match = /^([\d.eE+-]+) *([a-z]*)$/.exec(asTyped(text));
+  const metresTyped = Number(match?.[1]) * metres(match?.[2] || lengths().unit);
+  return metresTyped > 0 && Number.isFinite(metresTyped) ? metresTyped : null;
 }

@@ -91,8 +91,8 @@ export class Aim {
   private meant(at: Pair): Spot {
     const { view } = this.stage;
     const [px, py] = view.px(...at);
-    const away = (one: Pair) => {
-      const [x, y] = view.px(...one);
+    const away = (place: Pair) => {
+      const [x, y] = view.px(...place);
       return Math.hypot(x - px, y - py);
     };
     let [best, least]: [Spot, number] = [{ at, point: null, link: this.linkAt(px, py) }, NEAR];
@@ -108,8 +108,8 @@ export class Aim {
   private linkAt(px: number, py: number): string | null {
     const box = this.svg.getBoundingClientRect();
     const root = this.board.root.getRootNode() as Document | ShadowRoot;
-    const found = root.elementsFromPoint(px + box.left, py + box.top);
-    const body = found.map((one) => one.closest<SVGElement>(".body")).find((one) => one);
+    const elements = root.elementsFromPoint(px + box.left, py + box.top);
+    const body = elements.map((element) => element.closest<SVGElement>(".body")).find((element) => element);
     return body?.dataset.link ?? null;
   }
 

@@ -123,7 +123,7 @@ export class App {
     this.talk = new Conversation(wire, this.events(), shelf);
     el.append(this.root);
     this.theme = new Theme(this.root, () => this.repaint());
-    this.views = new Views(this.talk, this.theme, (asked) => this.command(asked));
+    this.views = new Views(this.talk, this.theme, (request) => this.command(request));
     const page = {
       talk: this.talk,
       state: () => this.state,
@@ -139,14 +139,14 @@ export class App {
       full: this.full,
       shown: () => this.named,
       say: (text, bad) => this.tell(text, bad),
-      open: (asked, name) => void this.open(asked, name),
+      open: (request, name) => void this.open(request, name),
     });
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
     this.seeing = new Seeing(
       this.stage,
-      (asked) => this.command(asked),
+      (request) => this.command(request),
       () => this.stir(),
     );
     const root = this.full ? document : this.root;
@@ -166,7 +166,7 @@ export class App {
       this.theme,
       (angle) => this.turn(angle),
       (names) => this.command({ type: "outputs", names }),
-      (asked) => this.command(asked),
+      (request) => this.command(request),
     );
     this.runPanel = new RunPanel(
       this.theme,
@@ -176,7 +176,7 @@ export class App {
         this.toolbar.focusRun();
       },
       (time) => this.goToTime(time),
-      (asked) => this.command(asked),
+      (request) => this.command(request),
     );
     this.inspector = new Inspector(this.talk, (on) => this.hold(on), this.locks);
     this.toolbar = new Toolbar(this.commands(speak));
@@ -232,7 +232,7 @@ export class App {
         this.charts.pale(numbers);
       },
       variants: (message) => this.seeing.variants.show(message),
-      refused: (message, edit, told) => this.refuse(message, edit, cureOf(told)),
+      refused: (message, edit, refused) => this.refuse(message, edit, cureOf(refused)),
       balanced: (message) => {
         this.balance.show(message);
         this.tour.did("balanced", headline(message));
@@ -241,7 +241,7 @@ export class App {
       busy: (computed) => this.busy(computed),
       tables: (message) => this.bench.show(message),
       file: save,
-      pictured: (one, numbers) => (one ? this.gallery.add(one, numbers) : this.gallery.done()),
+      pictured: (picture, numbers) => (picture ? this.gallery.add(picture, numbers) : this.gallery.done()),
       tool: (message, numbers) => {
         this.opened = "";
         this.views.showTool(message, numbers);
@@ -290,8 +290,8 @@ export class App {
     // A file that plays shows numbers, and takes none.
     const disabled = this.played;
     const parts = [...this.bench.roots, this.inspector.root];
-    const held = disabled ? h("fieldset", { class: "bare", disabled }, ...parts) : h("div", {}, ...parts);
-    this.aside.append(this.runPanel.root, this.balance.root, held);
+    const controls = disabled ? h("fieldset", { class: "bare", disabled }, ...parts) : h("div", {}, ...parts);
+    this.aside.append(this.runPanel.root, this.balance.root, controls);
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
     const border = new Border(this.views.body, () => this.measure());
     this.views.body.append(stage, border.root, this.side, this.aside);
@@ -375,9 +375,9 @@ export class App {
   }
 
   private async begin(hello: Hello): Promise<void> {
-    const begun = await this.keeping.begin(hello);
+    const resumed = await this.keeping.begin(hello);
     if (this.full && !this.played) this.tour.propose();
-    if (!begun && !hello.machine) {
+    if (!resumed && !hello.machine) {
       if (this.keeping.offer.hidden) this.gallery.show(); // else it would cover what is offered
       const names = hello.examples.map(({ name }) => name);
       const example = names.find((name) => name === FIRST) ?? names[0];
@@ -635,11 +635,11 @@ export class App {
     write(this.lost, why + kept);
   }
 
-  private async open(asked: PageRequest, name: string): Promise<void> {
+  private async open(request: PageRequest, name: string): Promise<void> {
     if (!(await this.keeping.mayLeave(name))) return this.name();
     this.talk.release();
     this.opened = "asked";
-    this.talk.ask(asked);
+    this.talk.ask(request);
     if (!this.named) return;
     // What is named is what is drawn, until the other machine is there.
     this.name();
@@ -651,26 +651,26 @@ export class App {
   }
 
   /** Open a model with the tables that come with it, or take a record or what is traced over. */
-  private async read(given: File[]): Promise<void> {
+  private async read(chosen: File[]): Promise<void> {
     const isTable = ({ name }: File) => /\.csv$/i.test(name);
-    const file = given.find((one) => !isTable(one)) ?? given[0];
+    const file = chosen.find((file) => !isTable(file)) ?? chosen[0];
     if (!file || this.bench.take(file)) return;
-    const tables = given.filter((one) => one !== file && isTable(one));
-    for (const one of [file, ...tables]) {
-      const problem = tooLarge(one, this.hello?.largest ?? Infinity);
+    const tables = chosen.filter((table) => table !== file && isTable(table));
+    for (const readable of [file, ...tables]) {
+      const problem = tooLarge(readable, this.hello?.largest ?? Infinity);
       if (problem) return this.board.say(problem, true);
     }
     const [{ name }, text] = [file, await file.text()];
     // Without a text a record is taken away.
     if (isTable(file)) return this.command({ type: "record", name, text: text || "\n" });
-    const texts = tables.map(async (one) => [one.name, await one.text()] as const);
+    const texts = tables.map(async (table) => [table.name, await table.text()] as const);
     const files = Object.fromEntries(await Promise.all(texts));
     void this.open({ type: "open", name, text, files }, name);
   }
 
-  private command(asked: PageRequest): void {
+  private command(request: PageRequest): void {
     this.talk.release();
-    this.talk.ask(asked);
+    this.talk.ask(request);
   }
 
   private step(type: "undo" | "redo"): void {
@@ -746,7 +746,7 @@ export class App {
   }
 
   private chooseLink(link: string): void {
-    const body = this.state?.scene.bodies.find((one) => one.name === link);
+    const body = this.state?.scene.bodies.find((body) => body.name === link);
     this.stage.select(new Set(body?.points), link, null);
     this.inspector.choose(link, null);
     this.tools.choose({ what: "link", name: link });

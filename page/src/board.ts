@@ -53,8 +53,8 @@ class Touch {
   }
 }
 
-function apart(one: Pair, other: Pair): number {
-  return Math.hypot(one[0] - other[0], one[1] - other[1]);
+function apart(first: Pair, second: Pair): number {
+  return Math.hypot(first[0] - second[0], first[1] - second[1]);
 }
 
 /** How long a sentence about a mistake stays at least, once nothing is held any more, ms. */

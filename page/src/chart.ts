@@ -75,9 +75,9 @@ export function measured(
 ): Float64Array | null {
   const renamed = array.replace(/^joint\./, "joints.").replace(/^response\./, "gauges.");
   const name = renamed.replace(/^output\./, "") + (stride > 1 ? [".x", ".y"][part] : "");
-  const found = numbers.get(`measured.${name}`);
-  if (!found || found.length + 1 !== count) return null;
-  return taken(found, 1, 0, true, winds);
+  const recorded = numbers.get(`measured.${name}`);
+  if (!recorded || recorded.length + 1 !== count) return null;
+  return taken(recorded, 1, 0, true, winds);
 }
 
 interface Chooser {
@@ -175,7 +175,7 @@ export class Chart {
   show(source: Source, whose: string, name: string): void {
     const there = this.there(whose);
     const wanted = this.choices ? this.choices.value : name;
-    const choice = there.find((one) => one.name === wanted) ?? there[0];
+    const choice = there.find((choice) => choice.name === wanted) ?? there[0];
     const curves = choice ? this.curves(choice, source) : [];
     this.strip.root.hidden = !curves.length;
     if (!choice || !curves.length) return;
@@ -217,23 +217,28 @@ export class Chart {
   }
 
   private curves(choice: Choice, source: Source): Curve[] {
-    return choice.curves.flatMap((one, i) => {
-      const found = column(source, one.array, one.stride, one.part, this.data.x === "angle");
-      if (!found) return [];
+    return choice.curves.flatMap((curve, i) => {
+      const columns = column(source, curve.array, curve.stride, curve.part, this.data.x === "angle");
+      if (!columns) return [];
       const role = source.role ?? ROLES[i] ?? "third";
-      const model = { label: one.label, role, points: one.points, ...this.kept(scaled(found, choice), source.state) };
-      const { array, stride, part } = one;
+      const model = {
+        label: curve.label,
+        role,
+        points: curve.points,
+        ...this.kept(scaled(columns, choice), source.state),
+      };
+      const { array, stride, part } = curve;
       const over = this.data.x === "angle" ? source.state.numbers : null;
-      const seen = over && measured(over, array, stride, part, found.values.length);
+      const seen = over && measured(over, array, stride, part, columns.values.length);
       return seen ? besides(model, times(seen, choice)) : [model];
     });
   }
 
   /** Of all orders those that are drawn. */
-  private kept(found: Columns, state: State): Columns {
-    if (this.data.x !== "order") return found;
+  private kept(columns: Columns, state: State): Columns {
+    if (this.data.x !== "order") return columns;
     const some = (values: Float64Array) => values.filter((_, i) => drawn(state, i));
-    return { values: some(found.values), before: found.before && some(found.before) };
+    return { values: some(columns.values), before: columns.before && some(columns.before) };
   }
 
   private across({ state, numbers }: Source, count: number): Float64Array {
@@ -267,7 +272,7 @@ export function scaled({ values, before }: Columns, unit: Unit): Columns {
   return { values: times(values, unit), before: before && times(before, unit) };
 }
 
-export type Ask = (asked: PageRequest) => void;
+export type Ask = (request: PageRequest) => void;
 
 /** Put a "?" at the end of the heading of a chart of that title; `choice` tells what of it is shown. */
 export function explain(figure: HTMLElement, title: string, name: string, ask: Ask, choice: () => string): void {
@@ -285,7 +290,7 @@ export function explain(figure: HTMLElement, title: string, name: string, ask: A
       format.toUpperCase(),
     );
   const shows = h("p", {});
-  const told = h(
+  const explanation = h(
     "div",
     { class: "explained", id, hidden: true },
     shows,
@@ -301,13 +306,13 @@ export function explain(figure: HTMLElement, title: string, name: string, ask: A
       "aria-expanded": "false",
       "aria-controls": id,
       onclick: () => {
-        told.hidden = !told.hidden;
+        explanation.hidden = !explanation.hidden;
         write(shows, explained(name)); // which goes by the machine that is open
-        set(button, { "aria-expanded": String(!told.hidden) });
+        set(button, { "aria-expanded": String(!explanation.hidden) });
       },
     },
     "?",
   );
   heading.append(button);
-  heading.after(told);
+  heading.after(explanation);
 }

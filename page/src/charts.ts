@@ -256,20 +256,20 @@ export class Charts {
   private draw(all: ChartData[], source: Source, within: HTMLElement, other: boolean): void {
     const { rows } = this;
     const idle = all.filter((data) => Chart.idle(data, source, rows));
-    const told = all.filter((data) => !idle.includes(data));
+    const active = all.filter((data) => !idle.includes(data));
     if (within === this.forces) this.tellIdle(idle);
-    const names = told.map(({ name }) => name);
+    const names = active.map(({ name }) => name);
     for (const [name, { strip }] of this.declared)
       if (strip.root.parentElement === within && !names.includes(name)) strip.root.hidden = true;
     let leader: Chart | null = null;
-    told.forEach((data, i) => {
-      const shared = data.x === "angle" && data.chooser === null && told[i + 1]?.chooser === null;
+    active.forEach((data, i) => {
+      const shared = data.x === "angle" && data.chooser === null && active[i + 1]?.chooser === null;
       const chart = this.of(data, !shared);
       chart.offer(data, rows, other);
       chart.show(source, rows, data.chooser === null ? (leader?.chosen ?? "") : "");
       if (data.chooser !== null) leader = chart;
     });
-    const roots = told.flatMap(({ name }) => this.declared.get(name)?.strip.root ?? []);
+    const roots = active.flatMap(({ name }) => this.declared.get(name)?.strip.root ?? []);
     if (roots.some((root, i) => within.children[i] !== root)) within.prepend(...roots);
   }
 
@@ -312,8 +312,8 @@ export class Charts {
     const now = state.numbers.get(force);
     if (now) traces.push({ points: now, kind: "now", closed: true });
     const every = state.angles / (12 * state.turns);
-    const one = state.outputs.find(({ name }) => name === force);
-    const { label, unit, factor } = one ?? { label: "", unit: "", factor: 1 };
+    const output = state.outputs.find(({ name }) => name === force);
+    const { label, unit, factor } = output ?? { label: "", unit: "", factor: 1 };
     this.polar.show({ title: capital(label), unit, factor, traces, every, least: state.least });
   }
 

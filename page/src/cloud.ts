@@ -14,7 +14,7 @@ const PALE = 0.05;
 /** Of pale lines, that are as dark together as one. */
 const FEW = 60;
 
-export interface Told {
+export interface PointerEvents {
   /** Ranges have changed, or are being changed. */
   ranged(): void;
   /** A design is wanted as a machine. */
@@ -36,12 +36,12 @@ abstract class Picture {
     name: string,
     protected readonly height: number,
     protected readonly theme: Theme,
-    protected readonly told: Told,
+    protected readonly events: PointerEvents,
   ) {
     this.root = h("div", { class: "designs", role: "img", "aria-label": name }, this.canvas, this.svg);
     this.svg.addEventListener("pointerdown", (event) => this.press(event));
     this.svg.addEventListener("pointermove", (event) => this.move(event));
-    this.svg.addEventListener("pointerleave", () => this.told.hovered(null));
+    this.svg.addEventListener("pointerleave", () => this.events.hovered(null));
   }
 
   show(designs: Designs): void {
@@ -80,7 +80,7 @@ abstract class Picture {
       for (const kind of ["failed", "beyond", "kept"] as Kind[])
         for (let i = 0; i < designs.count; i++)
           if (designs.kind(i) === kind && designs.within(i) === inside)
-            this.one(pen, i, this.colour(kind), inside ? this.strength(kind) : pale);
+            this.paint(pen, i, this.colour(kind), inside ? this.strength(kind) : pale);
     this.overlay();
   }
 
@@ -90,7 +90,7 @@ abstract class Picture {
   }
 
   protected abstract strength(kind: Kind): number;
-  protected abstract one(pen: CanvasRenderingContext2D, i: number, colour: string, alpha: number): void;
+  protected abstract paint(pen: CanvasRenderingContext2D, i: number, colour: string, alpha: number): void;
   protected abstract overlay(): void;
   /** The design at a place of the picture. */
   protected abstract at(x: number, y: number): number | null;
@@ -103,7 +103,7 @@ abstract class Picture {
   }
 
   private move(event: PointerEvent): void {
-    if (!event.buttons) this.told.hovered(this.at(...this.spot(event)));
+    if (!event.buttons) this.events.hovered(this.at(...this.spot(event)));
   }
 
   private press(event: PointerEvent): void {
@@ -120,9 +120,9 @@ abstract class Picture {
       this.svg.removeEventListener("pointermove", drag);
       for (const name of ["pointerup", "pointercancel"] as const) this.svg.removeEventListener(name, stop);
       if (far || now.type === "pointercancel") return;
-      const found = this.at(...from);
-      if (found === null) this.brush(from, from);
-      else this.told.opened(found);
+      const design = this.at(...from);
+      if (design === null) this.brush(from, from);
+      else this.events.opened(design);
     };
     this.svg.addEventListener("pointermove", drag);
     for (const name of ["pointerup", "pointercancel"] as const) this.svg.addEventListener(name, stop);
@@ -133,8 +133,8 @@ const [ABOVE, BELOW, LEFT, RIGHT] = [46, 10, 46, 30];
 
 /** Every column an axis, side by side; every design a line. */
 export class Parallel extends Picture {
-  constructor(theme: Theme, told: Told) {
-    super(say("Designs from axis to axis"), 300, theme, told);
+  constructor(theme: Theme, events: PointerEvents) {
+    super(say("Designs from axis to axis"), 300, theme, events);
   }
 
   private get axes(): number {
@@ -158,7 +158,7 @@ export class Parallel extends Picture {
     return Math.min((kind === "kept" ? 0.16 : 0.1) * few, 0.9);
   }
 
-  protected one(pen: CanvasRenderingContext2D, i: number, colour: string, alpha: number): void {
+  protected paint(pen: CanvasRenderingContext2D, i: number, colour: string, alpha: number): void {
     pen.globalAlpha = alpha;
     pen.strokeStyle = colour;
     pen.lineWidth = 1;
@@ -177,7 +177,7 @@ export class Parallel extends Picture {
   }
 
   private line(shares: number[], name: string): SVGElement {
-    const places = shares.map((one, k) => `${this.across(k).toFixed(1)} ${this.down(one).toFixed(1)}`);
+    const places = shares.map((share, k) => `${this.across(k).toFixed(1)} ${this.down(share).toFixed(1)}`);
     return s("path", { class: name, d: `M${places.join("L")}` });
   }
 
@@ -187,7 +187,7 @@ export class Parallel extends Picture {
     const parts: SVGElement[] = [];
     const room = (this.height - ABOVE - BELOW) / 26;
     const each = (this.width - LEFT - RIGHT) / Math.max(this.axes - 1, 1);
-    designs.columns.forEach(({ told, scale }, k) => {
+    designs.columns.forEach(({ declared, scale }, k) => {
       const x = this.across(k);
       parts.push(s("path", { class: "rule", d: `M${x} ${this.down(0)}V${this.down(1)}` }));
       const range = designs.ranges.get(k);
@@ -201,12 +201,12 @@ export class Parallel extends Picture {
         parts.push(s("text", { x: x - 5, y: this.down(shareOf(designs, k, value)) + 4, class: "number" }, text));
       }
       const most = Math.max(Math.floor((each - 8) / 6), 6);
-      lines(told.label, most).forEach((text, row) => {
+      lines(declared.label, most).forEach((text, row) => {
         const anchor = k === 0 ? "start" : k === this.axes - 1 ? "end" : "middle";
         const at = { x: k === 0 ? 4 : k === this.axes - 1 ? this.width - 4 : x, y: 11 + 12 * row };
         parts.push(s("text", { ...at, "text-anchor": anchor, class: "label" }, text));
       });
-      parts.push(s("text", { x, y: ABOVE - 3, "text-anchor": "middle", class: "unit" }, told.unit));
+      parts.push(s("text", { x, y: ABOVE - 3, "text-anchor": "middle", class: "unit" }, declared.unit));
     });
     if (designs.study.own)
       parts.push(
@@ -246,7 +246,7 @@ export class Parallel extends Picture {
     if (Math.abs(x - this.across(k)) > Math.min(step / 2, 24)) return;
     const range: Pair = [designs.value(k, this.up(y)), designs.value(k, this.up(to))];
     designs.range(k, Math.abs(y - to) > MOVED ? range : null);
-    this.told.ranged();
+    this.events.ranged();
   }
 }
 
@@ -256,8 +256,8 @@ const EDGE = { left: 50, right: 12, top: 10, bottom: 26 };
 export class Scatter extends Picture {
   columns: Pair = [0, 1];
 
-  constructor(theme: Theme, told: Told) {
-    super(say("Designs over two columns"), 300, theme, told);
+  constructor(theme: Theme, events: PointerEvents) {
+    super(say("Designs over two columns"), 300, theme, events);
   }
 
   private x(share: number): number {
@@ -279,7 +279,7 @@ export class Scatter extends Picture {
     return kind === "kept" ? 0.7 : kind === "beyond" ? 0.4 : 0.6;
   }
 
-  protected one(pen: CanvasRenderingContext2D, i: number, colour: string, alpha: number): void {
+  protected paint(pen: CanvasRenderingContext2D, i: number, colour: string, alpha: number): void {
     const [x, y] = this.place(i);
     pen.globalAlpha = Math.max(alpha, 0.08);
     pen.fillStyle = pen.strokeStyle = colour;
@@ -303,24 +303,25 @@ export class Scatter extends Picture {
     const parts: SVGElement[] = [];
     const [[a, b], foot] = [columns, this.y(0)];
     parts.push(s("path", { class: "rule", d: `M${this.x(0)} ${this.y(1)}V${foot}H${this.x(1)}` }));
-    const [one, other] = columns.map((k) => designs.columns[k]);
-    if (!one || !other) return;
-    const across = levels(one.scale, (this.width - EDGE.left) / 60);
+    const [first, second] = columns.map((k) => designs.columns[k]);
+    if (!first || !second) return;
+    const across = levels(first.scale, (this.width - EDGE.left) / 60);
     for (const value of across) {
       const at = { x: this.x(shareOf(designs, a, value)), y: foot + 14, "text-anchor": "middle" };
-      parts.push(s("text", { ...at, class: "below" }, marked(value, one.scale, across)));
+      parts.push(s("text", { ...at, class: "below" }, marked(value, first.scale, across)));
     }
-    const up = levels(other.scale, (this.height - EDGE.top) / 30);
+    const up = levels(second.scale, (this.height - EDGE.top) / 30);
     for (const value of up) {
       const at = { x: this.x(0) - 5, y: this.y(shareOf(designs, b, value)) + 4 };
-      parts.push(s("text", { ...at, class: "number" }, marked(value, other.scale, up)));
+      parts.push(s("text", { ...at, class: "number" }, marked(value, second.scale, up)));
     }
-    for (const limit of one.told.limits) if (limit !== null) parts.push(this.limit(a, limit * one.told.factor, true));
-    for (const limit of other.told.limits)
-      if (limit !== null) parts.push(this.limit(b, limit * other.told.factor, false));
+    for (const limit of first.declared.limits)
+      if (limit !== null) parts.push(this.limit(a, limit * first.declared.factor, true));
+    for (const limit of second.declared.limits)
+      if (limit !== null) parts.push(this.limit(b, limit * second.declared.factor, false));
     parts.push(...this.brushed());
-    if (one.own !== null && other.own !== null) {
-      const at = { cx: this.x(shareOf(designs, a, one.own)), cy: this.y(shareOf(designs, b, other.own)) };
+    if (first.own !== null && second.own !== null) {
+      const at = { cx: this.x(shareOf(designs, a, first.own)), cy: this.y(shareOf(designs, b, second.own)) };
       parts.push(s("circle", { class: "own", r: 6, ...at }));
     }
     if (this.hover !== null) {
@@ -370,7 +371,7 @@ export class Scatter extends Picture {
       const shares = (i ? ys : xs).map((share) => designs.value(k, share)) as Pair;
       designs.range(k, none ? null : shares);
     });
-    this.told.ranged();
+    this.events.ranged();
   }
 }
 
@@ -387,12 +388,12 @@ function clip(share: number): number {
 
 /** A label in up to three lines of so many signs. */
 function lines(label: string, most: number): string[] {
-  const found: string[] = [];
+  const levels: string[] = [];
   for (const word of label.split(" ")) {
-    const last = found[found.length - 1];
-    if (last !== undefined && last.length + 1 + word.length <= most) found[found.length - 1] = `${last} ${word}`;
-    else found.push(word);
+    const last = levels[levels.length - 1];
+    if (last !== undefined && last.length + 1 + word.length <= most) levels[levels.length - 1] = `${last} ${word}`;
+    else levels.push(word);
   }
-  if (found.length <= 2) return found;
-  return [found[0] as string, `${(found[1] as string).slice(0, Math.max(most - 1, 3))}…`];
+  if (levels.length <= 2) return levels;
+  return [levels[0] as string, `${(levels[1] as string).slice(0, Math.max(most - 1, 3))}…`];
 }

@@ -206,7 +206,7 @@ function atJoint(point: string, state: State, page: Doing): Action[] {
     meets && { name: say("Separate"), act: () => page.make({ do: "separate", point }) },
     { name: say("Delete"), act: () => page.make({ do: "delete", what: "point", name: point }) },
   ];
-  return actions.filter((one) => !!one);
+  return actions.filter((action) => !!action);
 }
 
 function atLink(hit: Hit, link: string, state: State, page: Doing): Action[] {
@@ -226,7 +226,7 @@ function atLink(hit: Hit, link: string, state: State, page: Doing): Action[] {
       act: () => page.make(part ? { do: "delete", ...part } : { do: "delete", what: "link", name: link }),
     },
   ];
-  return actions.filter((one) => !!one);
+  return actions.filter((action) => !!action);
 }
 
 /** Only what turns about the frame, and has a mass, carries one. */
@@ -242,7 +242,7 @@ function additions(sources: Sources, page: Doing): Action[] {
   return menuItems().flatMap(({ name, place, values }) => {
     const known = values.find((keys) => Object.values(keys).every((source) => source in sources));
     if (!known) return [];
-    const given = Object.entries(known).map(([key, source]) => [key, sources[source] as Plain]);
-    return [{ name, act: () => page.add(place, Object.fromEntries(given) as Values) }];
+    const entries = Object.entries(known).map(([key, source]) => [key, sources[source] as Plain]);
+    return [{ name, act: () => page.add(place, Object.fromEntries(entries) as Values) }];
   });
 }

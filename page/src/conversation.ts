@@ -5,13 +5,13 @@ import type {
   Edit,
   GhostMessage,
   HandedOut,
+  Incoming,
   PageRequest,
   Refused,
   RunMessage,
   Stores,
   StudyMessage,
   Tables,
-  Told,
   ToolMessage,
   VariantsMessage,
   Wire,
@@ -25,7 +25,7 @@ import {
   type State,
   type Strokes,
 } from "./protocol";
-import { type Told as Kept, OPENS, type Shelf, type Shown, Story } from "./story";
+import { OPENS, type Shelf, type Shown, Story, type StoryData } from "./story";
 import { language, say } from "./words";
 
 /** What takes long: the kind of its question, and what is done, in words. */
@@ -35,7 +35,7 @@ export interface Computation {
 }
 
 export interface Events {
-  hello(message: Extract<Told, { type: "hello" }>): void;
+  hello(message: Extract<Incoming, { type: "hello" }>): void;
   state(state: State): void;
   response(message: ResponseMessage, numbers: Numbers): void;
   strokes(message: Strokes, numbers: Numbers): void;
@@ -47,15 +47,15 @@ export interface Events {
   study(message: StudyMessage, numbers: Numbers): void;
   stores(message: Stores): void;
   /** Something could not be done; `edit`: the number of the edit that was tried, if it was one. */
-  refused(message: string, edit: number | null, told: Refused | null): void;
-  balanced(message: Extract<Told, { type: "balanced" }>): void;
+  refused(message: string, edit: number | null, refused: Refused | null): void;
+  balanced(message: Extract<Incoming, { type: "balanced" }>): void;
   ran(message: RunMessage, numbers: Numbers): void;
   /** What takes long is computed now, in the order in which it began. */
   busy(computed: Computation[]): void;
   tables(message: Tables): void;
   saved(name: string): void;
   pictured(message: Pictured | null, numbers: Numbers): void;
-  file(told: HandedOut, bytes: DataView | undefined): void;
+  file(file: HandedOut, bytes: DataView | undefined): void;
   /** Whether the server answers; else whether it has another file open, and how much waits for it. */
   line(up: boolean, other: boolean, waiting: number): void;
   /** An answer takes longer than a reader waits without a sign. */
@@ -65,14 +65,14 @@ export interface Events {
 }
 
 /** Hears that something was done, or why not. */
-type Answered = (refusal: string | null, told: Refused | null) => void;
+type Answered = (refusal: string | null, refused: Refused | null) => void;
 
 interface Question {
   seq: number;
-  asked: PageRequest;
+  request: PageRequest;
   answered?: Answered | undefined;
   /** Takes the file that is asked for, instead of the browser's downloads. */
-  got?: ((told: HandedOut, bytes: DataView | undefined) => void) | undefined;
+  got?: ((file: HandedOut, bytes: DataView | undefined) => void) | undefined;
 }
 
 /** Number of no question: they begin with 1. */
@@ -93,7 +93,7 @@ const IDLE = new Set(["ready", "speak", "save", "download", "tables", "study", "
 const kept = ({ type }: PageRequest) => !(IDLE.has(type) || SLOW.has(type) || OPENS.has(type));
 
 /** Whether it only tries an edit, while something is held. */
-const isMove = (asked: PageRequest) => asked.type === "edit" && !asked.commit;
+const isMove = (request: PageRequest) => request.type === "edit" && !request.commit;
 
 /** Who asks these says himself why not. */
 const ASIDE = new Set(["entry", "tables"]);
@@ -154,10 +154,10 @@ export class Conversation {
   }
 
   /** Ask; every question gets its answer, in this order. */
-  ask(asked: PageRequest, answered?: Answered, got?: Question["got"]): void {
+  ask(request: PageRequest, answered?: Answered, got?: Question["got"]): void {
     this.dropWaiting();
-    if (this.down && !kept(asked)) return this.unheard(answered);
-    this.queue.push({ seq: ++this.seq, asked, answered, got });
+    if (this.down && !kept(request)) return this.unheard(answered);
+    this.queue.push({ seq: ++this.seq, request, answered, got });
     if (this.down) this.wait(false);
     this.next();
   }
@@ -168,7 +168,7 @@ export class Conversation {
     const seq = ++this.seq;
     mark("equipoise:input", seq, stamp);
     this.dropWaiting();
-    this.waiting = { seq, asked: { type: "edit", commit: false, label, edits }, answered };
+    this.waiting = { seq, request: { type: "edit", commit: false, label, edits }, answered };
     this.next();
   }
 
@@ -182,81 +182,81 @@ export class Conversation {
     if (!question) return;
     if (question === this.waiting) this.waiting = null;
     // What follows a balance in a story was done to its result.
-    if (SLOW.has(question.asked.type) && !this.repeated(question.seq)) this.aside.set(question.seq, question);
+    if (SLOW.has(question.request.type) && !this.repeated(question.seq)) this.aside.set(question.seq, question);
     else this.flight = question;
     this.events.calm(false);
-    const patience = isMove(question.asked) ? OF_A_MOVE : PATIENCE;
+    const patience = isMove(question.request) ? OF_A_MOVE : PATIENCE;
     if (this.flight) this.late ||= window.setTimeout(() => this.events.waiting(true), patience);
-    this.wire.send({ ...question.asked, seq: question.seq });
+    this.wire.send({ ...question.request, seq: question.seq });
     this.next();
   }
 
-  private readonly hear = (told: Told, buffers: DataView[]): void => {
-    switch (told.type) {
+  private readonly hear = (message: Incoming, buffers: DataView[]): void => {
+    switch (message.type) {
       case "hello":
         // Without a machine a `hello` is all the answer there is to `ready`.
-        if (!told.machine && this.flight?.asked.type === "ready") this.land();
-        this.events.hello(told);
-        return this.returning ? this.back(told.base) : this.next();
+        if (!message.machine && this.flight?.request.type === "ready") this.land();
+        this.events.hello(message);
+        return this.returning ? this.back(message.base) : this.next();
       case "state":
-        return this.state({ ...told, numbers: new Numbers(told.arrays, buffers[0]) });
+        return this.state({ ...message, numbers: new Numbers(message.arrays, buffers[0]) });
       case "pictured":
-        return this.events.pictured(told, new Numbers(told.arrays, buffers[0]));
+        return this.events.pictured(message, new Numbers(message.arrays, buffers[0]));
       case "gallery":
         this.events.pictured(null, new Numbers({}, undefined));
-        return this.end(told.seq, null);
+        return this.end(message.seq, null);
       case "saved":
-        this.story.saved(told.base, told.text);
-        return this.events.saved(told.name);
+        this.story.saved(message.base, message.text);
+        return this.events.saved(message.name);
       case "response":
-        return this.events.response(told, new Numbers(told.arrays, buffers[0]));
+        return this.events.response(message, new Numbers(message.arrays, buffers[0]));
       case "ghost":
-        return this.events.ghost(told, new Numbers(told.arrays, buffers[0]));
+        return this.events.ghost(message, new Numbers(message.arrays, buffers[0]));
       case "tool":
-        this.events.tool(told, new Numbers(told.arrays, buffers[0]));
-        return this.heard(told);
+        this.events.tool(message, new Numbers(message.arrays, buffers[0]));
+        return this.heard(message);
       case "study":
-        this.events.study(told, new Numbers(told.arrays, buffers[0]));
-        return this.end(told.seq, null);
+        this.events.study(message, new Numbers(message.arrays, buffers[0]));
+        return this.end(message.seq, null);
       case "stores":
-        this.events.stores(told);
-        return this.end(told.seq, null);
+        this.events.stores(message);
+        return this.end(message.seq, null);
       case "variants":
-        return this.events.variants(told);
+        return this.events.variants(message);
       case "strokes":
-        return this.events.strokes(told, new Numbers(told.arrays, buffers[0]));
+        return this.events.strokes(message, new Numbers(message.arrays, buffers[0]));
       case "planting":
       case "gauges":
-        return this.events.planting(told);
+        return this.events.planting(message);
       case "side":
-        return this.events.side(told);
+        return this.events.side(message);
       case "refused":
-        if (!this.repeated(told.seq ?? NONE)) this.refuse(told);
-        return this.end(told.seq ?? NONE, told.message, told);
+        if (!this.repeated(message.seq ?? NONE)) this.refuse(message);
+        return this.end(message.seq ?? NONE, message.message, message);
       case "tables":
-        this.events.tables(told);
-        return this.end(told.seq, null);
+        this.events.tables(message);
+        return this.end(message.seq, null);
       case "balanced":
-        return this.events.balanced(told);
+        return this.events.balanced(message);
       case "run":
-        this.end(told.seq, null); // which takes away that it runs
-        return this.events.ran(told, new Numbers(told.arrays, buffers[0]));
+        this.end(message.seq, null); // which takes away that it runs
+        return this.events.ran(message, new Numbers(message.arrays, buffers[0]));
       case "busy":
-        return this.begun(told.seq, told.what);
+        return this.working(message.seq, message.what);
       case "file":
-        this.file(told, buffers[0]);
-        return this.end(told.seq, null);
-      case "told":
-        this.whole = Math.max(this.whole, told.seq);
+        this.file(message, buffers[0]);
+        return this.end(message.seq, null);
+      case "answered":
+        this.whole = Math.max(this.whole, message.seq);
         return this.events.calm(this.calm);
       case "lost":
       case "back":
-        return this.line(told.type === "back");
+        return this.line(message.type === "back");
     }
   };
 
-  private begun(seq: number, what: string): void {
-    const kind = this.question(seq)?.asked.type;
+  private working(seq: number, what: string): void {
+    const kind = this.question(seq)?.request.type;
     if (!kind) return; // nobody waits for it any more
     this.computed.set(seq, { kind, what });
     this.events.busy([...this.computed.values()]);
@@ -266,34 +266,34 @@ export class Conversation {
     return this.flight?.seq === seq ? this.flight : this.aside.get(seq);
   }
 
-  private file(told: HandedOut, bytes: DataView | undefined): void {
-    const got = this.aside.get(told.seq)?.got ?? this.flight?.got;
-    if (got) got(told, bytes);
-    else this.events.file(told, bytes);
+  private file(file: HandedOut, bytes: DataView | undefined): void {
+    const got = this.aside.get(file.seq)?.got ?? this.flight?.got;
+    if (got) got(file, bytes);
+    else this.events.file(file, bytes);
   }
 
-  private refuse(told: Refused): void {
-    const { message } = told;
-    const seq = told.seq ?? NONE;
-    const asked = this.flight?.seq === seq ? this.flight.asked : null;
-    if (asked && ASIDE.has(asked.type) && this.flight?.answered) return;
-    if (asked?.type !== "edit") return this.events.refused(message, null, told);
+  private refuse(refused: Refused): void {
+    const { message } = refused;
+    const seq = refused.seq ?? NONE;
+    const request = this.flight?.seq === seq ? this.flight.request : null;
+    if (request && ASIDE.has(request.type) && this.flight?.answered) return;
+    if (request?.type !== "edit") return this.events.refused(message, null, refused);
     // Who asks for a number and waits for the answer says it beside that number.
-    if (!asked.commit || !this.flight?.answered) this.events.refused(message, seq, told);
+    if (!request.commit || !this.flight?.answered) this.events.refused(message, seq, refused);
   }
 
-  private end(seq: number, refusal: string | null, told: Refused | null = null): void {
+  private end(seq: number, refusal: string | null, refused: Refused | null = null): void {
     const question = this.question(seq);
     if (!question) return;
     if (question === this.flight) this.land();
     else this.aside.delete(seq);
     if (this.computed.delete(seq)) this.events.busy([...this.computed.values()]);
     // Without what a story began with, nothing of it can be done.
-    if (this.repeated(seq) && refusal !== null && OPENS.has(question.asked.type)) {
+    if (this.repeated(seq) && refusal !== null && OPENS.has(question.request.type)) {
       this.queue.splice(0, this.repeats - seq);
       this.story.forget();
     }
-    question.answered?.(refusal, told);
+    question.answered?.(refusal, refused);
     this.next();
     this.rest(); // all else may have been told before
   }
@@ -316,8 +316,9 @@ export class Conversation {
   /** A question was answered by what is open now. */
   private heard(state: Shown): void {
     const { seq } = state;
-    const asked = this.question(seq)?.asked;
-    if (asked && !this.repeated(seq) && !isMove(asked) && !IDLE.has(asked.type)) this.story.remember(asked, state);
+    const request = this.question(seq)?.request;
+    if (request && !this.repeated(seq) && !isMove(request) && !IDLE.has(request.type))
+      this.story.remember(request, state);
     this.story.heard(state);
     this.end(seq, null);
   }
@@ -328,12 +329,12 @@ export class Conversation {
   }
 
   /** Go on with what was done in a tab that is closed, or whose server is gone. */
-  resume(told: Kept, base: string): void {
-    this.goOn(this.story.resume(told, base));
+  resume(record: StoryData, base: string): void {
+    this.goOn(this.story.resume(record, base));
   }
 
   /** What was done in such tabs. */
-  offered(base: string): Promise<Kept[]> {
+  offered(base: string): Promise<StoryData[]> {
     return this.story.offered(base);
   }
 
@@ -352,12 +353,12 @@ export class Conversation {
     const waiting = this.story.waiting;
     this.story.waits(null);
     this.repeat(story);
-    for (const asked of waiting) this.ask(asked);
+    for (const request of waiting) this.ask(request);
     return story.length + waiting.length > 0;
   }
 
   private repeat(story: PageRequest[]): void {
-    for (const asked of story) this.queue.push({ seq: ++this.seq, asked });
+    for (const request of story) this.queue.push({ seq: ++this.seq, request });
     this.repeats = this.seq;
     this.next();
   }
@@ -367,23 +368,23 @@ export class Conversation {
     if (up) return;
     if (this.down) return this.wait(false);
     this.down = true;
-    const asked = [...(this.flight ? [this.flight] : []), ...this.queue, ...this.aside.values()];
+    const open = [...(this.flight ? [this.flight] : []), ...this.queue, ...this.aside.values()];
     this.land();
     this.waiting = null;
     if (this.computed.size) this.events.busy([]);
     this.computed.clear();
     this.aside.clear();
     this.queue.length = 0;
-    for (const question of asked.filter(({ seq }) => !this.repeated(seq))) {
-      if (kept(question.asked)) this.queue.push(question);
-      else if (question.asked.type !== "ready") this.unheard(question.answered);
+    for (const question of open.filter(({ seq }) => !this.repeated(seq))) {
+      if (kept(question.request)) this.queue.push(question);
+      else if (question.request.type !== "ready") this.unheard(question.answered);
     }
     this.wait(false);
   }
 
   /** What is asked is kept, for another tab too. */
   private wait(other: boolean): void {
-    this.story.waits(this.queue.map(({ asked }) => asked));
+    this.story.waits(this.queue.map(({ request }) => request));
     this.events.line(false, other, this.queue.length);
   }
 

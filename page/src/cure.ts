@@ -13,8 +13,8 @@ export function documentation(): string | null {
  * What leads from a refusal to its page: a link where the documentation lies beside the page; elsewhere, as in
  * notebooks, a button that opens the text of the page.
  */
-export function cureOf(told: Refused | null): HTMLElement | null {
-  const { topic, cure } = told ?? {};
+export function cureOf(refused: Refused | null): HTMLElement | null {
+  const { topic, cure } = refused ?? {};
   const [docs, name] = [documentation(), say("What to do about it")];
   if (topic && docs) {
     const href = new URL(`explain/${topic}.html`, docs).href;

@@ -7,7 +7,7 @@ import { extremes, type Scale, share, wide } from "./scale";
 const ROOM = 0.03;
 
 interface Column {
-  told: ColumnOf;
+  declared: ColumnOf;
   /** In the unit that is told; NaN where a design has none. */
   values: Float64Array;
   scale: Scale;
@@ -34,12 +34,17 @@ export class Designs {
     const read = (name: string) => numbers.get(name) ?? new Float32Array(0);
     [this.number, this.reason, this.kept] = [read("number"), read("reason"), read("kept")];
     this.count = this.number.length;
-    this.columns = study.columns.map((told, k) => {
-      const values = Float64Array.from(read(`column.${told.name}`), (x) => x * told.factor);
+    this.columns = study.columns.map((column, k) => {
+      const values = Float64Array.from(read(`column.${column.name}`), (x) => x * column.factor);
       const own = study.own?.[k];
-      return { told, values, scale: scaleFor(values, own), own: own === undefined ? null : own * told.factor };
+      return {
+        declared: column,
+        values,
+        scale: scaleFor(values, own),
+        own: own === undefined ? null : own * column.factor,
+      };
       function scaleFor(all: Float64Array, model: number | undefined): Scale {
-        const here = model === undefined ? [] : [model * told.factor];
+        const here = model === undefined ? [] : [model * column.factor];
         const [low, high] = extremes([all, here]);
         if (wide(all) && (here[0] ?? 1) > 0) return { ends: [low / 1.1, high * 1.1], log: true };
         const span = high - low || Math.abs(low) || 1;
@@ -65,7 +70,7 @@ export class Designs {
 
   why(i: number): string {
     const code = this.reason[i];
-    return this.study.refused.find((one) => one.code === code)?.why ?? "";
+    return this.study.refused.find((reason) => reason.code === code)?.why ?? "";
   }
 
   /** Whether the i-th design is within every range. */
@@ -96,9 +101,9 @@ export class Designs {
 
   /** Designs within every range, in the order of their numbers. */
   chosen(): number[] {
-    const found: number[] = [];
-    for (let i = 0; i < this.count; i++) if (this.within(i)) found.push(i);
-    return found;
+    const front: number[] = [];
+    for (let i = 0; i < this.count; i++) if (this.within(i)) front.push(i);
+    return front;
   }
 
   /**
@@ -106,13 +111,13 @@ export class Designs {
    * every aim, by the sum of what they lack of the best of each aim; then those nearest to the limits.
    */
   best(among: number[], most: number): number[] {
-    const aims = this.columns.filter(({ told }) => told.make);
-    const lack = aims.map(({ told, values }) => {
+    const aims = this.columns.filter(({ declared }) => declared.make);
+    const lack = aims.map(({ declared, values }) => {
       const [low, high] = extremes([among.map((i) => values[i] ?? NaN)]);
-      const from = told.make === "largest" ? high : low;
+      const from = declared.make === "largest" ? high : low;
       return (i: number) => Math.abs((values[i] ?? NaN) - from) / (high - low || 1);
     });
-    const sum = (i: number) => lack.reduce((all, one) => all + one(i), 0);
+    const sum = (i: number) => lack.reduce((all, lacking) => all + lacking(i), 0);
     const ranked = (kind: Kind, rank: (i: number) => number) => {
       const ranks = among.filter((i) => this.kind(i) === kind).map((i) => [i, rank(i)] as const);
       return ranks.sort(([, a], [, b]) => a - b || 0).map(([i]) => i);
@@ -121,7 +126,7 @@ export class Designs {
     const front: number[] = [];
     for (const i of kept) {
       if (front.length >= most) break;
-      const beaten = front.some((j) => lack.every((one) => one(j) <= one(i)) && sum(j) < sum(i));
+      const beaten = front.some((j) => lack.every((lacking) => lacking(j) <= lacking(i)) && sum(j) < sum(i));
       if (!beaten) front.push(i);
     }
     const others = kept.filter((i) => !front.includes(i));
@@ -131,10 +136,10 @@ export class Designs {
   /** What a design lacks of all limits, each over that limit. */
   private beyond(i: number): number {
     let lacking = 0;
-    for (const { told, values } of this.columns) {
-      told.limits.forEach((limit, end) => {
+    for (const { declared, values } of this.columns) {
+      declared.limits.forEach((limit, end) => {
         if (limit === null) return;
-        const over = (values[i] ?? NaN) / told.factor - limit;
+        const over = (values[i] ?? NaN) / declared.factor - limit;
         lacking += Math.max(end ? over : -over, 0) / (Math.abs(limit) || 1);
       });
     }

@@ -10,7 +10,7 @@ export interface Drawing {
   /** Ends and corners of lines, and centres of circles and arcs. */
   snaps: Pair[];
   /** Whether the file tells its unit; where not, it is taken for mm. */
-  told: boolean;
+  hasUnit: boolean;
 }
 
 /** m in a unit of $INSUNITS. */
@@ -76,20 +76,20 @@ export function drawingOf(text: string, name: string): Drawing {
   if (!file?.entities) throw new Error(wrong);
   const unit = Number(file.header?.$INSUNITS ?? 0);
   const size = UNITS[unit] ?? (UNITS[MILLIMETRES] as number);
-  const found: Traced = { lines: [], snaps: [] };
+  const drawing: Traced = { lines: [], snaps: [] };
   const blocks = (file.blocks ?? {}) as unknown as Record<string, { entities?: Entity[]; position?: Point }>;
   const add = (entities: Entity[], at: Place, deep: number): void => {
     for (const entity of entities) {
-      if (entity.visible === false || entity.inPaperSpace || found.snaps.length > MOST) continue;
+      if (entity.visible === false || entity.inPaperSpace || drawing.snaps.length > MOST) continue;
       const block = entity.type === "INSERT" ? blocks[entity.name ?? ""] : undefined;
       if (block && deep < DEEPEST) add(block.entities ?? [], inserted(entity, block.position, at), deep + 1);
-      else trace(entity, at, found);
+      else trace(entity, at, drawing);
     }
   };
   add(file.entities as unknown as Entity[], ([x, y]) => [x * size, y * size], 0);
-  if (!found.lines.length)
+  if (!drawing.lines.length)
     throw new Error(say("{name} has no line, polyline, circle, arc or spline to trace.", { name }));
-  return { ...found, told: unit in UNITS };
+  return { ...drawing, hasUnit: unit in UNITS };
 }
 
 /** From the axes of a block to those around it. */
@@ -103,12 +103,12 @@ function inserted(entity: Entity, base: Point | undefined, at: Place): Place {
   };
 }
 
-function trace(entity: Entity, at: Place, found: Traced): void {
+function trace(entity: Entity, at: Place, drawing: Traced): void {
   const put = (line: Pair[], snaps: Pair[]): void => {
     const whole = [...line, ...snaps].every(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
     if (line.length < 2 || !whole) return;
-    found.lines.push(line.map(at));
-    found.snaps.push(...snaps.map(at));
+    drawing.lines.push(line.map(at));
+    drawing.snaps.push(...snaps.map(at));
   };
   const traced = CURVES[entity.type]?.(entity);
   if (traced) put(...traced);
@@ -170,16 +170,16 @@ function arc([x, y]: Pair, [ax, ay]: Pair, ratio: number, from: number, to: numb
 function bulged(vertices: (Point & { bulge?: number })[], closed: boolean): Pair[] {
   const line: Pair[] = [];
   const count = vertices.length;
-  vertices.forEach((one, i) => {
-    line.push([one.x, one.y]);
+  vertices.forEach((vertex, i) => {
+    line.push([vertex.x, vertex.y]);
     const next = vertices[(i + 1) % count];
-    if (!next || !one.bulge || (i === count - 1 && !closed)) return;
-    const turn = 4 * Math.atan(one.bulge);
-    const [dx, dy] = [next.x - one.x, next.y - one.y];
-    const off = (1 - one.bulge ** 2) / (4 * one.bulge);
-    const [cx, cy] = [(one.x + next.x) / 2 - dy * off, (one.y + next.y) / 2 + dx * off];
-    const from = Math.atan2(one.y - cy, one.x - cx);
-    const radius = Math.hypot(one.x - cx, one.y - cy);
+    if (!next || !vertex.bulge || (i === count - 1 && !closed)) return;
+    const turn = 4 * Math.atan(vertex.bulge);
+    const [dx, dy] = [next.x - vertex.x, next.y - vertex.y];
+    const off = (1 - vertex.bulge ** 2) / (4 * vertex.bulge);
+    const [cx, cy] = [(vertex.x + next.x) / 2 - dy * off, (vertex.y + next.y) / 2 + dx * off];
+    const from = Math.atan2(vertex.y - cy, vertex.x - cx);
+    const radius = Math.hypot(vertex.x - cx, vertex.y - cy);
     line.push(...arc([cx, cy], [radius, 0], 1, from, from + turn).slice(1, -1));
   });
   if (closed && count) line.push(line[0] as Pair);
@@ -208,14 +208,14 @@ function spline({
 }
 
 function deBoor(points: Pair[], knots: number[], degree: number, span: number, t: number): Pair {
-  const held = Array.from({ length: degree + 1 }, (_, j) => points[j + span - degree] as Pair);
+  const active = Array.from({ length: degree + 1 }, (_, j) => points[j + span - degree] as Pair);
   for (let r = 1; r <= degree; r++) {
     for (let j = degree; j >= r; j--) {
       const from = knots[j + span - degree] as number;
       const part = (t - from) / ((knots[j + 1 + span - r] as number) - from);
-      const [a, b] = [held[j - 1] as Pair, held[j] as Pair];
-      held[j] = [a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part];
+      const [a, b] = [active[j - 1] as Pair, active[j] as Pair];
+      active[j] = [a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part];
     }
   }
-  return held[degree] as Pair;
+  return active[degree] as Pair;
 }

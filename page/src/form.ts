@@ -16,19 +16,19 @@ interface Demands {
 }
 
 function demandsOf(rule: Rule, values: Values): Demands {
-  const found: Demands = { needed: new Set(), out: new Set() };
-  collect(rule, values, found);
-  return found;
+  const demands: Demands = { needed: new Set(), out: new Set() };
+  collect(rule, values, demands);
+  return demands;
 }
 
-function collect(rule: Rule, values: Values, found: Demands): void {
-  for (const key of rule.required ?? []) found.needed.add(key);
-  for (const key of barred(rule)) found.out.add(key);
-  for (const one of rule.allOf ?? []) collect(one, values, found);
-  if (rule.if) collect((matches(rule.if, values) ? rule.then : rule.else) ?? {}, values, found);
-  for (const needed of present(rule.dependentRequired, values)) for (const key of needed) found.needed.add(key);
-  for (const inner of present(rule.dependentSchemas, values)) collect(inner, values, found);
-  if (rule.oneOf) choose(rule.oneOf, values, found);
+function collect(rule: Rule, values: Values, demands: Demands): void {
+  for (const key of rule.required ?? []) demands.needed.add(key);
+  for (const key of barred(rule)) demands.out.add(key);
+  for (const inner of rule.allOf ?? []) collect(inner, values, demands);
+  if (rule.if) collect((matches(rule.if, values) ? rule.then : rule.else) ?? {}, values, demands);
+  for (const needed of present(rule.dependentRequired, values)) for (const key of needed) demands.needed.add(key);
+  for (const inner of present(rule.dependentSchemas, values)) collect(inner, values, demands);
+  if (rule.oneOf) choose(rule.oneOf, values, demands);
 }
 
 /** What depends on the keys that are given. */
@@ -37,14 +37,15 @@ function present<Dependent>(dependents: Record<string, Dependent> | undefined, v
 }
 
 /** Of several ways one is taken once the others contradict what is given. */
-function choose(ways: Rule[], values: Values, found: Demands): void {
+function choose(ways: Rule[], values: Values, demands: Demands): void {
   const left = ways.filter((way) => !barred(way).some((key) => key in values));
   const [only] = left;
-  if (only && left.length === 1) return collect(only, values, found);
+  if (only && left.length === 1) return collect(only, values, demands);
   const whole = left.filter((way) => way.required?.every((key) => key in values));
   const [taken] = whole;
   if (!taken || whole.length !== 1) return;
-  for (const way of left) for (const key of way.required ?? []) if (!taken.required?.includes(key)) found.out.add(key);
+  for (const way of left)
+    for (const key of way.required ?? []) if (!taken.required?.includes(key)) demands.out.add(key);
 }
 
 function barred(rule: Rule): string[] {
@@ -60,8 +61,8 @@ function matches(rule: Rule, values: Values): boolean {
       const value = values[key];
       return value === undefined || (wanted !== false && suits(wanted, value));
     }) &&
-    (!anyOf || anyOf.some((one) => matches(one, values))) &&
-    (!allOf || allOf.every((one) => matches(one, values))) &&
+    (!anyOf || anyOf.some((inner) => matches(inner, values))) &&
+    (!allOf || allOf.every((inner) => matches(inner, values))) &&
     (!not || !matches(not, values))
   );
 }
@@ -148,13 +149,13 @@ export class Form {
   }
 
   /** Say at its key why it is not taken. */
-  refused(message: string, told: Refused | null): void {
-    const { path, what } = told ?? {};
+  refused(message: string, refused: Refused | null): void {
+    const { path, what } = refused ?? {};
     const key = path === undefined ? null : keyOf(path, this.subject.where);
     const here = key !== null || path === this.subject.where;
     const text = path === undefined || here ? (what ?? message) : message;
-    if (key !== null && this.errors.has(key)) this.wrong(key, text, cureOf(told))?.focus();
-    else this.say(this.problem, text, cureOf(told));
+    if (key !== null && this.errors.has(key)) this.wrong(key, text, cureOf(refused))?.focus();
+    else this.say(this.problem, text, cureOf(refused));
   }
 
   /** Say at a key what is wrong, and give back what it is typed into. */
@@ -180,7 +181,7 @@ export class Form {
   private follow(): void {
     const { form, below } = this.subject;
     const beside = Object.fromEntries(below.map((key) => [key, true]));
-    const { needed, out } = demandsOf(this.tables.forms[form]?.rule ?? {}, { ...this.given(), ...beside });
+    const { needed, out } = demandsOf(this.tables.forms[form]?.rule ?? {}, { ...this.entered(), ...beside });
     this.needed.clear();
     for (const { key, required } of this.controls) {
       const row = this.rows.get(key) as HTMLElement;
@@ -192,10 +193,10 @@ export class Form {
   }
 
   /** What is given of the keys that are shown. */
-  private given(): Values {
+  private entered(): Values {
     const values: Values = {};
-    for (const [key, one] of this.inputs) {
-      const value = this.rows.get(key)?.hidden ? undefined : one.value();
+    for (const [key, input] of this.inputs) {
+      const value = this.rows.get(key)?.hidden ? undefined : input.value();
       if (value !== undefined) values[key] = value;
     }
     return values;
@@ -214,15 +215,15 @@ export class Form {
 
   private hush(): void {
     for (const line of [this.problem, ...this.errors.values()]) this.say(line, "");
-    for (const one of this.root.querySelectorAll("[aria-invalid]"))
-      set(one, { "aria-invalid": null, "aria-errormessage": null });
+    for (const invalid of this.root.querySelectorAll("[aria-invalid]"))
+      set(invalid, { "aria-invalid": null, "aria-errormessage": null });
   }
 
   private listen(): void {
     this.root.addEventListener("submit", (event) => {
       event.preventDefault();
       this.hush();
-      const values = this.given();
+      const values = this.entered();
       const name = this.name ? this.name.value.trim() : null;
       if (!this.asks(values, name)) this.events.saved(this.subject.place, values, name, this.files);
     });
@@ -263,20 +264,20 @@ export class Form {
 
   private row(control: Control, around: Around): HTMLElement {
     const { key, word, text, required, unit } = control;
-    const told = fresh("told");
-    const one = input(control, word, around, hintOf(control));
-    one.set(this.subject.values[key]);
-    this.inputs.set(key, one);
-    const first = one.element.matches(GIVEN) ? one.element : one.element.querySelector(GIVEN);
-    if (first) set(first, { "aria-describedby": told });
+    const id = fresh("help");
+    const entry = input(control, word, around, hintOf(control));
+    entry.set(this.subject.values[key]);
+    this.inputs.set(key, entry);
+    const first = entry.element.matches(GIVEN) ? entry.element : entry.element.querySelector(GIVEN);
+    if (first) set(first, { "aria-describedby": id });
     const needed = { class: "needed", title: say("required"), hidden: !required };
     const marked = h("span", needed, " *");
     const row = h(
       "div",
       { class: "key", "data-key": key },
       h("span", { class: "word" }, word, marked, unit ? h("span", { class: "unit" }, ` ${unit}`) : null),
-      one.element,
-      h("p", { class: "quiet", id: told }, text),
+      entry.element,
+      h("p", { class: "quiet", id: id }, text),
       this.lineOf(key),
     );
     this.rows.set(key, row);
@@ -293,9 +294,9 @@ export class Form {
 
 /** What a key that is left out stands for, or how it could look. */
 function hintOf({ default: usual, example, required, kind }: Control): string {
-  const shown = usual ?? (required || kind === "choice" || kind === "name" ? null : example);
-  if (shown === null || kind === "list" || kind === "names" || kind === "place") return "";
-  return usual === null ? say("such as {example}", { example: brief(shown) }) : brief(shown);
+  const hint = usual ?? (required || kind === "choice" || kind === "name" ? null : example);
+  if (hint === null || kind === "list" || kind === "names" || kind === "place") return "";
+  return usual === null ? say("such as {example}", { example: brief(hint) }) : brief(hint);
 }
 
 /** What to do at a key that has to be given. */

@@ -45,9 +45,9 @@ let rules: NumberRules = {
 let drawing: Unit = { unit: "m", factor: 1 };
 let quantity = /$^/g;
 
-export function follow(told: NumberRules): void {
-  rules = told;
-  const units = told.units.map((unit) => unit.replace(/[/^]/g, "\\$&")).join("|");
+export function follow(next: NumberRules): void {
+  rules = next;
+  const units = next.units.map((unit) => unit.replace(/[/^]/g, "\\$&")).join("|");
   quantity = new RegExp(`([\\d)]) (${units})(?![\\w/^])`, "g");
 }
 

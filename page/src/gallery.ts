@@ -28,7 +28,7 @@ export class Gallery {
   private readonly none = h("p", { class: "quiet", role: "status", hidden: true }, say("No machine has these words."));
   private readonly stores = h("section", { class: "stores", hidden: true });
   private readonly still = h("p", { class: "quiet", role: "status" }, say("Drawing the examples …"));
-  private asked = false;
+  private requested = false;
 
   constructor(private readonly wishes: Wishes) {
     const begin = () => this.take(() => wishes.begin());
@@ -72,8 +72,8 @@ export class Gallery {
   }
 
   show(): void {
-    if (!this.asked) this.wishes.wanted();
-    this.asked = true;
+    if (!this.requested) this.wishes.wanted();
+    this.requested = true;
     this.wishes.stores();
     this.root.showModal();
   }
@@ -99,25 +99,25 @@ export class Gallery {
 
   /** They do not come: they are asked for again when it is shown again. */
   forget(): void {
-    this.asked = false;
+    this.requested = false;
     this.kinds.replaceChildren();
   }
 
-  add(one: Pictured, numbers: Numbers): void {
+  add(pictured: Pictured, numbers: Numbers): void {
     const card = h(
       "button",
       {
         type: "button",
         class: "card",
-        "data-name": one.name,
-        "data-words": one.words,
-        onclick: () => this.take(() => this.wishes.example(one.name)),
+        "data-name": pictured.name,
+        "data-words": pictured.words,
+        onclick: () => this.take(() => this.wishes.example(pictured.name)),
       },
-      h("b", {}, one.title),
-      h("span", { class: "quiet" }, one.line),
+      h("b", {}, pictured.title),
+      h("span", { class: "quiet" }, pictured.line),
     );
-    card.prepend(picture(card, one, numbers));
-    this.cardsOf(one.kind).append(card);
+    card.prepend(picture(card, pictured, numbers));
+    this.cardsOf(pictured.kind).append(card);
   }
 
   /** The cards of a part of the gallery. */
@@ -154,11 +154,11 @@ function begins(text: string, start: string): boolean {
 }
 
 /** A machine, that turns while it is pointed at or has the focus. */
-function picture(card: HTMLElement, one: Pictured, numbers: Numbers): SVGSVGElement {
+function picture(card: HTMLElement, pictured: Pictured, numbers: Numbers): SVGSVGElement {
   const view = new View();
   [view.width, view.height] = [WIDTH, HEIGHT];
-  view.fit(one.scene.box); // with room for the feet of pivots
-  const pieces = one.scene.signs.map((sign) => new Piece(sign, one.scene));
+  view.fit(pictured.scene.box); // with room for the feet of pivots
+  const pieces = pictured.scene.signs.map((sign) => new Piece(sign, pictured.scene));
   const size = { viewBox: `0 0 ${WIDTH} ${HEIGHT}` };
   const svg = s("svg", { class: "linkage small", "aria-hidden": "true", ...size });
   for (const piece of pieces) {
@@ -168,18 +168,18 @@ function picture(card: HTMLElement, one: Pictured, numbers: Numbers): SVGSVGElem
   const pose = (k: number) => {
     for (const piece of pieces) piece.pose(numbers, view, k, null);
   };
-  pose(one.at);
+  pose(pictured.at);
   const count = numbers.get("crank_angle")?.length ?? 1;
   const still = matchMedia("(prefers-reduced-motion: reduce)");
-  let [frame, begun] = [0, 0];
+  let [frame, since] = [0, 0];
   const tick = (now: number) => {
-    begun ||= now;
-    pose((one.at + Math.floor(((now - begun) / TURN) * 36)) % count);
+    since ||= now;
+    pose((pictured.at + Math.floor(((now - since) / TURN) * 36)) % count);
     frame = requestAnimationFrame(tick);
   };
   const stop = () => {
     cancelAnimationFrame(frame);
-    [frame, begun] = [0, 0];
+    [frame, since] = [0, 0];
   };
   const start = () => {
     if (!frame && !still.matches) frame = requestAnimationFrame(tick);

@@ -9,7 +9,7 @@ export interface Attempts {
   release(): void;
   /** Try edits; `done` is told why they were refused, or null. */
   attempt(label: string, edits: Edit[], stamp: number, done: (refusal: string | null) => void): void;
-  ask(asked: { type: "edit"; commit: boolean; label: string; edits: Edit[] }): void;
+  ask(request: { type: "edit"; commit: boolean; label: string; edits: Edit[] }): void;
   /** Nothing is tried any more. */
   rest(): void;
 }

@@ -47,7 +47,7 @@ export class Hands<S extends Drawable = State> {
   private target: Pair | null = null;
   private keys = false;
   /** Of which handle the line below the drawing tells, and what more. */
-  private told: [Grip, string] | null = null;
+  private hinted: [Grip, string] | null = null;
 
   constructor(
     private readonly page: Held<S>,
@@ -75,7 +75,7 @@ export class Hands<S extends Drawable = State> {
   /** Say anew where what is held is, or what was spoken of last. */
   follow(): void {
     if (this.gesture && this.grip) this.tell(this.grip, "");
-    else if (this.told) this.tell(...this.told);
+    else if (this.hinted) this.tell(...this.hinted);
   }
 
   /** Say anew where everything is: names of handles for those who hear them. */
@@ -127,7 +127,7 @@ export class Hands<S extends Drawable = State> {
   }
 
   private hush(): void {
-    this.told = null;
+    this.hinted = null;
     this.page.hint("");
   }
 
@@ -135,9 +135,9 @@ export class Hands<S extends Drawable = State> {
     const place = this.stage.place(grip);
     if (!place) return;
     const [circle] = this.stage.circle(grip) ?? [];
-    const told = circle ? length(circle.radius) : `${length(place[0])}, ${length(place[1])}`;
-    const where = `${nameOf(grip)}: ${told} ${lengths().unit}`;
-    this.told = [grip, more];
+    const measure = circle ? length(circle.radius) : `${length(place[0])}, ${length(place[1])}`;
+    const where = `${nameOf(grip)}: ${measure} ${lengths().unit}`;
+    this.hinted = [grip, more];
     this.page.hint(more ? `${where} · ${more}` : where);
   }
 
@@ -261,7 +261,7 @@ export interface Turning<S extends Drawable = State> {
 /** Let the crank of a stage be turned by mouse and finger. */
 export function turnable<S extends Drawable>(page: Turning<S>): void {
   const { svg } = page.stage;
-  const held = (event: Event): string | null => {
+  const driven = (event: Event): string | null => {
     const target = event.target as Element;
     if (target.closest(".rim")) return page.state()?.status.drive ?? null;
     const link = target.closest(".grip") ? undefined : target.closest<SVGElement>(".body")?.dataset.link;
@@ -271,7 +271,7 @@ export function turnable<S extends Drawable>(page: Turning<S>): void {
   svg.addEventListener(
     "pointerdown",
     (event) => {
-      const link = held(event);
+      const link = driven(event);
       if (event.button || !link) return;
       event.preventDefault();
       event.stopPropagation();
@@ -279,7 +279,7 @@ export function turnable<S extends Drawable>(page: Turning<S>): void {
     },
     true,
   );
-  svg.addEventListener("touchstart", (event) => held(event) && event.preventDefault(), {
+  svg.addEventListener("touchstart", (event) => driven(event) && event.preventDefault(), {
     passive: false,
   });
 }

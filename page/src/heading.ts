@@ -7,7 +7,7 @@ import { say } from "./words";
 export class Heading {
   readonly about = h("details", { class: "about" });
   readonly notes = h("div", { class: "notes", role: "status" });
-  private shown = "";
+  private written = "";
   private later = new Map<string, string[]>();
 
   /** What is told after a state, by what it is of: it stays until it is told anew. */
@@ -21,9 +21,9 @@ export class Heading {
   }
 
   show(state: State): void {
-    const told = [state.name, state.title, state.description].join("\n");
-    if (told !== this.shown) {
-      this.shown = told;
+    const about = [state.name, state.title, state.description].join("\n");
+    if (about !== this.written) {
+      this.written = about;
       const text = state.description.trim() || say("This file has no description.");
       this.about.replaceChildren(h("summary", {}, h("h1", {}, state.title || state.name)), h("p", {}, text));
     }

@@ -85,14 +85,14 @@ const number: Maker = (_, name, __, hint) => {
     const text = typed(element);
     return text === "" ? undefined : Number.isFinite(Number(text)) ? Number(text) : text;
   };
-  return { element, value, set: (given) => (element.value = decimals(String(given ?? ""))) };
+  return { element, value, set: (value) => (element.value = decimals(String(value ?? ""))) };
 };
 
 const text: Maker = ({ options = [], of }, name, around, hint) => {
   const field = box(name, hint);
   const value = () => field.value.trim() || undefined;
-  const put = (given: Plain | undefined) => (field.value = String(given ?? ""));
-  const offered = of === "output" ? Object.entries(around.outputs) : options.map((one) => [String(one), ""]);
+  const put = (value: Plain | undefined) => (field.value = String(value ?? ""));
+  const offered = of === "output" ? Object.entries(around.outputs) : options.map((option) => [String(option), ""]);
   if (!offered.length) return { element: field, value, set: put };
   const id = fresh("options");
   set(field, { list: id });
@@ -102,17 +102,17 @@ const text: Maker = ({ options = [], of }, name, around, hint) => {
 
 /** A text, or one for each of some languages. */
 const wording: Maker = (asking, name, around, hint) => {
-  const held = h("span", { class: "several" });
-  let one = text(asking, name, around, hint);
+  const container = h("span", { class: "several" });
+  let inner = text(asking, name, around, hint);
   const put = (value: Plain | undefined) => {
     const spoken = typeof value === "object";
     const item: Asking = { kind: "text" };
-    one = spoken ? names({ kind: "names", item }, name, around, "") : text(asking, name, around, hint);
-    one.set(value);
-    held.replaceChildren(one.element);
+    inner = spoken ? names({ kind: "names", item }, name, around, "") : text(asking, name, around, hint);
+    inner.set(value);
+    container.replaceChildren(inner.element);
   };
   put(undefined);
-  return { element: held, value: () => one.value(), set: put };
+  return { element: container, value: () => inner.value(), set: put };
 };
 
 /** The first option stands for nothing given. */
@@ -121,7 +121,7 @@ function offer(select: HTMLSelectElement, options: (string | number)[], none: st
   const all = chosen && !options.map(String).includes(chosen) ? [...options, chosen] : options;
   select.replaceChildren(
     h("option", { value: "" }, none),
-    ...all.map((one) => h("option", { value: String(one) }, String(one))),
+    ...all.map((option) => h("option", { value: String(option) }, String(option))),
   );
   select.value = chosen;
 }
@@ -131,7 +131,7 @@ const choice: Maker = ({ options = [] }, name, _, hint) => {
   offer(element, options, hint ? `(${hint})` : "");
   return {
     element,
-    value: () => options.find((one) => String(one) === element.value),
+    value: () => options.find((option) => String(option) === element.value),
     set: (value) => (element.value = String(value ?? "")),
   };
 };
@@ -151,19 +151,19 @@ const called: Maker = ({ of, on }, name, around, hint) => {
   const refresh = () => offer(element, namesOf(of, on ?? undefined, around), hint ? `(${hint})` : "");
   refresh();
   const put = (value: Plain | undefined) => {
-    if (value !== undefined && ![...element.options].some((one) => one.value === value))
+    if (value !== undefined && ![...element.options].some((option) => option.value === value))
       element.append(h("option", { value: String(value) }, String(value)));
     element.value = String(value ?? "");
   };
   const picked = ({ point, link }: Picked) => {
-    const found = of === "point" ? point : link;
-    if (!found) return;
+    const picked = of === "point" ? point : link;
+    if (!picked) return;
     if (of === "point" && on && ![FRAME, LINKS, OWN].includes(on)) {
-      const has = Object.hasOwn(around.bodies[String(around.beside(on) ?? "")] ?? {}, found);
+      const has = Object.hasOwn(around.bodies[String(around.beside(on) ?? "")] ?? {}, picked);
       if (!has && link) around.put(on, link);
       refresh();
     }
-    put(found);
+    put(picked);
     element.dispatchEvent(new Event("change", { bubbles: true }));
   };
   const button = pickButton(name, () => around.pick(FRAME, true, picked));
@@ -176,10 +176,10 @@ function namesOf(of: Asking["of"], on: string | undefined, around: Around): stri
   const links = Object.keys(bodies).filter((body) => body !== FRAME);
   if (of === "link") return links;
   if (of === "body") return [FRAME, ...links];
-  if (on === LINKS) return [...new Set(links.flatMap((one) => Object.keys(bodies[one] ?? {})))];
+  if (on === LINKS) return [...new Set(links.flatMap((link) => Object.keys(bodies[link] ?? {})))];
   const body = on === FRAME ? FRAME : on === OWN ? around.body : on ? String(around.beside(on) ?? "") : "";
   const whole = body ? [body] : on ? [FRAME, ...links] : [...links, FRAME];
-  return [...new Set(whole.flatMap((one) => Object.keys(bodies[one] ?? {})))];
+  return [...new Set(whole.flatMap((body) => Object.keys(bodies[body] ?? {})))];
 }
 
 function pickButton(name: string, onclick: () => void): HTMLButtonElement {
@@ -197,12 +197,12 @@ const place: Maker = (asking, name, around) => {
   const refresh = () => names && offer(names, Object.keys(around.bodies[body()] ?? {}), "x, y:");
   refresh();
   const put = (value: Plain | undefined) => {
-    const one = typeof value === "string";
-    if (names) names.value = one ? value : "";
-    const texts = one || value === undefined ? [] : componentsOf(value);
+    const isName = typeof value === "string";
+    if (names) names.value = isName ? value : "";
+    const texts = isName || value === undefined ? [] : componentsOf(value);
     for (const [i, box] of boxes.entries()) box.value = decimals(texts[i] ?? "");
   };
-  const picked = (found: Picked) => put(named && found.point ? found.point : [...found.place]);
+  const picked = (picked: Picked) => put(named && picked.point ? picked.point : [...picked.place]);
   const button = pickButton(name, () => around.pick(body(), !!named, picked));
   return {
     element: h("span", { class: "several" }, names, ...boxes, button),
@@ -212,10 +212,10 @@ const place: Maker = (asking, name, around) => {
       if (names?.value) return names.value;
       const texts = boxes.map(typed);
       const last = space && texts[2] === "" ? 2 : texts.length;
-      if (texts.every((one) => one === "")) return undefined;
+      if (texts.every((text) => text === "")) return undefined;
       const [distance, direction] = texts;
       if (!space && direction && ANGLE.test(direction)) return { distance: withUnit(distance ?? "", unit), direction };
-      return texts.slice(0, last).map((one) => withUnit(one, unit));
+      return texts.slice(0, last).map((text) => withUnit(text, unit));
     },
   };
 };
@@ -232,9 +232,9 @@ const direction: Maker = ({ unit }, name, _, hint) => {
   return {
     element,
     value: () => {
-      const given = typed(element);
-      if (given.includes(",")) return given.split(",").map(Number);
-      return withUnit(given, unit) || undefined;
+      const text = typed(element);
+      if (text.includes(",")) return text.split(",").map(Number);
+      return withUnit(text, unit) || undefined;
     },
     set: (value) => (element.value = Array.isArray(value) ? value.join(", ") : decimals(String(value ?? ""))),
   };
@@ -244,13 +244,13 @@ const direction: Maker = ({ unit }, name, _, hint) => {
 const list: Maker = (asking, name, around, hint) => {
   const { item, sizes = [], bare } = asking;
   const [least, most] = sizes.length ? [Math.min(...sizes), Math.max(...sizes)] : [1, 100];
-  const held = h("span", { class: "items" });
+  const container = h("span", { class: "items" });
   const items: Input[] = [];
   const grow = (value?: Plain) => {
-    const one = input(item as Asking, `${name} ${items.length + 1}`, around, hint);
-    one.set(value);
-    items.push(one);
-    held.append(one.element);
+    const entry = input(item as Asking, `${name} ${items.length + 1}`, around, hint);
+    entry.set(value);
+    items.push(entry);
+    container.append(entry.element);
     limit();
   };
   const more = step("+", say("One more"), () => grow());
@@ -264,22 +264,22 @@ const list: Maker = (asking, name, around, hint) => {
   };
   const put = (value: Plain | undefined) => {
     items.splice(0);
-    held.replaceChildren();
+    container.replaceChildren();
     const values = value === undefined ? [] : Array.isArray(value) ? value : [value];
     for (let i = 0; i < Math.max(least, values.length); i++) grow(values[i]);
   };
   put(undefined);
   return {
-    element: h("span", { class: "several list" }, held, more, less),
+    element: h("span", { class: "several list" }, container, more, less),
     set: put,
     refresh: () => {
       for (const item of items) item.refresh?.();
     },
     value: () => {
-      const values = items.map((one) => one.value());
-      if (values.every((one) => one === undefined)) return undefined;
-      const given = values.map((one) => one ?? "");
-      return bare && given.length === 1 ? given[0] : given;
+      const values = items.map((entry) => entry.value());
+      if (values.every((value) => value === undefined)) return undefined;
+      const filled = values.map((value) => value ?? "");
+      return bare && filled.length === 1 ? filled[0] : filled;
     },
   };
 };
@@ -291,27 +291,27 @@ function step(sign: string, name: string, onclick: () => void): HTMLButtonElemen
 /** Some of a kind by names: of the user's, or of what is there. */
 const names: Maker = (asking, name, around, hint) => {
   const { item, by = { kind: "text" }, listed } = asking;
-  const held = h("span", { class: "items named" });
+  const container = h("span", { class: "items named" });
   const rows: { line: HTMLElement; called: Input; item: Input }[] = [];
   const grow = (key = "", value?: Plain) => {
     const number = rows.length + 1;
     const own = input(by, say("{name} {number}, name", { name, number }), around, say("name"));
     own.set(key);
     own.element.classList.add("name-of");
-    const one = input(item as Asking, `${name} ${key || number}`, around, hint);
-    one.set(value);
-    const gone = () => {
+    const entry = input(item as Asking, `${name} ${key || number}`, around, hint);
+    entry.set(value);
+    const remove = () => {
       rows.splice(rows.indexOf(row), 1);
       row.line.remove();
     };
-    const line = h("span", { class: "several" }, own.element, one.element, step("−", say("One less"), gone));
-    const row = { line, called: own, item: one };
+    const line = h("span", { class: "several" }, own.element, entry.element, step("−", say("One less"), remove));
+    const row = { line, called: own, item: entry };
     rows.push(row);
-    held.append(line);
+    container.append(line);
   };
   const put = (value: Plain | undefined) => {
     rows.splice(0);
-    held.replaceChildren();
+    container.replaceChildren();
     if (Array.isArray(value)) for (const key of value) grow(String(key));
     else for (const [key, inner] of Object.entries((value ?? {}) as Values)) grow(key, inner);
   };
@@ -319,7 +319,7 @@ const names: Maker = (asking, name, around, hint) => {
     element: h(
       "span",
       { class: "several list" },
-      held,
+      container,
       step("+", say("One more"), () => grow()),
     ),
     set: put,
@@ -327,11 +327,11 @@ const names: Maker = (asking, name, around, hint) => {
       for (const { called, item } of rows) for (const input of [called, item]) input.refresh?.();
     },
     value: () => {
-      const given = rows.filter((row) => (row.called.value() ?? row.item.value()) !== undefined);
-      if (!given.length) return undefined;
-      const keys = given.map((row) => String(row.called.value() ?? ""));
-      const values = given.map((row) => row.item.value());
-      if (listed && values.every((one) => one === undefined)) return keys;
+      const filled = rows.filter((row) => (row.called.value() ?? row.item.value()) !== undefined);
+      if (!filled.length) return undefined;
+      const keys = filled.map((row) => String(row.called.value() ?? ""));
+      const values = filled.map((row) => row.item.value());
+      if (listed && values.every((value) => value === undefined)) return keys;
       return Object.fromEntries(keys.map((key, i) => [key, values[i] ?? ""]));
     },
   };
@@ -342,10 +342,10 @@ const file: Maker = (_, name, around) => {
   const shown = box(name, "");
   const chosen = h("input", { type: "file", accept: ".csv", hidden: true, tabindex: -1 });
   chosen.addEventListener("change", async () => {
-    const [one] = chosen.files ?? [];
-    if (!one) return;
-    around.file(one.name, await one.text());
-    shown.value = one.name;
+    const [table] = chosen.files ?? [];
+    if (!table) return;
+    around.file(table.name, await table.text());
+    shown.value = table.name;
   });
   const button = h("button", { type: "button", class: "pick", onclick: () => chosen.click() }, say("Choose file"));
   return {

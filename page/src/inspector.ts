@@ -26,8 +26,8 @@ export class Locks {
 
   /** Points from which a point keeps its distance. */
   keep(point: string): string[] {
-    const found = [...this.pairs.values()].filter((ends) => ends.includes(point));
-    return [...new Set(found.map(([one, other]) => (one === point ? other : one)))];
+    const pairs = [...this.pairs.values()].filter((ends) => ends.includes(point));
+    return [...new Set(pairs.map(([first, second]) => (first === point ? second : first)))];
   }
 
   /** A button that locks a length and unlocks it. */
@@ -68,7 +68,7 @@ export class Row {
   private exact = "";
   private typing = false;
   /** What has been asked for and is not answered yet: leaving the field does not ask again. */
-  private asked: string | null = null;
+  private pending: string | null = null;
 
   constructor(
     private field: Field,
@@ -92,7 +92,7 @@ export class Row {
     this.input.addEventListener("focus", () => this.focus());
     this.input.addEventListener("input", () => {
       this.typing = true;
-      this.asked = null;
+      this.pending = null;
       this.input.dataset.typed = "";
     });
     this.input.addEventListener("blur", () => this.commit());
@@ -151,17 +151,17 @@ export class Row {
   private commit(): void {
     this.gesture?.end();
     const text = asTyped(this.input.value);
-    if (text === this.asked) return;
+    if (text === this.pending) return;
     if (!this.typing || text === this.exact || text === "") return this.revert();
-    this.asked = text;
+    this.pending = text;
     this.talk.release();
     const { path, unit } = this.field;
     const bare = Number.isFinite(Number(text));
     const edits = [{ set: path, text: bare ? `${text} ${unit}` : text, ...this.keep }];
-    this.talk.ask({ type: "edit", commit: true, label: this.label, edits }, (refusal, told) => {
-      this.asked = null;
+    this.talk.ask({ type: "edit", commit: true, label: this.label, edits }, (refusal, refused) => {
+      this.pending = null;
       if (refusal === null) this.typing = false;
-      this.complain(refusal, told);
+      this.complain(refusal, refused);
       if (refusal === null) this.revert();
     });
   }
@@ -217,17 +217,17 @@ export class Row {
     const { min, max, value } = this.field;
     const [low, high] = [min ?? 0, max ?? 1];
     const part = high > low ? (value - low) / (high - low) : 0;
-    const [step, shown] = [String(Math.round(part * STEPS)), part.toFixed(3)];
+    const [step, text] = [String(Math.round(part * STEPS)), part.toFixed(3)];
     // Most numbers stay while one is dragged, and what is written is laid out again.
     put(slider, step);
-    if (slider.style.getPropertyValue("--part") !== shown) slider.style.setProperty("--part", shown);
+    if (slider.style.getPropertyValue("--part") !== text) slider.style.setProperty("--part", text);
     set(slider, { "aria-valuetext": decimals(this.field.shown) });
   }
 
-  private complain(message: string | null, told: Refused | null = null): void {
+  private complain(message: string | null, refused: Refused | null = null): void {
     show(this.error, message !== null);
     write(this.error, message ?? "");
-    withCure(this.error, cureOf(told));
+    withCure(this.error, cureOf(refused));
     set(this.input, {
       "aria-invalid": message !== null && "true",
       "aria-describedby": message !== null && this.error.id,
@@ -276,14 +276,14 @@ export class Inspector {
     for (const [path, row] of this.rows) {
       row.root.classList.toggle("chosen", !!point && path.includes(`.${keyPath("points", point)}.`));
     }
-    const found = group === null ? undefined : this.groups.get(group);
-    if (!found) return;
-    found.open = true;
+    const opened = group === null ? undefined : this.groups.get(group);
+    if (!opened) return;
+    opened.open = true;
     // Only the list itself scrolls, never the page around it.
     const list = this.root.parentElement;
     if (list && list.scrollHeight > list.clientHeight + 1) {
-      const above = found.offsetTop - list.offsetTop;
-      const inside = above >= list.scrollTop && above + found.offsetHeight <= list.scrollTop + list.clientHeight;
+      const above = opened.offsetTop - list.offsetTop;
+      const inside = above >= list.scrollTop && above + opened.offsetHeight <= list.scrollTop + list.clientHeight;
       if (!inside) list.scrollTo({ top: above, behavior: "smooth" });
     }
   }
@@ -329,14 +329,14 @@ export class Inspector {
 
   /** x and y beside each other. */
   private pair(x: Field, y: Field): HTMLElement {
-    const [one, other] = [this.row(x, false), this.row(y, false)];
+    const [first, second] = [this.row(x, false), this.row(y, false)];
     const name = x.label.replace(/, x$/, "");
     return h(
       "div",
       { class: "pair" },
       h("span", { class: "name", "aria-hidden": "true" }, breakable(name)),
-      one.root,
-      other.root,
+      first.root,
+      second.root,
     );
   }
 }

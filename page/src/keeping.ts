@@ -3,7 +3,7 @@
 import type { Conversation } from "./conversation";
 import { h } from "./dom";
 import type { Hello, PageRequest } from "./protocol";
-import { stepCount, type Told } from "./story";
+import { type StoryData, stepCount } from "./story";
 import type { Opened } from "./toolbar";
 import { say } from "./words";
 
@@ -57,10 +57,10 @@ async function packed(text: string): Promise<string> {
 
 /** What a fragment holds, and an error where that is no whole model. */
 export async function read(hash: string, largest: number): Promise<Shared> {
-  const found = new URLSearchParams(hash.replace(/^#/, ""));
-  const [model, tables] = [found.get("model"), found.get("tables")];
+  const parameters = new URLSearchParams(hash.replace(/^#/, ""));
+  const [model, tables] = [parameters.get("model"), parameters.get("tables")];
   if (!model) throw new RangeError();
-  const name = found.get("name") ?? "machine.toml";
+  const name = parameters.get("name") ?? "machine.toml";
   const files = tables && (JSON.parse(await unpacked(tables, largest)) as Record<string, string>);
   return { name, text: await unpacked(model, largest), ...(files && { files }) };
 }
@@ -89,16 +89,16 @@ function slowly(bytes: Uint8Array<ArrayBuffer>): ReadableStream<Uint8Array<Array
 async function text(stream: ReadableStream<Uint8Array>, largest: number): Promise<string> {
   const reader = stream.getReader();
   const decoder = new TextDecoder("utf-8", { fatal: true });
-  let [found, size] = ["", 0];
+  let [content, size] = ["", 0];
   for (;;) {
     const { done, value } = await reader.read();
-    if (done) return found + decoder.decode();
+    if (done) return content + decoder.decode();
     size += value.length;
     if (size > largest) {
       await reader.cancel();
       throw new RangeError();
     }
-    found += decoder.decode(value, { stream: true });
+    content += decoder.decode(value, { stream: true });
   }
 }
 
@@ -109,7 +109,7 @@ interface Page {
   full: boolean;
   shown(): Opened | null;
   say(text: string, bad: boolean): void;
-  open(asked: PageRequest, name: string): void;
+  open(request: PageRequest, name: string): void;
 }
 
 export class Keeping {
@@ -141,16 +141,16 @@ export class Keeping {
   /** A page begins: by what its address holds, or by what was done here; tells whether it has. */
   async begin(hello: Hello): Promise<boolean> {
     this.largest = hello.largest;
-    const begun = await this.goOn(hello);
+    const resumed = await this.goOn(hello);
     this.page.talk.announce(); // once it is known what tabs without a server have left
-    return begun;
+    return resumed;
   }
 
   private async goOn(hello: Hello): Promise<boolean> {
     if (await this.shared()) return true;
     if (this.page.talk.recall(hello.base)) return true;
-    const [told] = await this.page.talk.offered(hello.base);
-    if (told && this.offer.hidden) this.show(told, hello.base);
+    const [record] = await this.page.talk.offered(hello.base);
+    if (record && this.offer.hidden) this.show(record, hello.base);
     return false;
   }
 
@@ -238,8 +238,8 @@ export class Keeping {
       return true;
     }
     try {
-      const found = await read(hash, this.largest);
-      this.page.open({ type: "open", ...found }, found.name);
+      const model = await read(hash, this.largest);
+      this.page.open({ type: "open", ...model }, model.name);
       return true;
     } catch {
       // Above the page, where no machine that opens takes it away.
@@ -253,12 +253,12 @@ export class Keeping {
     }
   }
 
-  private show(told: Told, base: string): void {
-    const count = stepCount(told);
+  private show(record: StoryData, base: string): void {
+    const count = stepCount(record);
     this.offer.replaceChildren(
-      say("{name} was changed here before, in {count} steps.", { name: told.name, count }),
+      say("{name} was changed here before, in {count} steps.", { name: record.name, count }),
       " ",
-      this.button(say("Go on"), () => this.page.talk.resume(told, base)),
+      this.button(say("Go on"), () => this.page.talk.resume(record, base)),
       this.button(say("Begin anew"), () => undefined),
     );
     this.offer.hidden = false;

@@ -322,7 +322,7 @@ export interface Status {
 /** A measured record, and how the machine compares with it. */
 export interface MeasuredRecord {
   name: string;
-  told: string[];
+  lines: string[];
   left_out: string[];
 }
 
@@ -399,7 +399,7 @@ export interface StateMessage {
 
 /** A natural mode of the support. */
 export interface SupportMode {
-  told: string[];
+  lines: string[];
   seen: boolean;
   /** Real and imaginary parts along x, along y (m) and of the rotation, as large as drawn. */
   shape: number[];
@@ -431,7 +431,7 @@ export interface GhostMessage {
 export interface StationOnShaft {
   name: string;
   place: number;
-  told: string;
+  text: string;
 }
 
 /** Signs about a place of the shaft. */
@@ -456,7 +456,7 @@ export interface ToolScene {
 /** How the shaft may be seen to move. */
 export interface ShaftView {
   name: string;
-  told: string[];
+  lines: string[];
   /** Real and imaginary parts along the shaft or support, as large as they are drawn. */
   shape: number[];
 }
@@ -821,7 +821,7 @@ export interface HandedOut {
 
 /** All answers to a question have come, those too that take longer. */
 export interface Answered {
-  type: "told";
+  type: "answered";
   seq: number;
 }
 

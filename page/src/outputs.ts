@@ -30,7 +30,7 @@ class Finder {
   private readonly list: HTMLElement;
   private entries: Entry[] = [];
   private offered = "";
-  private found: Entry[] = [];
+  private matches: Entry[] = [];
   private at = -1;
 
   constructor(
@@ -96,14 +96,14 @@ class Finder {
     const begins = ({ label }: Entry) => Number(label.toLowerCase().startsWith(whole));
     const order = (a: Entry, b: Entry) =>
       whole ? begins(b) - begins(a) || meant(b) - meant(a) || a.label.length - b.label.length : 0;
-    this.found = this.entries.filter(hit).sort(order).slice(0, MOST);
+    this.matches = this.entries.filter(hit).sort(order).slice(0, MOST);
     this.fill();
     this.show(true);
-    this.go(words.length && this.found.length ? 0 : -1);
+    this.go(words.length && this.matches.length ? 0 : -1);
   }
 
   private fill(): void {
-    const options = this.found.map(({ name, label, group }) =>
+    const options = this.matches.map(({ name, label, group }) =>
       h(
         "div",
         { role: "option", id: fresh("option"), "data-name": name, "aria-selected": "false" },
@@ -147,13 +147,13 @@ class Finder {
   }
 
   private key(event: KeyboardEvent): void {
-    const count = this.found.length;
+    const count = this.matches.length;
     if (event.key === "ArrowDown" || event.key === "ArrowUp") {
       if (this.list.hidden) this.open();
       const by = event.key === "ArrowDown" ? 1 : -1;
       if (count) this.go((Math.max(this.at, by > 0 ? -1 : 0) + by + count) % count);
     } else if (event.key === "Enter") {
-      const entry = this.found[this.at];
+      const entry = this.matches[this.at];
       if (!this.list.hidden && entry) this.take(entry.name);
     } else if (event.key === "Escape" && !this.list.hidden) {
       event.stopPropagation();
@@ -215,27 +215,27 @@ export class Outputs {
     this.finder.call(say("Any output over crank angle")); // which goes by the machine that is open
     this.finder.offer(state.outputs);
     const there = state.numbers.names(PREFIX).map((name) => name.slice(PREFIX.length));
-    const told = there.flatMap((name) => state.outputs.find((one) => one.name === name) ?? []);
-    this.names = told.map(({ name }) => name);
+    const outputs = there.flatMap((name) => state.outputs.find((output) => output.name === name) ?? []);
+    this.names = outputs.map(({ name }) => name);
     for (const [name, { strip }] of this.drawn) {
       if (this.names.includes(name)) continue;
       strip.close();
       this.drawn.delete(name);
     }
-    for (const output of told) this.draw(state, output);
+    for (const output of outputs) this.draw(state, output);
   }
 
   private draw(state: State, output: Output): void {
-    const found = column(state, `${PREFIX}${output.name}`, 1, 0, true, output.winds);
-    if (!found) return;
+    const columns = column(state, `${PREFIX}${output.name}`, 1, 0, true, output.winds);
+    if (!columns) return;
     const { strip, button } = this.drawn.get(output.name) ?? this.make(output);
     const title = capital(output.label);
     button.setAttribute("aria-label", say("Close chart of {output}", { output: output.label }));
-    const model = { label: "", role: THIRD, ...scaled(found, output) };
-    const seen = measured(state.numbers, output.name, 1, 0, found.values.length, output.winds);
+    const model = { label: "", role: THIRD, ...scaled(columns, output) };
+    const seen = measured(state.numbers, output.name, 1, 0, columns.values.length, output.winds);
     const curves = seen ? besides(model, times(seen, output)) : [model];
     const x = this.x.of(state.angles, state.turns);
-    strip.show({ title, x, unit: output.unit, curves, log: wide(found.values) });
+    strip.show({ title, x, unit: output.unit, curves, log: wide(columns.values) });
   }
 
   private make(output: Output): Drawn {
@@ -249,22 +249,22 @@ export class Outputs {
       { height: 110, xAxis: true, xLabel: "°", xStep: turning, picked: this.picked, button },
       this.theme,
     );
-    const one = { strip, button };
-    this.drawn.set(name, one);
+    const drawn = { strip, button };
+    this.drawn.set(name, drawn);
     this.root.append(strip.root);
     strip.resize(this.width);
     this.made(strip, output);
-    return one;
+    return drawn;
   }
 
   /** Ask for the numbers of an output; they come with the state, now and after every change. */
   private add(name: string): void {
-    this.wanted([...this.names.filter((one) => one !== name), name]);
+    this.wanted([...this.names.filter((other) => other !== name), name]);
   }
 
   private remove(name: string): void {
     const next = this.finder.root.querySelector("input");
-    this.wanted(this.names.filter((one) => one !== name));
+    this.wanted(this.names.filter((other) => other !== name));
     next?.focus({ preventScroll: true });
   }
 }

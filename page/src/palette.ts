@@ -97,7 +97,7 @@ export class Palette {
   });
   private readonly tools = tools();
   /** What is asked of a part before it is added, by the word in front of it. */
-  private readonly asked = new Map<string, HTMLElement>();
+  private readonly inputs = new Map<string, HTMLElement>();
 
   constructor(private readonly page: Palettes) {
     const buttons = this.tools.map((item) => {
@@ -111,20 +111,20 @@ export class Palette {
     });
     const make = h("button", { type: "button", onclick: () => page.made() }, say("New"));
     for (const { options } of partTools())
-      if (options && !this.asked.has(options.word)) this.asked.set(options.word, inputsOf(options));
+      if (options && !this.inputs.has(options.word)) this.inputs.set(options.word, inputsOf(options));
     this.name.addEventListener("change", () => this.rename());
     this.root = h(
       "div",
       { class: "making" },
       h("div", { class: "tools", role: "toolbar", "aria-label": say("Tools") }, make, ...buttons),
       // A room of its own: sentences that come, go or wrap reach over the sheet, and never move it.
-      h("div", { class: "telling" }, h("div", {}, this.status, this.name, this.next, ...this.asked.values())),
+      h("div", { class: "telling" }, h("div", {}, this.status, this.name, this.next, ...this.inputs.values())),
     );
   }
 
   /** What a part that a tool adds is to have beside its links. */
   optionsOf({ options }: PartTool): Record<string, string | number> {
-    const inputs = this.asked
+    const inputs = this.inputs
       .get(options?.word ?? "")
       ?.querySelectorAll<HTMLInputElement | HTMLSelectElement>("[name]");
     return Object.fromEntries(
@@ -138,7 +138,7 @@ export class Palette {
     const shown = this.tools.find((item) => item.tool === tool);
     write(this.next, tool === "select" || !shown ? "" : pending ? shown.then : shown.first);
     const word = partTool(tool)?.options?.word;
-    for (const [asked, inputs] of this.asked) inputs.hidden = asked !== word;
+    for (const [key, inputs] of this.inputs) inputs.hidden = key !== word;
   }
 
   tell(status: Status): void {

@@ -76,7 +76,7 @@ export class Parts {
     this.tables = tables;
     this.select.replaceChildren(
       h("option", { value: "" }, say("Add …")),
-      ...tables.groups.map((group, i) => this.offer(group, i)).filter((one) => one !== null),
+      ...tables.groups.map((group, i) => this.offer(group, i)).filter((offer) => offer !== null),
     );
     this.list.replaceChildren(
       ...tables.groups.filter(({ entries }) => entries.length).map((group) => this.listed(group)),
@@ -92,10 +92,10 @@ export class Parts {
    */
   add(place: string, values: Values): void {
     this.want(({ groups }) => {
-      const group = groups.find((one) => one.place === place);
+      const group = groups.find((group) => group.place === place);
       if (group?.needs)
         this.begin(
-          groups.find((one) => one.place === place.split(".")[0]),
+          groups.find((group) => group.place === place.split(".")[0]),
           {},
         );
       else this.begin(group, values);
@@ -183,8 +183,8 @@ export class Parts {
 
   private begin(group: Group | undefined, values: Values): void {
     if (!group) return;
-    const [held] = group.entries;
-    if (group.many === "one" && held) return this.edit(group, held, values, Object.keys(values).at(-1));
+    const [entry] = group.entries;
+    if (group.many === "one" && entry) return this.edit(group, entry, values, Object.keys(values).at(-1));
     const { many, entries, place, where } = group;
     const number = many === "list" ? `[${entries.length + 1}]` : "";
     this.open({
@@ -260,8 +260,8 @@ export class Parts {
     const { talk } = this.page;
     const form = this.form;
     talk.release();
-    talk.ask({ type: "entry", label, place, values, ...more }, (refusal, told) => {
-      if (refusal !== null && form && form === this.form) form.refused(refusal, told);
+    talk.ask({ type: "entry", label, place, values, ...more }, (refusal, refused) => {
+      if (refusal !== null && form && form === this.form) form.refused(refusal, refused);
       else if (form === this.form) this.close();
     });
   }
@@ -315,7 +315,7 @@ function lastOf({ place }: TableEntry): string {
   return String(stepsOf(place).pop());
 }
 
-function same(one: Values, other: Values): boolean {
-  const keys = new Set([...Object.keys(one), ...Object.keys(other)]);
-  return [...keys].every((key) => JSON.stringify(one[key]) === JSON.stringify(other[key]));
+function same(first: Values, second: Values): boolean {
+  const keys = new Set([...Object.keys(first), ...Object.keys(second)]);
+  return [...keys].every((key) => JSON.stringify(first[key]) === JSON.stringify(second[key]));
 }

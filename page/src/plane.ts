@@ -54,9 +54,9 @@ class Texts {
   }
 
   add(at: Attributes, text: string): void {
-    const one = this.root.children[this.count++] ?? this.root.appendChild(s("text"));
-    set(one, at);
-    write(one, text);
+    const element = this.root.children[this.count++] ?? this.root.appendChild(s("text"));
+    set(element, at);
+    write(element, text);
   }
 
   end(): void {
@@ -133,8 +133,8 @@ export class Plane {
     if (this.polar) {
       const [size, turn] = [Math.hypot(x, y), Math.round(degrees(Math.atan2(y, x)))];
       // What nobody sees is rounding, and points nowhere.
-      const told = `${shown(size * factor, 3)} ∠ ${plain(turn)}°`;
-      write(this.reading, size * this.scale < UNSEEN ? `0 ${unit}` : told);
+      const polar = `${shown(size * factor, 3)} ∠ ${plain(turn)}°`;
+      write(this.reading, size * this.scale < UNSEEN ? `0 ${unit}` : polar);
     } else {
       const places = (this.size[0] / this.scale) * factor > 60 ? 0 : 1;
       const [across, up] = [x, y].map((value) => signed((value * factor).toFixed(places)));
@@ -237,10 +237,10 @@ export class Plane {
   private sampled(): Spot[] {
     const points = this.now() ?? new Float32Array(0);
     const step = Math.max(Math.floor(points.length / 144), 1) * 2;
-    const found: Spot[] = [];
+    const spots: Spot[] = [];
     for (let i = 0; i + 1 < points.length; i += step)
-      found.push(this.place(points[i] as number, points[i + 1] as number));
-    return found;
+      spots.push(this.place(points[i] as number, points[i + 1] as number));
+    return spots;
   }
 
   /** Crank angles beside their mark, away from the origin and off the curve, where there is room. */
@@ -285,8 +285,8 @@ export class Plane {
       numbers = numbers.filter(([, x, y]) => this.inside(x, y));
       return numbers.length >= FEWEST;
     };
-    const found = APART.some((apart) => take(round((apart / this.scale) * plot.factor) / plot.factor));
-    if (!found) {
+    const enough = APART.some((apart) => take(round((apart / this.scale) * plot.factor) / plot.factor));
+    if (!enough) {
       // Two circles and the origin, then: as far as there is room in that direction.
       let far = 0;
       while (this.inside(ox + ux * (far + 1), oy + uy * (far + 1))) far++;
@@ -309,10 +309,10 @@ export class Plane {
     for (let turn = 22.5; turn < 360; turn += 45) {
       const [ux, uy] = [Math.cos((turn * Math.PI) / 180), -Math.sin((turn * Math.PI) / 180)];
       const [r0] = radii;
-      const shown = r0 !== undefined && this.inside(ox + ux * r0, oy + uy * r0);
+      const visible = r0 !== undefined && this.inside(ox + ux * r0, oy + uy * r0);
       const spots = radii.map((r): Spot => [ox + ux * r, oy + uy * r]);
       const free = Math.min(apart(spots, curve), apart(spots, this.named) - 12);
-      const least = shown ? free : Math.min(free, -1000);
+      const least = visible ? free : Math.min(free, -1000);
       if (least > most + 2) [best, most] = [[ux, uy], least];
     }
     return best;
@@ -329,7 +329,7 @@ export class Plane {
     const across = (by: number): Spot[] =>
       multiples(step * by, metres(0), metres(width)).map((x) => [this.place(x / factor, 0)[0], x]);
     const named = (by: number) => across(by).filter(([px]) => px >= 40 && px <= width - 34);
-    const by = WIDER.find((one) => named(one).length >= FEWEST && legible(named(one))) ?? 1;
+    const by = WIDER.find((step) => named(step).length >= FEWEST && legible(named(step))) ?? 1;
     for (const [px] of across(by)) d += `M${px.toFixed(1)} 0V${height}`;
     for (const [px, x] of named(by)) this.text(px, height - 4, x);
     const up = spacing(rising(height - 14), rising(8), most);

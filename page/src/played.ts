@@ -1,16 +1,16 @@
 /** A wire without a server: it answers from what a page was told, which the file holds. */
 
-import type { Heard, PageRequest, StateMessage, Told, Wire } from "./protocol";
+import type { Heard, Incoming, PageRequest, StateMessage, Wire } from "./protocol";
 import { say } from "./words";
 
-type Reply = [content: Told, bytes: string];
+type Reply = [content: Incoming, bytes: string];
 
 const OUTPUT = /^(before\.)?output\./;
 
 /** Plays the replies of `played.py`: nothing can be changed, since nothing computes. */
 export class Played implements Wire {
   private readonly listeners = new Set<Heard>();
-  private readonly replies: [Told, DataView[]][];
+  private readonly replies: [Incoming, DataView[]][];
   private wanted: string[];
 
   constructor(text: string) {
@@ -20,8 +20,8 @@ export class Played implements Wire {
   }
 
   send(content: object): void {
-    const asked = content as PageRequest & { seq?: number };
-    queueMicrotask(() => this.answer(asked, asked.seq ?? 0));
+    const request = content as PageRequest & { seq?: number };
+    queueMicrotask(() => this.answer(request, request.seq ?? 0));
   }
 
   on(_event: "msg:custom", heard: Heard): void {
@@ -32,16 +32,16 @@ export class Played implements Wire {
     this.listeners.delete(heard);
   }
 
-  private answer(asked: PageRequest, seq: number): void {
-    if (asked.type === "outputs") this.wanted = asked.names;
-    this.reply(asked, seq);
-    this.say({ type: "told", seq }, []);
+  private answer(request: PageRequest, seq: number): void {
+    if (request.type === "outputs") this.wanted = request.names;
+    this.reply(request, seq);
+    this.say({ type: "answered", seq }, []);
   }
 
-  private reply(asked: PageRequest, seq: number): void {
-    if (asked.type === "speak") this.tell(["spoken"], seq);
-    else if (asked.type === "outputs") this.tell(["state"], seq);
-    else if (asked.type === "ready") this.tell(["hello", "state", "response", "planting", "strokes", "side"], seq);
+  private reply(request: PageRequest, seq: number): void {
+    if (request.type === "speak") this.tell(["spoken"], seq);
+    else if (request.type === "outputs") this.tell(["state"], seq);
+    else if (request.type === "ready") this.tell(["hello", "state", "response", "planting", "strokes", "side"], seq);
     else {
       const message = say("this file plays what was computed; to change the machine, open its model in Equipoise");
       this.say({ type: "refused", seq, message, what: message }, []);
@@ -51,8 +51,8 @@ export class Played implements Wire {
   private tell(types: string[], seq: number): void {
     for (const [content, buffers] of this.replies) {
       if (!types.includes(content.type)) continue;
-      const told = content.type === "state" ? this.shown(content) : content;
-      this.say("seq" in told ? ({ ...told, seq } as Told) : told, buffers);
+      const state = content.type === "state" ? this.shown(content) : content;
+      this.say("seq" in state ? ({ ...state, seq } as Incoming) : state, buffers);
     }
   }
 
@@ -64,7 +64,7 @@ export class Played implements Wire {
     return { ...state, arrays: Object.fromEntries(kept) };
   }
 
-  private say(content: Told, buffers: DataView[]): void {
+  private say(content: Incoming, buffers: DataView[]): void {
     for (const heard of [...this.listeners]) heard(content, buffers);
   }
 }

@@ -135,9 +135,9 @@ export class TransportBar {
   readonly root: HTMLElement;
   private readonly play: HTMLButtonElement;
   private readonly slider: HTMLInputElement;
-  private readonly told = h("output", { class: "angle" });
+  private readonly reading = h("output", { class: "angle" });
   private readonly rates: HTMLSelectElement;
-  private shown = false;
+  private written = false;
 
   constructor(
     private readonly player: Player,
@@ -176,7 +176,7 @@ export class TransportBar {
       { class: "transport", role: "group", "aria-label": say("Motion") },
       this.play,
       this.slider,
-      this.told,
+      this.reading,
       this.rates,
     );
     this.state();
@@ -192,8 +192,8 @@ export class TransportBar {
   /** Playing or not. */
   state(): void {
     const { playing } = this.player;
-    if (this.shown === playing && this.play.hasAttribute("aria-label")) return;
-    this.shown = playing;
+    if (this.written === playing && this.play.hasAttribute("aria-label")) return;
+    this.written = playing;
     set(this.play, {
       "aria-label": playing ? say("Pause") : say("Play"),
       title: playing ? say("Pause (Space)") : say("Play (Space)"),
@@ -204,7 +204,7 @@ export class TransportBar {
   point(): void {
     const { angle, step, time } = this.player;
     const seconds = time === null ? "" : time.toFixed(3);
-    write(this.told, seconds ? unbroken(`${decimals(seconds)} s`) : `${signed(angle.toFixed(1))}°`);
+    write(this.reading, seconds ? unbroken(`${decimals(seconds)} s`) : `${signed(angle.toFixed(1))}°`);
     put(this.slider, String(step));
     this.slider.style.setProperty("--part", (step / Math.max(Number(this.slider.max), 1)).toFixed(3));
     const spoken = seconds

@@ -8,7 +8,7 @@ import type { Arrays, Sent, StateMessage } from "./messages";
 export type * from "./messages";
 
 /** What is heard: from a server, or of the page's own transport. */
-export type Told = Sent | { type: "lost" | "back" };
+export type Incoming = Sent | { type: "lost" | "back" };
 
 /** Numbers over the samples, by name. */
 export interface Rows {
@@ -32,8 +32,8 @@ export class Numbers implements Rows {
   }
 
   get(name: string): Float32Array | undefined {
-    const found = this.arrays[name];
-    return found && this.floats.subarray(found[0], found[0] + found[1]);
+    const array = this.arrays[name];
+    return array && this.floats.subarray(array[0], array[0] + array[1]);
   }
 
   names(prefix: string): string[] {
@@ -69,7 +69,7 @@ export interface Wire {
   announce?(): void;
 }
 
-export type Heard = (content: Told, buffers: DataView[]) => void;
+export type Heard = (content: Incoming, buffers: DataView[]) => void;
 
 /** The path of a number in a model file, as files, studies and messages write it. */
 export function keyPath(...steps: (string | number)[]): string {

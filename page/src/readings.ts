@@ -87,12 +87,12 @@ export class Readings {
   }
 
   private pin(): void {
-    const told = (line: Line) => {
+    const pinned = (line: Line) => {
       const rms = line.rms && say("RMS {value} {unit}", { value: line.rms.text, unit: line.unit });
       const peak = line.peak && say("peak {value} {unit}", { value: line.peak.text, unit: line.unit });
-      return { name: line.name, label: line.label, text: [rms, peak].filter((one) => one).join(", ") };
+      return { name: line.name, label: line.label, text: [rms, peak].filter((text) => text).join(", ") };
     };
-    this.pins.show(this.lines.map(told));
+    this.pins.show(this.lines.map(pinned));
   }
 
   /** The button that pins a line on the drawing, or takes it off. */
@@ -206,29 +206,29 @@ export class BalancePanel {
     private readonly hold: () => void,
   ) {}
 
-  show(found: Balanced): void {
-    const whole = found.figures.filter(({ main }) => main);
+  show(balanced: Balanced): void {
+    const whole = balanced.figures.filter(({ main }) => main);
     const changed = whole.filter(({ way }) => way !== "same");
     const rest = (changed.length ? changed : whole).filter(
-      ({ label }) => !found.aims.some((aim) => aim.label === label),
+      ({ label }) => !balanced.aims.some((aim) => aim.label === label),
     );
-    const main = [...found.aims, ...rest];
-    const others = found.figures.filter(({ label }) => !main.some((one) => one.label === label));
+    const main = [...balanced.aims, ...rest];
+    const others = balanced.figures.filter(({ label }) => !main.some((aim) => aim.label === label));
     this.root.replaceChildren(
       h("h2", {}, say("Balanced")),
-      h("ul", {}, ...found.changes.map((change) => h("li", {}, unbroken(change)))),
+      h("ul", {}, ...balanced.changes.map((change) => h("li", {}, unbroken(change)))),
       h(
         "div",
         { class: "buttons" },
         h("button", { type: "button", class: "strong", onclick: () => this.keep() }, say("Keep")),
         h("button", { type: "button", onclick: () => this.takeBack() }, say("Take back")),
-        found.gauges_worse &&
+        balanced.gauges_worse &&
           h("button", { type: "button", onclick: () => this.hold() }, say("Balance so that no gauge reads more")),
       ),
       comparison(main),
       ...(others.length ? [h("details", {}, h("summary", {}, say("All other figures")), comparison(others))] : []),
-      ...found.worse.map((text) => h("p", { class: "worse" }, unbroken(text))),
-      ...[found.proof, ...found.notes].map((text) => h("p", { class: "quiet" }, unbroken(text))),
+      ...balanced.worse.map((text) => h("p", { class: "worse" }, unbroken(text))),
+      ...[balanced.proof, ...balanced.notes].map((text) => h("p", { class: "quiet" }, unbroken(text))),
     );
     this.root.hidden = false;
     this.root.focus({ preventScroll: true });

@@ -144,7 +144,7 @@ export function turning(span: number): number {
 export function marked(value: number, { log }: Scale, all: number[]): string {
   const step = (all[1] ?? 1) - (all[0] ?? 0);
   const whole = (digits: number) => Math.abs(step * 10 ** digits - Math.round(step * 10 ** digits));
-  const digits = [0, 1, 2, 3, 4, 5, 6, 7, 8].find((one) => whole(one) < 1e-6 && step * 10 ** one > 0.5);
+  const digits = [0, 1, 2, 3, 4, 5, 6, 7, 8].find((count) => whole(count) < 1e-6 && step * 10 ** count > 0.5);
   const large = Math.abs(value) >= MOST_WHOLE;
   return log || large || digits === undefined ? plain(value) : signed(value.toFixed(digits));
 }

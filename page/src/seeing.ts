@@ -65,7 +65,7 @@ const LONGEST = 110;
 const HEAD = 9;
 
 interface Drawn {
-  told: ArrowOf;
+  arrow: ArrowOf;
   values: Float32Array;
   /** Pixels of one SI unit. */
   scale: number;
@@ -85,13 +85,13 @@ class Arrows implements Overlay {
 
   show(state: State): void {
     this.place = state.arrows_at ? state.numbers.get(`place.${state.arrows_at}`) : undefined;
-    const told = this.place ? state.arrows.filter(({ kind }) => this.kinds.has(kind)) : [];
-    const shape = told.map(({ label }) => label).join();
-    if (shape !== this.shape) this.build(told, shape);
-    told.forEach((one, i) => {
+    const arrows = this.place ? state.arrows.filter(({ kind }) => this.kinds.has(kind)) : [];
+    const shape = arrows.map(({ label }) => label).join();
+    if (shape !== this.shape) this.build(arrows, shape);
+    arrows.forEach((arrow, i) => {
       const drawn = this.drawn[i] as Drawn;
-      drawn.told = one;
-      drawn.values = state.numbers.get(one.array) ?? new Float32Array(0);
+      drawn.arrow = arrow;
+      drawn.values = state.numbers.get(arrow.array) ?? new Float32Array(0);
     });
     this.measure();
   }
@@ -99,42 +99,42 @@ class Arrows implements Overlay {
   /** Arrows of one kind have one scale, so that they can be compared. */
   private measure(): void {
     const longest = new Map<string, number>();
-    for (const { told, values } of this.drawn) {
-      let most = longest.get(told.kind) ?? 0;
+    for (const { arrow, values } of this.drawn) {
+      let most = longest.get(arrow.kind) ?? 0;
       for (let i = 0; i + 1 < values.length; i += 2)
         most = Math.max(most, Math.hypot(values[i] as number, values[i + 1] as number));
-      longest.set(told.kind, most);
+      longest.set(arrow.kind, most);
     }
-    this.drawn.forEach((one, i) => {
-      const most = longest.get(one.told.kind) ?? 0;
+    this.drawn.forEach((drawn, i) => {
+      const most = longest.get(drawn.arrow.kind) ?? 0;
       // The scale moves in steps, so that arrows grow while something is dragged.
-      one.scale = most > 0 ? LONGEST / round(most) : 0;
+      drawn.scale = most > 0 ? LONGEST / round(most) : 0;
       const item = this.legend.children[i];
-      if (item) item.replaceChildren(...this.scaleOf(one, most));
+      if (item) item.replaceChildren(...this.scaleOf(drawn, most));
     });
   }
 
-  private scaleOf({ told, scale }: Drawn, most: number): (Element | string)[] {
-    const value = round((most * told.factor) / 2.5);
-    const length = (value / told.factor) * scale;
-    const key = s("svg", { width: (length + 2).toFixed(1), height: 10, class: told.kind });
+  private scaleOf({ arrow, scale }: Drawn, most: number): (Element | string)[] {
+    const value = round((most * arrow.factor) / 2.5);
+    const length = (value / arrow.factor) * scale;
+    const key = s("svg", { width: (length + 2).toFixed(1), height: 10, class: arrow.kind });
     const d = `M0 5H${(length - HEAD).toFixed(1)}`;
     key.append(s("path", { class: "shaft", d }));
     key.append(s("path", { class: "head", d: head([length, 5], 0) }));
-    return [told.label, ...(scale ? [key, `${plain(value)}\u00a0${told.unit}`] : [": 0"])];
+    return [arrow.label, ...(scale ? [key, `${plain(value)}\u00a0${arrow.unit}`] : [": 0"])];
   }
 
-  private build(told: ArrowOf[], shape: string): void {
+  private build(arrows: ArrowOf[], shape: string): void {
     this.shape = shape;
-    this.drawn = told.map((one) => {
+    this.drawn = arrows.map((arrow) => {
       const line = s("path", { class: "shaft" });
       const tip = s("path", { class: "head" });
-      return { told: one, values: new Float32Array(0), scale: 0, line, head: tip };
+      return { arrow, values: new Float32Array(0), scale: 0, line, head: tip };
     });
     this.element.replaceChildren(
-      ...this.drawn.map(({ told: { kind }, line, head }) => s("g", { class: kind }, line, head)),
+      ...this.drawn.map(({ arrow: { kind }, line, head }) => s("g", { class: kind }, line, head)),
     );
-    this.legend.replaceChildren(...told.map(() => h("li")));
+    this.legend.replaceChildren(...arrows.map(() => h("li")));
   }
 
   pose(view: View, k: number): void {
@@ -143,10 +143,10 @@ class Arrows implements Overlay {
     for (const { values, scale, line, head: tip } of this.drawn) {
       const [dx, dy] = [(values[2 * k] ?? 0) * scale, -(values[2 * k + 1] ?? 0) * scale];
       const long = Math.hypot(dx, dy);
-      const shown = long > 1 && Number.isFinite(long);
+      const visible = long > 1 && Number.isFinite(long);
       const short = Math.max(long - HEAD, 0) / (long || 1);
-      line.setAttribute("d", shown ? `M${at([x, y])}L${at([x + dx * short, y + dy * short])}` : "");
-      tip.setAttribute("d", shown ? head([x + dx, y + dy], Math.atan2(dy, dx)) : "");
+      line.setAttribute("d", visible ? `M${at([x, y])}L${at([x + dx * short, y + dy * short])}` : "");
+      tip.setAttribute("d", visible ? head([x + dx, y + dy], Math.atan2(dy, dx)) : "");
     }
   }
 }
@@ -165,14 +165,14 @@ export class Seeing {
   private readonly at: HTMLSelectElement;
   private readonly kinds: HTMLElement;
   private readonly record = h("p", { class: "quiet", role: "status", hidden: true });
-  private readonly told = h("p", { class: "quiet", role: "status" });
+  private readonly motion = h("p", { class: "quiet", role: "status" });
   private state: State | null = null;
   private offered = "";
   private recorded = "";
 
   constructor(
     private readonly stage: Stage,
-    private readonly ask: (asked: PageRequest) => void,
+    private readonly ask: (request: PageRequest) => void,
     private readonly changed: () => void,
   ) {
     this.variants = new Variants(ask);
@@ -204,7 +204,7 @@ export class Seeing {
       this.support.root,
       this.variants.choice,
       this.arrows.legend,
-      this.told,
+      this.motion,
       this.record,
     );
     stage.overlay(this.ghost, "signs");
@@ -224,7 +224,7 @@ export class Seeing {
   /** What was measured, and a button that takes it away. */
   private beside(record: State["record"]): void {
     const left = record?.left_out.join(", ") ?? "";
-    const parts = record ? [say("Record {name}", { name: record.name }), ...record.told] : [];
+    const parts = record ? [say("Record {name}", { name: record.name }), ...record.lines] : [];
     if (left) parts.push(say("no outputs of this machine: {names}", { names: left }));
     const text = unbroken(parts.join("; "));
     if (this.recorded === text) return;
@@ -272,10 +272,10 @@ export class Seeing {
   }
 
   private tell(): void {
-    const lines = this.support.told;
+    const lines = this.support.lines;
     const text = lines.join("; ");
-    if (this.told.textContent !== text) this.told.textContent = text;
-    show(this.told, !!text);
+    if (this.motion.textContent !== text) this.motion.textContent = text;
+    show(this.motion, !!text);
     show(this.arrows.legend, !!this.state?.arrows_at);
   }
 

@@ -106,9 +106,9 @@ export function helpDialog(version: () => string, tour: () => void): HTMLDialogE
     ),
   );
   const uses = tools().map(({ name, first, then }) =>
-    h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, [first, then].filter((one) => one).join(" → "))),
+    h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, [first, then].filter((text) => text).join(" → "))),
   );
-  const told = h("p", { class: "quiet" });
+  const versionLine = h("p", { class: "quiet" });
   const dialog = h(
     "dialog",
     { class: "help", "aria-label": say("Keys") },
@@ -124,7 +124,7 @@ export function helpDialog(version: () => string, tour: () => void): HTMLDialogE
     h("h3", {}, say("Tools")),
     h("table", {}, h("tbody", {}, ...uses)),
     documented(),
-    told,
+    versionLine,
     h(
       "form",
       { method: "dialog", class: "buttons" },
@@ -138,7 +138,7 @@ export function helpDialog(version: () => string, tour: () => void): HTMLDialogE
     if (dialog.returnValue === "tour") tour();
     dialog.returnValue = "";
   });
-  dialog.addEventListener("toggle", () => told.replaceChildren(`Equipoise ${version()}`));
+  dialog.addEventListener("toggle", () => versionLine.replaceChildren(`Equipoise ${version()}`));
   return dialog;
 }
 

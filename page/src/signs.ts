@@ -71,8 +71,8 @@ export class Piece {
     });
     const link = sign.link || null;
     const [what, name] = sign.part ?? [null, null];
-    const told = { class: `piece${kind}`, "data-link": link, "data-what": what, "data-name": name };
-    this.element = s("g", told, ...this.parts);
+    const attributes = { class: `piece${kind}`, "data-link": link, "data-what": what, "data-name": name };
+    this.element = s("g", attributes, ...this.parts);
   }
 
   get link(): string {
@@ -152,14 +152,14 @@ export function build(scene: Scene): string {
 
 /** Neighbours that are drawn alike: lines of a role together, circles each by itself. */
 export function runs(shapes: DrawnShape[]): DrawnShape[][] {
-  const found: DrawnShape[][] = [];
+  const groups: DrawnShape[][] = [];
   for (const shape of shapes) {
-    const last = found[found.length - 1];
+    const last = groups[groups.length - 1];
     const alike = last && last[0]?.[0] === shape[0] && !isRound(shape);
     if (alike) last.push(shape);
-    else found.push([shape]);
+    else groups.push([shape]);
   }
-  return found;
+  return groups;
 }
 
 /** Whether a shape is a circle, and no outline. */

@@ -3,7 +3,7 @@
  * are bytes.
  */
 
-import type { Heard, Told, Wire } from "./protocol";
+import type { Heard, Incoming, Wire } from "./protocol";
 
 /** Of a reply: length of the header, header (JSON), padding to four, numbers. */
 export class Bytes {
@@ -26,11 +26,11 @@ export class Bytes {
   }
 
   /** A message as it was sent, of which a wire may leave out what the page has. */
-  protected whole(message: object): Told {
-    return message as Told;
+  protected whole(message: object): Incoming {
+    return message as Incoming;
   }
 
-  protected tell(content: Told, buffers: DataView[]): void {
+  protected tell(content: Incoming, buffers: DataView[]): void {
     for (const heard of [...this.listeners]) heard(content, buffers);
   }
 }
@@ -96,9 +96,9 @@ export class Socket extends Bytes implements Wire {
     for (const text of this.unsent.splice(0)) socket.send(text);
   }
 
-  private end(socket: WebSocket, told: boolean): void {
+  private end(socket: WebSocket, announced: boolean): void {
     if (this.closed || socket !== this.socket) return;
-    if (!told) this.tell({ type: "lost" }, []);
+    if (!announced) this.tell({ type: "lost" }, []);
     this.later = window.setTimeout(() => !this.closed && this.open(), this.wait);
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
   }
@@ -116,7 +116,7 @@ export class Socket extends Bytes implements Wire {
   }
 
   private receive(data: ArrayBuffer | string): void {
-    if (typeof data === "string") this.tell(JSON.parse(data) as Told, []);
+    if (typeof data === "string") this.tell(JSON.parse(data) as Incoming, []);
     else this.hear(data);
   }
 }

@@ -21,9 +21,9 @@ class Dimensions {
 
   /** Of which points lines are told; of none where nothing is chosen. */
   choose(points: readonly string[]): void {
-    const told = points.slice(0, MOST);
-    this.lines = told.flatMap((from, i) =>
-      told.slice(i + 1).map((to) => ({ from, to, text: s("text", { "text-anchor": "middle" }) })),
+    const labelled = points.slice(0, MOST);
+    this.lines = labelled.flatMap((from, i) =>
+      labelled.slice(i + 1).map((to) => ({ from, to, text: s("text", { "text-anchor": "middle" }) })),
     );
     this.layer.replaceChildren(...this.lines.map(({ text }) => text));
   }
@@ -205,8 +205,8 @@ export class Stage<S extends Drawable = State> {
   /** Every point by its name, m. */
   joints(): [name: string, place: Pair][] {
     const names = this.state?.numbers.names("place.") ?? [];
-    const found = names.map((name) => name.slice("place.".length));
-    return found.map((name) => [name, this.place({ kind: "point", name }) ?? [NaN, NaN]]);
+    const points = names.map((name) => name.slice("place.".length));
+    return points.map((name) => [name, this.place({ kind: "point", name }) ?? [NaN, NaN]]);
   }
 
   /** The first link that has a point. */
@@ -348,7 +348,7 @@ export class Stage<S extends Drawable = State> {
   /** What has the name of a point or link: paths, names, and what can be taken hold of. */
   private name(scene: Scene): void {
     const root = this.svg.getRootNode() as Document | ShadowRoot;
-    const held = [...this.grips].find(([, element]) => element === root.activeElement)?.[0];
+    const focused = [...this.grips].find(([, element]) => element === root.activeElement)?.[0];
     for (const layer of Object.values(this.layer)) layer.replaceChildren();
     const points = [...new Set(scene.bodies.flatMap((body) => body.points))];
     const moving = points.filter((name) => !scene.frame.includes(name));
@@ -358,7 +358,7 @@ export class Stage<S extends Drawable = State> {
     this.layer.labels?.append(...this.labels.map(({ element }) => element));
     this.buildGrips(scene);
     // Keys go on where they were; those of what was deleted, on the drawing.
-    if (held) (this.grips.get(held) ?? this.svg).focus({ preventScroll: true });
+    if (focused) (this.grips.get(focused) ?? this.svg).focus({ preventScroll: true });
   }
 
   private buildGrips({ movable, mass_centers, circles }: Scene): void {

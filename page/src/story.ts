@@ -13,7 +13,7 @@ const TAB = "equipoise tab";
 /** What was asked, and what followed it that was no step of its own. */
 type Step = PageRequest[];
 
-export interface Told {
+export interface StoryData {
   /** Sign of the file that it began with; empty where the page has opened something. */
   base: string;
   /** Sign of that file as it was saved last, and what it held at first. */
@@ -34,10 +34,10 @@ export interface Told {
 /** Where stories outlive the page; a widget in a notebook has none. */
 export interface Shelf {
   readonly tab: string;
-  read(tab: string): Told | null;
-  write(told: Told): void;
+  read(tab: string): StoryData | null;
+  write(data: StoryData): void;
   /** Stories of tabs that are closed, or whose server is gone, the newest first. */
-  left(): Promise<Told[]>;
+  left(): Promise<StoryData[]>;
 }
 
 /** Steps that a server keeps; beyond, it forgets the oldest. */
@@ -53,7 +53,7 @@ const SETTINGS = new Set(["compare", "outputs", "arrows"]);
 export type Shown = Pick<State, "seq" | "name" | "steps">;
 
 export class Story {
-  private told: Told = empty("");
+  private data: StoryData = empty("");
   /** Steps that the server could undo when it was heard last. */
   private depth = 0;
 
@@ -62,48 +62,48 @@ export class Story {
   /** What to ask so that a server which has `base` open comes to where this tab was. */
   begin(base: string): PageRequest[] {
     const kept = this.shelf?.read(this.shelf.tab) ?? null;
-    this.told = kept && fits(kept, base) ? kept : empty(base);
-    return asked(this.told, base);
+    this.data = kept && fits(kept, base) ? kept : empty(base);
+    return requests(this.data, base);
   }
 
   /** What was kept cannot be done again. */
   forget(): void {
-    this.told = empty(this.told.base);
+    this.data = empty(this.data.base);
     this.write();
   }
 
   /** The same of a tab that is closed, whose story goes on in this one. */
-  resume(told: Told, base: string): PageRequest[] {
-    this.told = told;
+  resume(data: StoryData, base: string): PageRequest[] {
+    this.data = data;
     this.write();
-    return asked(told, base);
+    return requests(data, base);
   }
 
   /** Stories of closed tabs that began with what the server has open. */
-  async offered(base: string): Promise<Told[]> {
+  async offered(base: string): Promise<StoryData[]> {
     const left = (await this.shelf?.left()) ?? [];
-    return left.filter((one) => stepCount(one) && fits(one, base));
+    return left.filter((data) => stepCount(data) && fits(data, base));
   }
 
   /** Whether a server which has that open can be told it. */
   fits(base: string): boolean {
-    return fits(this.told, base);
+    return fits(this.data, base);
   }
 
   /** Everything, to be asked of a server that knows nothing but what it was started with. */
   all(base: string): PageRequest[] {
-    return asked(this.told, base);
+    return requests(this.data, base);
   }
 
   /** What waits for a server. */
   get waiting(): PageRequest[] {
-    return this.told.lost ?? [];
+    return this.data.lost ?? [];
   }
 
   /** Nothing waits any more where it is null. */
   waits(lost: PageRequest[] | null): void {
-    if (lost) this.told.lost = lost;
-    else if (this.told.lost) delete this.told.lost;
+    if (lost) this.data.lost = lost;
+    else if (this.data.lost) delete this.data.lost;
     else return;
     this.write();
   }
@@ -121,52 +121,52 @@ export class Story {
 
   /** A question was answered by a state. */
   remember(question: PageRequest, state: Shown): void {
-    const { told } = this;
-    if (OPENS.has(question.type)) this.told = { ...empty(told.base), start: [question] };
+    const { data } = this;
+    if (OPENS.has(question.type)) this.data = { ...empty(data.base), start: [question] };
     else if (question.type === "record") {
       const { length } = question.text;
-      told.record = length && length <= RECORD ? question : undefined;
-    } else if (question.type === "undo") move(told.past, told.future, "start");
-    else if (question.type === "redo") move(told.future, told.past, "end");
+      data.record = length && length <= RECORD ? question : undefined;
+    } else if (question.type === "undo") move(data.past, data.future, "start");
+    else if (question.type === "redo") move(data.future, data.past, "end");
     else if (this.deeper(question, state)) {
-      told.past.push([question]);
-      told.future = [];
-    } else follow(told.past[told.past.length - 1] ?? told.start, question);
-    this.told.name = state.name;
+      data.past.push([question]);
+      data.future = [];
+    } else follow(data.past[data.past.length - 1] ?? data.start, question);
+    this.data.name = state.name;
     this.write();
   }
 
   /** The file on disk holds what was done. */
   saved(base: string, text: string): void {
-    this.told.saved = base;
-    this.told.text = text;
+    this.data.saved = base;
+    this.data.text = text;
     this.write();
   }
 
   private write(): void {
-    this.told.when = Date.now();
-    this.shelf?.write(this.told);
+    this.data.when = Date.now();
+    this.shelf?.write(this.data);
   }
 }
 
 /** How many steps there are, with those that wait. */
-export function stepCount({ past, lost = [] }: Told): number {
+export function stepCount({ past, lost = [] }: StoryData): number {
   return past.length + lost.length;
 }
 
-function empty(base: string): Told {
+function empty(base: string): StoryData {
   return { base, name: "", when: 0, start: [], past: [], future: [] };
 }
 
 /** Whether it can be told to a server which has that open: nothing, or the same file. */
-function fits(told: Told, base: string): boolean {
-  if (told.start.some(({ type }) => OPENS.has(type))) return true;
-  return told.base === base || (told.saved === base && told.text !== undefined);
+function fits(data: StoryData, base: string): boolean {
+  if (data.start.some(({ type }) => OPENS.has(type))) return true;
+  return data.base === base || (data.saved === base && data.text !== undefined);
 }
 
-function asked(told: Told, base: string): PageRequest[] {
-  const { start, past, future, text, name, record } = told;
-  const again = told.base !== base && text !== undefined && !start.some((a) => OPENS.has(a.type));
+function requests(data: StoryData, base: string): PageRequest[] {
+  const { start, past, future, text, name, record } = data;
+  const again = data.base !== base && text !== undefined && !start.some((a) => OPENS.has(a.type));
   const open: PageRequest[] = again ? [{ type: "open", name, text, file: true }] : [];
   const back = future.map((): PageRequest => ({ type: "undo" }));
   const measured = record ? [record] : [];
@@ -195,23 +195,23 @@ export function shelf(): Shelf | null {
     sessionStorage[TAB] = tab;
     // While it is held others know that this tab is open.
     void navigator.locks.request(PREFIX + tab, () => new Promise(() => undefined));
-    return { tab, read, write: (told) => write(tab, told), left: () => left(tab) };
+    return { tab, read, write: (data) => write(tab, data), left: () => left(tab) };
   } catch {
     return null; // a browser that keeps nothing
   }
 }
 
-function read(tab: string): Told | null {
+function read(tab: string): StoryData | null {
   try {
-    return JSON.parse(localStorage.getItem(PREFIX + tab) ?? "null") as Told | null;
+    return JSON.parse(localStorage.getItem(PREFIX + tab) ?? "null") as StoryData | null;
   } catch {
     return null;
   }
 }
 
-function write(tab: string, told: Told): void {
-  const text = JSON.stringify(told);
-  const others = stories().filter((one) => one.tab !== tab);
+function write(tab: string, data: StoryData): void {
+  const text = JSON.stringify(data);
+  const others = stories().filter((story) => story.tab !== tab);
   for (const { tab: old } of others.slice(MOST - 1)) localStorage.removeItem(PREFIX + old);
   try {
     if (text.length > LONGEST) throw new RangeError();
@@ -222,22 +222,22 @@ function write(tab: string, told: Told): void {
 }
 
 /** All that are kept, the newest first. */
-function stories(): { tab: string; told: Told }[] {
+function stories(): { tab: string; data: StoryData }[] {
   const tabs = Object.keys(localStorage)
     .filter((key) => key.startsWith(PREFIX))
     .map((key) => key.slice(PREFIX.length));
   return tabs
     .flatMap((tab) => {
-      const told = read(tab);
-      return told ? [{ tab, told }] : [];
+      const data = read(tab);
+      return data ? [{ tab, data }] : [];
     })
-    .sort((one, other) => other.told.when - one.told.when);
+    .sort((story, other) => other.data.when - story.data.when);
 }
 
-async function left(own: string): Promise<Told[]> {
+async function left(own: string): Promise<StoryData[]> {
   const { held } = await navigator.locks.query();
   const open = new Set((held ?? []).map(({ name }) => name));
   return stories()
-    .filter(({ tab, told }) => tab !== own && (told.lost || !open.has(PREFIX + tab)))
-    .map(({ told }) => told);
+    .filter(({ tab, data }) => tab !== own && (data.lost || !open.has(PREFIX + tab)))
+    .map(({ data }) => data);
 }

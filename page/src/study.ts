@@ -1,6 +1,6 @@
 /** A store of a study on the page: its designs in two pictures that are brushed together. */
 
-import { Parallel, Scatter, type Told } from "./cloud";
+import { Parallel, type PointerEvents, Scatter } from "./cloud";
 import { Designs } from "./designs";
 import { h, write } from "./dom";
 import { shown, unbroken } from "./format";
@@ -31,15 +31,15 @@ export class StudyView {
   private frame = 0;
 
   constructor(
-    private readonly ask: (asked: PageRequest) => void,
+    private readonly ask: (request: PageRequest) => void,
     theme: Theme,
   ) {
-    const told: Told = {
+    const events: PointerEvents = {
       ranged: () => this.later(),
       opened: (i) => this.open(i),
       hovered: (i) => this.hover(i),
     };
-    [this.parallel, this.scatter] = [new Parallel(theme, told), new Scatter(theme, told)];
+    [this.parallel, this.scatter] = [new Parallel(theme, events), new Scatter(theme, events)];
     const axis = (name: string) => h("select", { "aria-label": name, onchange: () => this.turn() });
     [this.across, this.up] = [axis(say("Across")), axis(say("Upward"))];
     const clear = h("button", { type: "button", onclick: () => this.clear() }, say("All designs"));
@@ -83,8 +83,8 @@ export class StudyView {
       ["failed", say("cannot be computed"), study.refused.length > 0],
       ["itself", say("the model itself"), study.own !== null],
     ];
-    const shown = keys.filter(([, , there]) => there);
-    this.keys.replaceChildren(...shown.map(([kind, text]) => h("li", {}, h("i", { class: `key-${kind}` }), text)));
+    const visible = keys.filter(([, , there]) => there);
+    this.keys.replaceChildren(...visible.map(([kind, text]) => h("li", {}, h("i", { class: `key-${kind}` }), text)));
     this.refused.replaceChildren(...study.refused.map(({ why, count }) => h("li", {}, `${count} × ${why}`)));
     this.measure();
     this.again();
@@ -139,11 +139,11 @@ export class StudyView {
     this.range();
     const chosen = designs.chosen();
     const { size, drawn, kept, computed, limited } = designs.study;
-    const told = [say("{count} of {size} designs are drawn", { count: drawn, size })];
-    told.push(say("{count} have figures", { count: computed }));
-    if (limited) told.push(say("{count} keep every limit", { count: kept }));
-    if (designs.ranges.size) told.push(say("{count} within the ranges", { count: chosen.length }));
-    write(this.counts, told.join("; "));
+    const lines = [say("{count} of {size} designs are drawn", { count: drawn, size })];
+    lines.push(say("{count} have figures", { count: computed }));
+    if (limited) lines.push(say("{count} keep every limit", { count: kept }));
+    if (designs.ranges.size) lines.push(say("{count} within the ranges", { count: chosen.length }));
+    write(this.counts, lines.join("; "));
     this.fill(designs, chosen);
   }
 
@@ -158,7 +158,7 @@ export class StudyView {
     );
     const rows = [...good, ...others].slice(0, LISTED);
     const { columns } = designs;
-    const head = ["", ...columns.map(({ told }) => `${capital(told.label)} ${told.unit}`)];
+    const head = ["", ...columns.map(({ declared }) => `${capital(declared.label)} ${declared.unit}`)];
     const line = (i: number) => {
       const number = designs.numberOf(i);
       const words = say("Open design {number}", { number });
@@ -180,9 +180,9 @@ export class StudyView {
   private range(): void {
     const { designs } = this;
     if (!designs || this.ranges.contains(document.activeElement)) return;
-    const rows = designs.columns.map(({ told }, k) => {
+    const rows = designs.columns.map(({ declared }, k) => {
       const [low, high] = designs.ranges.get(k) ?? [null, null];
-      const name = { label: told.label, unit: told.unit };
+      const name = { label: declared.label, unit: declared.unit };
       const end = (words: string, value: number | null, at: 0 | 1) => {
         const input = h("input", {
           type: "text",
@@ -194,7 +194,7 @@ export class StudyView {
         return input;
       };
       const ends = [end(say("{label}, from, {unit}", name), low, 0), end(say("{label}, to, {unit}", name), high, 1)];
-      const words = unbroken(`${capital(told.label)} ${told.unit}`.trim());
+      const words = unbroken(`${capital(declared.label)} ${declared.unit}`.trim());
       return h("div", { class: "range-row" }, h("span", {}, words), ...ends);
     });
     this.ranges.replaceChildren(...rows);
@@ -220,7 +220,9 @@ export class StudyView {
     this.scatter.mark(i);
     const { designs } = this;
     if (!designs || i === null) return write(this.reading, "");
-    const values = designs.columns.map(({ told, values: all }) => `${told.label} ${shown(all[i] ?? NaN)} ${told.unit}`);
+    const values = designs.columns.map(
+      ({ declared, values: all }) => `${declared.label} ${shown(all[i] ?? NaN)} ${declared.unit}`,
+    );
     const name = say("design {number}", { number: designs.numberOf(i) });
     const why = designs.why(i);
     write(this.reading, unbroken([name, ...(why ? [why] : []), ...values].join(" · ")));

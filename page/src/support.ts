@@ -43,7 +43,7 @@ export class Support {
     this.place = numbers?.get("support.place");
     this.angle = numbers?.get("support.angle");
     const modes = message?.modes ?? [];
-    const named = modes.map((one, i): [string, string] => [String(i), one.told[0] ?? ""]);
+    const named = modes.map((mode, i): [string, string] => [String(i), mode.lines[0] ?? ""]);
     const options: [string, string][] = [
       ...(this.place ? [[WORK, say("moves as at work")] as [string, string]] : []),
       [REST, say("at rest")],
@@ -65,13 +65,13 @@ export class Support {
   }
 
   /** What is to be said of the movement that is drawn. */
-  get told(): string[] {
+  get lines(): string[] {
     if (!this.message || this.root.hidden) return [];
     const { mode } = this;
     if (mode === null) return this.select.value === WORK ? (this.message.swing ?? []) : [];
-    const one = this.message.modes[mode];
+    const drawn = this.message.modes[mode];
     const still = say("the crank stands still; playing swings the support");
-    return one ? [...one.told, ...(one.seen ? [still] : [])] : [];
+    return drawn ? [...drawn.lines, ...(drawn.seen ? [still] : [])] : [];
   }
 
   /** The crank's sample that is drawn where it would be at `k` of `count`. */

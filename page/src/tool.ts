@@ -157,7 +157,7 @@ class ToolSide {
   }
 
   private words({ scene, title }: ToolMessage): string {
-    const places = scene.stations.map(({ name, told }) => `${name} ${told}`);
+    const places = scene.stations.map(({ name, text }) => `${name} ${text}`);
     return `${title}: ${places.join(", ")}`;
   }
 
@@ -166,9 +166,9 @@ class ToolSide {
     const group = s("g", { class: "stations" });
     const ends: number[] = [];
     const ordered = [...scene.stations].sort((a, b) => a.place - b.place);
-    for (const { name, place, told } of ordered) {
+    for (const { name, place, text: station } of ordered) {
       const [x, foot] = this.view.px(place, 0);
-      const text = `${name} · ${told}`;
+      const text = `${name} · ${station}`;
       const wide = 7 * text.length;
       const left = Math.min(Math.max(x - wide / 2, 4), Math.max(this.view.width - wide - 50, 4));
       let row = ends.findIndex((end) => end < left - 8);
@@ -203,7 +203,7 @@ export class ToolView {
   private readonly inspector: Inspector;
   private readonly views: HTMLSelectElement;
   private readonly play: HTMLButtonElement;
-  private readonly told = h("p", { class: "quiet", role: "status" });
+  private readonly motion = h("p", { class: "quiet", role: "status" });
   private readonly wrong = h("p", { class: "said bad", role: "status", hidden: true });
   private readonly figures = h("div", { class: "readings figures" });
   private readonly charts = h("div", { class: "charts" });
@@ -213,7 +213,7 @@ export class ToolView {
   private numbers: Numbers | null = null;
   private playing = letsMove();
   private frame = 0;
-  private begun = 0;
+  private since = 0;
 
   constructor(
     talk: Conversation,
@@ -223,7 +223,7 @@ export class ToolView {
     this.views = h("select", { "aria-label": say("What is shown"), onchange: () => this.pose() });
     this.play = h("button", { type: "button", onclick: () => this.toggle() }, "");
     const stage = h("section", { class: "stage", "aria-label": say("The tool from the side") });
-    const bar = h("div", { class: "seeing" }, this.play, this.views, this.told);
+    const bar = h("div", { class: "seeing" }, this.play, this.views, this.motion);
     this.side.root.append(this.wrong);
     stage.append(this.heading.about, this.side.root, bar, this.heading.notes, this.figures);
     const side = h("section", { class: "side", "aria-label": say("Charts") });
@@ -312,17 +312,17 @@ export class ToolView {
   /** Show what is chosen, and swing it if that is wanted. */
   private pose(): void {
     const view = this.tool?.views[this.views.selectedIndex - 1];
-    const text = (view?.told ?? []).join("; ");
-    write(this.told, unbroken(text));
-    this.told.hidden = !text;
+    const text = (view?.lines ?? []).join("; ");
+    write(this.motion, unbroken(text));
+    this.motion.hidden = !text;
     write(this.play, this.playing ? say("Pause") : say("Play"));
     this.play.disabled = !view;
     cancelAnimationFrame(this.frame);
     this.side.pose(view?.shape ?? [], 0);
     if (!view || !this.playing) return;
-    this.begun ||= performance.now();
+    this.since ||= performance.now();
     const swing = (now: number) => {
-      this.side.pose(view.shape, ((now - this.begun) % PERIOD) / PERIOD);
+      this.side.pose(view.shape, ((now - this.since) % PERIOD) / PERIOD);
       this.frame = requestAnimationFrame(swing);
     };
     this.frame = requestAnimationFrame(swing);

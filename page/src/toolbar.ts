@@ -144,7 +144,7 @@ export class Toolbar {
     ] as const)
       element.classList.toggle(
         "working",
-        computed.some((one) => one.kind === kind),
+        computed.some((work) => work.kind === kind),
       );
     this.cancel.hidden = !computed.length || !cancel;
     this.cancel.onclick = () => cancel?.();
@@ -233,6 +233,6 @@ function button(text: string, picture: keyof typeof ICONS, onclick: () => void, 
 /** What a command would do, and why it cannot (where `what` is null), is told to the eye and to the ear. */
 function able(element: HTMLButtonElement, name: string, what: string | null, why: string): void {
   element.disabled = what === null;
-  const told = what ?? why;
-  set(element, { title: told ? `${name}: ${told}` : name, "aria-description": told || null });
+  const text = what ?? why;
+  set(element, { title: text ? `${name}: ${text}` : name, "aria-description": text || null });
 }

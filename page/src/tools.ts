@@ -168,7 +168,7 @@ export class Tools {
     const below = document.elementsFromPoint(box.left + px[0], box.top + px[1]);
     const root = this.page.stage.svg.getRootNode() as Document | ShadowRoot;
     const inside = "elementsFromPoint" in root ? root.elementsFromPoint(box.left + px[0], box.top + px[1]) : below;
-    const parts = inside.flatMap((one) => one.closest<SVGElement>("[data-link], [data-what]") ?? []);
+    const parts = inside.flatMap((element) => element.closest<SVGElement>("[data-link], [data-what]") ?? []);
     const link = parts.map(({ dataset }) => dataset.link).find(Boolean);
     const from = level ? (this.pending?.place ?? null) : null;
     const hit = meant(this.page, px, link, from);
@@ -185,9 +185,9 @@ export class Tools {
     const start = this.spot(event);
     const { svg } = this.page.stage;
     svg.setPointerCapture(event.pointerId);
-    let begun = false;
+    let begins = false;
     this.soon(() => {
-      begun = this.pending === null;
+      begins = this.pending === null;
       this.put(this.at(start, event.shiftKey));
     });
     const stop = (now: PointerEvent) => {
@@ -197,7 +197,7 @@ export class Tools {
       // On the screen: where lines above wrap, the sheet moves below a finger that rests.
       const far = Math.hypot(now.clientX - event.clientX, now.clientY - event.clientY) > FAR;
       if (now.type !== "pointerup" || !far) return;
-      this.soon(() => begun && this.pending && this.put(this.at(end, now.shiftKey)));
+      this.soon(() => begins && this.pending && this.put(this.at(end, now.shiftKey)));
     };
     for (const name of ["pointerup", "pointercancel"] as const) svg.addEventListener(name, stop);
   };
@@ -229,10 +229,10 @@ export class Tools {
   private readonly key = (event: KeyboardEvent): void => {
     if (event.ctrlKey || event.metaKey || !this.onSheet(event)) return;
     const pressed = event.key === "Backspace" ? "delete" : event.key.toLowerCase();
-    const told = toolOf(pressed);
+    const tool = toolOf(pressed);
     if (pressed === "delete" && this.tool === "select" && this.chosen) {
       this.ask({ do: "delete", ...this.chosen });
-    } else if (told && !event.altKey) this.soon(() => this.take(told.tool, true));
+    } else if (tool && !event.altKey) this.soon(() => this.take(tool.tool, true));
     else if (this.tool === "select") return;
     else if (event.key === "Escape") this.leave();
     else if (event.key === "Enter") this.enter(event);
@@ -244,9 +244,9 @@ export class Tools {
 
   /** Take a tool by its key, where something else than the drawing has the focus; tells whether there is one. */
   pick(key: string): boolean {
-    const told = toolOf(key.toLowerCase());
-    if (!told || told.tool === "delete") return false;
-    this.soon(() => this.take(told.tool, true));
+    const tool = toolOf(key.toLowerCase());
+    if (!tool || tool.tool === "delete") return false;
+    this.soon(() => this.take(tool.tool, true));
     return true;
   }
 
@@ -295,14 +295,14 @@ export class Tools {
       this.palette.show(this.tool, true);
       return;
     }
-    const asked = this.asked(hit, this.pending);
+    const made = this.making(hit, this.pending);
     this.pending = null;
     this.palette.show(this.tool, false);
     this.draw(null);
-    if (asked) this.ask(asked);
+    if (made) this.ask(made);
   }
 
-  private asked(hit: Hit, first: Hit | null): Made | null {
+  private making(hit: Hit, first: Hit | null): Made | null {
     const link = this.linkOf(hit);
     const part = partTool(this.tool);
     if (part) {
@@ -370,8 +370,8 @@ export class Tools {
 
 /** The place that is meant, as it is rounded. */
 function where({ point, place: [x, y] }: Hit): string {
-  const told = `${length(x)}, ${length(y)} ${lengths().unit}`;
-  return point ? say("{name}: {place}", { name: point, place: told }) : told;
+  const text = `${length(x)}, ${length(y)} ${lengths().unit}`;
+  return point ? say("{name}: {place}", { name: point, place: text }) : text;
 }
 
 function deleted({ part, point }: Hit, link: string | undefined): Made | null {
@@ -381,7 +381,7 @@ function deleted({ part, point }: Hit, link: string | undefined): Made | null {
 }
 
 function toolOf(key: string) {
-  return tools().find((one) => one.key.toLowerCase() === key);
+  return tools().find((tool) => tool.key.toLowerCase() === key);
 }
 
 function spot(hit: Hit): object {

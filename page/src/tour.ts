@@ -118,7 +118,7 @@ export class Tour {
     this.clear();
     this.at = number;
     const targets = [...this.root.querySelectorAll(step.where)];
-    const target = targets.find((one) => one.checkVisibility());
+    const target = targets.find((target) => target.checkVisibility());
     target?.classList.add("toured");
     target?.scrollIntoView({ block: "nearest" });
     const last = number === STEPS.length - 1;
@@ -155,7 +155,7 @@ export class Tour {
     this.box?.remove();
     this.box = null;
     this.at = -1;
-    for (const one of this.root.querySelectorAll(".toured")) one.classList.remove("toured");
+    for (const element of this.root.querySelectorAll(".toured")) element.classList.remove("toured");
   }
 
   private end(): void {

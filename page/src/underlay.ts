@@ -62,7 +62,7 @@ export class Underlay {
   snaps(): Pair[] {
     const { held } = this;
     if (!held?.drawing || held.hidden) return [];
-    return held.drawing.snaps.map((one) => toFrame(held, one));
+    return held.drawing.snaps.map((point) => toFrame(held, point));
   }
 
   /** Places that it reaches, m. */
@@ -76,7 +76,7 @@ export class Underlay {
       [x, y],
       [-x, y],
     ];
-    return (held.drawing?.lines.flat() ?? corners).map((one) => toFrame(held, one));
+    return (held.drawing?.lines.flat() ?? corners).map((point) => toFrame(held, point));
   }
 
   /** Read a file; returns what there is to say of it. Throws an `Error` of one sentence. */
@@ -98,8 +98,8 @@ export class Underlay {
       const at = view.metres(view.width / 2, view.height / 2);
       this.show({ ...common, picture: { href, size }, at, scale });
     }
-    const said = this.held?.drawing?.told === false ? say("The file tells no unit: it is read in mm.") : "";
-    return [said, this.keep()].filter((one) => one).join(" ");
+    const said = this.held?.drawing?.hasUnit === false ? say("The file tells no unit: it is read in mm.") : "";
+    return [said, this.keep()].filter((text) => text).join(" ");
   }
 
   change(changes: Partial<Shown>): void {
@@ -192,10 +192,10 @@ export class Underlay {
     if (!this.held) return;
     const { at, turn, scale, picture, opacity, hidden } = this.held;
     const [x, y] = view.px(...at);
-    const [c, n] = [Math.cos(turn), Math.sin(turn)].map((one) => one * scale * view.scale) as Pair;
+    const [c, n] = [Math.cos(turn), Math.sin(turn)].map((part) => part * scale * view.scale) as Pair;
     // In pictures y goes down, as on the screen; in drawings up.
     const down = picture ? -1 : 1;
-    const matrix = [c, -n, -n * down, -c * down, x, y].map((one) => Number(one.toPrecision(9)));
+    const matrix = [c, -n, -n * down, -c * down, x, y].map((value) => Number(value.toPrecision(9)));
     set(this.group, { transform: `matrix(${matrix.join(" ")})`, opacity, visibility: hidden ? "hidden" : "visible" });
   }
 }

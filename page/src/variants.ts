@@ -19,7 +19,7 @@ export class Variants {
   private readonly select: HTMLSelectElement;
   private shape = "";
 
-  constructor(private readonly ask: (asked: PageRequest) => void) {
+  constructor(private readonly ask: (request: PageRequest) => void) {
     this.select = h("select", {
       "aria-label": say("Compare with"),
       onchange: () => ask({ type: "variant", do: "against", to: this.select.value }),

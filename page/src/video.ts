@@ -32,7 +32,7 @@ export function records(): boolean {
 }
 
 function kind(): string | undefined {
-  return KINDS.find((one) => MediaRecorder.isTypeSupported(one));
+  return KINDS.find((kind) => MediaRecorder.isTypeSupported(kind));
 }
 
 /** Record what moves from its start to its end: a picture at every frame that the browser gives; null where it is shown no more. */
@@ -62,7 +62,7 @@ export async function record({ root, areas, seconds, show }: Scenery): Promise<V
   }
   recorder.stop();
   await stopped;
-  for (const one of stream.getTracks()) one.stop();
+  for (const streamTrack of stream.getTracks()) streamTrack.stop();
   return !shown ? null : { blob: new Blob(parts, { type: mimeType }), suffix: mimeType.slice(6, 10).replace(";", "") };
 }
 
@@ -141,12 +141,12 @@ const EXTRA = ".equipoise :is(button,.said,.hint){visibility:hidden}";
 function clone(area: HTMLElement): HTMLElement {
   const copy = area.cloneNode(true) as HTMLElement;
   const typed = area.querySelectorAll<HTMLSelectElement | HTMLInputElement>(TYPED);
-  copy.querySelectorAll<HTMLSelectElement | HTMLInputElement>(TYPED).forEach((one, i) => {
+  copy.querySelectorAll<HTMLSelectElement | HTMLInputElement>(TYPED).forEach((input, i) => {
     const value = typed[i]?.value ?? "";
-    if (one instanceof HTMLInputElement) one.setAttribute("value", value);
-    else for (const option of one.options) option.toggleAttribute("selected", option.value === value);
+    if (input instanceof HTMLInputElement) input.setAttribute("value", value);
+    else for (const option of input.options) option.toggleAttribute("selected", option.value === value);
   });
-  for (const one of copy.querySelectorAll("canvas, script")) one.replaceWith(blank(one));
+  for (const element of copy.querySelectorAll("canvas, script")) element.replaceWith(blank(element));
   for (const child of copy.children) if (child instanceof HTMLElement) child.style.translate = `0 ${-area.scrollTop}px`;
   copy.style.cssText += ";position:absolute;inset:0;margin:0;overflow:hidden;width:100%;height:100%";
   return copy;
@@ -163,26 +163,26 @@ function blank(element: Element): HTMLElement {
 function within(area: HTMLElement, root: HTMLElement, copy: HTMLElement, place: string): HTMLElement {
   let inner: HTMLElement = h("div", {}, copy);
   inner.style.cssText = `position:absolute;top:0;overflow:hidden;${place}`;
-  for (let one = area.parentElement; one; one = one.parentElement) {
-    const around = one.cloneNode(false) as HTMLElement;
+  for (let parent = area.parentElement; parent; parent = parent.parentElement) {
+    const around = parent.cloneNode(false) as HTMLElement;
     around.removeAttribute("id");
     around.style.display = "contents";
     around.append(inner);
     inner = around;
-    if (one === root) break;
+    if (parent === root) break;
   }
   return inner;
 }
 
 /** The colour behind an element: that of the first around it which has one. */
 function paperOf(element: HTMLElement): string {
-  for (let one: HTMLElement | null = element; one; one = one.parentElement) {
-    const { backgroundColor } = getComputedStyle(one);
+  for (let parent: HTMLElement | null = element; parent; parent = parent.parentElement) {
+    const { backgroundColor } = getComputedStyle(parent);
     if (!/^rgba\(.*, 0\)$|^transparent$/.test(backgroundColor)) return backgroundColor;
   }
   return element.closest(".dark") ? "black" : "white";
 }
 
 function sum(values: number[]): number {
-  return values.reduce((all, one) => all + one, 0);
+  return values.reduce((all, value) => all + value, 0);
 }

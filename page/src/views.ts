@@ -18,7 +18,7 @@ export class Views {
   private store: string | null = null;
   private at: HTMLElement | null | undefined;
 
-  constructor(talk: Conversation, theme: Theme, ask: (asked: PageRequest) => void) {
+  constructor(talk: Conversation, theme: Theme, ask: (request: PageRequest) => void) {
     this.tool = new ToolView(talk, theme);
     this.study = new StudyView(ask, theme);
     this.back = h(

@@ -5,7 +5,7 @@
 
 import { decimals, point } from "./format";
 import type { Particles } from "./messages";
-import type { MenuItem, PartTool, PluralForms, Spoken, Told, Wire, Wording } from "./protocol";
+import type { Incoming, MenuItem, PartTool, PluralForms, Spoken, Wire, Wording } from "./protocol";
 
 /** The function that gives every particle of a text one form. */
 export function particles({ forms, endings, closing, reach }: Particles): (text: string) => string {
@@ -13,20 +13,20 @@ export function particles({ forms, endings, closing, reach }: Particles): (text:
   const both = new RegExp(Object.keys(forms).map(escaped).join("|"), "g");
   const rules = endings.map(([pattern, sound]) => [new RegExp(pattern), sound] as const);
   return (text) =>
-    text.replace(both, (found, at: number) => {
+    text.replace(both, (written, at: number) => {
       let end = at;
       const begin = Math.max(at - reach, 0);
       while (end > begin && closing.includes(text[end - 1] ?? "")) end--;
       const word = text.slice(begin, end).normalize("NFD");
       const sound = rules.find(([pattern]) => pattern.test(word))?.[1];
-      return sound === undefined ? found : (forms[found]?.[sound] ?? found);
+      return sound === undefined ? written : (forms[written]?.[sound] ?? written);
     });
 }
 
 /** Where a reader's choice of a language is kept. */
 const KEPT = "equipoise language";
 
-let told: Omit<Spoken, "type" | "seq"> = {
+let spoken: Omit<Spoken, "type" | "seq"> = {
   language: "en",
   languages: { en: "English" },
   words: {},
@@ -43,7 +43,7 @@ let joined = (text: string): string => text;
 
 /** A text in the language that is spoken, its `{placeholders}` filled in. */
 export function say(text: string, values: Record<string, string | number> = {}): string {
-  const said = own.words[text] ?? formOf(told.forms[text], values) ?? told.words[text] ?? text;
+  const said = own.words[text] ?? formOf(spoken.forms[text], values) ?? spoken.words[text] ?? text;
   return joined(said.replace(/\{(\w+)\}/g, (whole, name: string) => filled(values[name] ?? whole)));
 }
 
@@ -51,7 +51,7 @@ export function say(text: string, values: Record<string, string | number> = {}):
 function formOf(forms: PluralForms | undefined, values: Record<string, string | number>): string | undefined {
   if (!forms) return undefined;
   const count = Number(values[forms.by ?? ""]);
-  const category = Number.isNaN(count) ? "other" : new Intl.PluralRules(told.language).select(count);
+  const category = Number.isNaN(count) ? "other" : new Intl.PluralRules(spoken.language).select(count);
   return forms[category] ?? forms.other;
 }
 
@@ -68,28 +68,28 @@ export function toSay(text: string): string {
 
 /** The code of the language that is spoken. */
 export function language(): string {
-  return told.language;
+  return spoken.language;
 }
 
 /** Code of each language there is, and its own name. */
 export function languages(): Record<string, string> {
-  return told.languages;
+  return spoken.languages;
 }
 
 /** Tools that add parts, as the kinds of parts declare them. */
 export function partTools(): PartTool[] {
-  return told.part_tools;
+  return spoken.part_tools;
 }
 
 /** Tables that menus of the drawing offer to add, as they declare. */
 export function menuItems(): MenuItem[] {
-  return told.menu_items;
+  return spoken.menu_items;
 }
 
 /** What a chart shows, and what to look for in it. */
 export function explained(chart: string): string {
   const [kind = ""] = chart.split(/-|\.\d/);
-  const text = (name: string) => own.explained[name] ?? told.explained[name];
+  const text = (name: string) => own.explained[name] ?? spoken.explained[name];
   return text(chart) ?? text(kind) ?? "";
 }
 
@@ -120,19 +120,19 @@ export function wished(): string[] {
 
 /** Speak a language whose texts are at hand, without a server. */
 export function speak(language: string, words: Record<string, string>, decimal: string): void {
-  told = { ...told, language, words, decimal };
+  spoken = { ...spoken, language, words, decimal };
   point(decimal);
 }
 
 /** Agree with the server on a language, by a wire that nobody else hears yet. */
 export function agree(wire: Wire, wishes: string[]): Promise<void> {
   return new Promise((done) => {
-    const hear = (content: Told): void => {
+    const hear = (content: Incoming): void => {
       // Who is turned away, or has lost the server, reads so in English.
       if (content.type !== "spoken" && content.type !== "refused" && content.type !== "lost") return;
       wire.off("msg:custom", hear);
       if (content.type === "spoken") {
-        told = content;
+        spoken = content;
         point(content.decimal);
         joined = content.particles ? particles(content.particles) : (text) => text;
       }

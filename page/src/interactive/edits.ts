@@ -181,15 +181,15 @@ export function typed(text: string, field: Pick<Field, "units" | "unit" | "facto
 /** Why a number cannot be this, by the limits of its key; null where it can. */
 export function outside(field: Field, value: number): string | null {
   const limit = (si: number) => `${Number((si * field.factor).toPrecision(12))} ${field.unit}`.trim();
-  const given = limit(value);
+  const limited = limit(value);
   const { label, least, above, below } = field;
-  if (!Number.isFinite(value)) return say("{label}: got {given}; give a number", { label, given });
+  if (!Number.isFinite(value)) return say("{label}: got {given}; give a number", { label, given: limited });
   if (least !== null && value < least)
-    return say("{label}: got {given}; give {limit} or more", { label, given, limit: limit(least) });
+    return say("{label}: got {given}; give {limit} or more", { label, given: limited, limit: limit(least) });
   if (above !== null && value <= above)
-    return say("{label}: got {given}; give more than {limit}", { label, given, limit: limit(above) });
+    return say("{label}: got {given}; give more than {limit}", { label, given: limited, limit: limit(above) });
   if (below !== null && value >= below)
-    return say("{label}: got {given}; give less than {limit}", { label, given, limit: limit(below) });
+    return say("{label}: got {given}; give less than {limit}", { label, given: limited, limit: limit(below) });
   return null;
 }
 

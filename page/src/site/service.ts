@@ -7,13 +7,13 @@ interface Fetched extends Extended {
   request: Request;
   respondWith(reply: Promise<Response>): void;
 }
-interface Told extends Extended {
+interface Messaged extends Extended {
   data: string[];
 }
 interface Scope {
   addEventListener(type: "install" | "activate", heard: (event: Extended) => void): void;
   addEventListener(type: "fetch", heard: (event: Fetched) => void): void;
-  addEventListener(type: "message", heard: (event: Told) => void): void;
+  addEventListener(type: "message", heard: (event: Messaged) => void): void;
   skipWaiting(): Promise<void>;
   clients: { claim(): Promise<void> };
 }

@@ -1,6 +1,6 @@
 /** A wire to Python in a worker of the browser, and what is kept for use offline. */
 
-import type { Told, Wire } from "../protocol";
+import type { Incoming, Wire } from "../protocol";
 import { Bytes } from "../socket";
 
 /** What a worker says of itself. */
@@ -43,10 +43,10 @@ export class WorkerWire extends Bytes implements Wire {
     this.worker.onerror = (event) => sign({ type: "failed", what: event.message });
   }
 
-  protected override whole(message: Changed): Told {
-    if (!message.since) return message as unknown as Told;
+  protected override whole(message: Changed): Incoming {
+    if (!message.since) return message as unknown as Incoming;
     this.state = changed(this.state, message);
-    return this.state as unknown as Told;
+    return this.state as unknown as Incoming;
   }
 
   send(content: object): void {

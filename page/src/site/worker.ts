@@ -105,9 +105,9 @@ const others = (): Promise<void> =>
 function unpacking(packed: string[]): void {
   const fetchAsItIs = self.fetch.bind(self);
   const compressed = new Set(packed.map((path) => new URL(path, base).href));
-  self.fetch = async (asked, options) => {
-    const address = new URL(asked instanceof Request ? asked.url : asked, base).href;
-    if (!compressed.has(address)) return fetchAsItIs(asked, options);
+  self.fetch = async (resource, options) => {
+    const address = new URL(resource instanceof Request ? resource.url : resource, base).href;
+    if (!compressed.has(address)) return fetchAsItIs(resource, options);
     const reply = await fetchAsItIs(`${address}.gzip`, options);
     if (!reply.ok || !reply.body) return reply;
     const type = address.endsWith(".wasm") ? "application/wasm" : "application/octet-stream";
@@ -144,7 +144,7 @@ async function start(
   });
   const { lock, first } = site;
   const here = ({ file_name }: Package): boolean => file_name.includes("/");
-  for (const one of Object.values(lock.packages)) if (here(one)) one.file_name = new URL(one.file_name, base).href;
+  for (const item of Object.values(lock.packages)) if (here(item)) item.file_name = new URL(item.file_name, base).href;
   const python = await loadPyodide({
     indexURL: runtime.href,
     createPyodideModule: await program,
@@ -154,7 +154,8 @@ async function start(
   });
   // The others come from where the runtime's own packages are published, and are checked as well.
   const published = python._api.config.cdnUrl;
-  for (const one of Object.values(python.lockfile.packages)) if (!here(one)) one.file_name = published + one.file_name;
+  for (const item of Object.values(python.lockfile.packages))
+    if (!here(item)) item.file_name = published + item.file_name;
   await python.loadPackage(first, { messageCallback: () => undefined });
   // Beside the others: texts of a language are laid over what stands in for them.
   const extractDir = python.runPython("import sysconfig; sysconfig.get_path('purelib')");
@@ -165,12 +166,12 @@ async function start(
 }
 
 /** What has been loaded: if a module is still missing then, asking for it again leads nowhere. */
-const asked = new Set<string>();
+const requested = new Set<string>();
 
 /** Load the package that has a module; tells whether it could be. */
 async function load(python: Pyodide, module: string): Promise<boolean> {
-  if (asked.has(module)) return false;
-  asked.add(module);
+  if (requested.has(module)) return false;
+  requested.add(module);
   const packages = Object.entries(python.lockfile.packages);
   const wanted = packages.find(([name, { imports }]) => name === module || imports.includes(module));
   if (!wanted) return false;

@@ -155,7 +155,7 @@ def _modes(scene: Scene, response: Response) -> Iterator[JsonObject]:
         item = ModeSwing.of(scene, number, mode, support.coordinates)
         parts = (complex(item.amplitudes[FREEDOMS.index(name)]) for name in PLANAR)
         shape = [number for part in parts for number in (part.real, part.imag)]
-        yield {"told": list(item.captions), "seen": item.visible, "shape": shape}
+        yield {"lines": list(item.captions), "seen": item.visible, "shape": shape}
 
 
 def _spoken(name: str) -> str:

@@ -217,7 +217,7 @@ class MeasuredRecordValues(TypedDict):
     """A measured record, and how the machine compares with it."""
 
     name: str
-    told: list[str]
+    lines: list[str]
     left_out: list[str]
 
 
@@ -397,7 +397,7 @@ class GalleryValues(TypedDict):
 class SupportModeValues(TypedDict):
     """A natural mode of the support."""
 
-    told: list[str]
+    lines: list[str]
     seen: bool
     shape: Annotated[
         list[float],
@@ -425,7 +425,7 @@ class StationOnShaftValues(TypedDict):
 
     name: str
     place: float
-    told: str
+    text: str
 
 
 class ShaftPieceValues(TypedDict):
@@ -451,7 +451,7 @@ class ShaftViewValues(TypedDict):
     """How the shaft may be seen to move."""
 
     name: str
-    told: list[str]
+    lines: list[str]
     shape: DrawnDisplacements
 
 
@@ -714,7 +714,7 @@ class BusyValues(TypedDict):
 class AnsweredValues(TypedDict):
     """All answers to a question have come, those too that take longer."""
 
-    type: Literal["told"]
+    type: Literal["answered"]
     seq: int
 
 

@@ -139,7 +139,7 @@ def busy(message: Message, language: str) -> Reply | None:
 
 def completed(seq: int | None) -> Reply:
     """Say that a question has all its answers, also those that take longer."""
-    return Reply({"type": "told", "seq": seq})
+    return Reply({"type": "answered", "seq": seq})
 
 
 def packed(reply: Reply) -> bytes:

@@ -122,7 +122,7 @@ def _scene(scene: ToolScene) -> JsonObject:
             {
                 "name": seat.name,
                 "place": seat.place,
-                "told": format_quantity(seat.place, "length", "mm"),
+                "text": format_quantity(seat.place, "length", "mm"),
             }
             for seat in scene.seats
         ],
@@ -154,7 +154,7 @@ def _views(now: ToolFigures) -> Iterator[JsonObject]:
         shape = np.interp(along, now.modes.places, plane.shapes[k])
         value = f"{float(plane.cycles_per_second[k]):.4g}"
         name = say("mode {number}: {frequency} Hz", number=k + 1, frequency=value)
-        yield {"name": name, "told": [], "shape": _parts(shape * swing / np.max(np.abs(shape)))}
+        yield {"name": name, "lines": [], "shape": _parts(shape * swing / np.max(np.abs(shape)))}
 
 
 def _at_work(tool: Tool, along: Array, swing: float) -> Iterator[JsonObject]:
@@ -177,7 +177,7 @@ def _at_work(tool: Tool, along: Array, swing: float) -> Iterator[JsonObject]:
     )
     speed = f"{tool.operation.speed * 30 / pi:.4g}"
     name = say("at work, {speed} rpm", speed=speed)
-    yield {"name": name, "told": [remark], "shape": _parts(factor * moved[:, order])}
+    yield {"name": name, "lines": [remark], "shape": _parts(factor * moved[:, order])}
 
 
 def _parts(shape: Array) -> list[float]:

@@ -251,14 +251,14 @@ def record_values(
     try:
         compared = compared_with(record, computed.analysis, gauges_of(computed))
     except EquipoiseError as error:  # of a machine that has been changed meanwhile
-        return {"name": record.name, "told": [error.message()], "left_out": []}
+        return {"name": record.name, "lines": [error.message()], "left_out": []}
     for name, values in compared.signals.items():
         count, own = len(values), len(values)
         if name.startswith(GAUGES):
             count = SAMPLES * computed.motion.turns
         at = np.arange(count) * own / count
         block.add(f"measured.{name}", np.interp(at, np.arange(own), values, period=own))
-    text = {"told": [*compared.sentences], "left_out": [*compared.left_out]}
+    text = {"lines": [*compared.sentences], "left_out": [*compared.left_out]}
     return {"name": record.name, **text}
 
 

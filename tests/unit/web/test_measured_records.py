@@ -44,7 +44,7 @@ def test_a_record_over_the_crank_angle_stands_beside_the_model_in_si_units() -> 
     assert "output.transmission.C" in shown.content["arrays"]  # so that both are drawn
     record = shown.content["record"]
     assert record["name"] == "run.csv" and record["left_out"] == ["operator"]
-    (force, angle) = record["told"]
+    (force, angle) = record["lines"]
     rms = np.sqrt(np.mean(values**2))
     assert force.startswith("shaking force y: RMS measured ")
     assert f"model {rms:.4g} N" in force and "transmission angle at C" in angle
@@ -64,7 +64,8 @@ def test_a_record_over_time_is_the_mean_of_its_turns_where_it_fits_best() -> Non
     shown = dropped(written(("time [s]", time), (f"{NAME} [N]", clean + noise)))
     sent = shown.array(f"measured.{NAME}")
     assert np.sqrt(np.mean((sent - values) ** 2)) < 0.6
-    assert shown.content["record"]["told"][-1] == "moved by \N{MINUS SIGN}50° to where it fits best"
+    last = shown.content["record"]["lines"][-1]
+    assert last == "moved by \N{MINUS SIGN}50° to where it fits best"
 
 
 def test_what_was_not_measured_is_a_gap() -> None:

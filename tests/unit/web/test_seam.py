@@ -46,7 +46,7 @@ def line() -> Line:
 
 def test_a_page_is_served_within_its_own_process(line: Line) -> None:
     hello, reply = line.ask("ready")
-    assert reply.content == {"type": "told", "seq": 7}
+    assert reply.content == {"type": "answered", "seq": 7}
     assert hello.content["machine"] is False
     first = line.ask("open", example="balance-crank")[0]
     assert first.content["seq"] == 7
@@ -69,7 +69,7 @@ def test_an_edit_that_is_tried_is_sent_no_more_than_it_needs(line: Line) -> None
     tried = line.ask("edit", commit=False, label="speed", edits=[change])
     assert {item.content["type"] for item in tried} <= {"state", "response", "ghost", "variants"}
     kept = line.ask("edit", label="speed", edits=[change])
-    assert kept[-1].content["type"] == "told"
+    assert kept[-1].content["type"] == "answered"
     assert "planting" in {item.content["type"] for item in kept}
 
 

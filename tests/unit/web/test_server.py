@@ -251,8 +251,8 @@ def test_dragging_goes_on_while_something_takes_long(
         late = hear(page)
         assert (late["type"], late["seq"]) == ("refused", 1)
         assert "was changed while" in late["message"]
-        rest = iter(lambda: hear(page), {"type": "told", "seq": 2})  # both are answered by now
-        assert "told" not in {item["type"] for item in rest}
+        rest = iter(lambda: hear(page), {"type": "answered", "seq": 2})  # both are answered by now
+        assert "answered" not in {item["type"] for item in rest}
         assert given_back.wait(300)
 
 
@@ -277,7 +277,7 @@ def test_a_question_too_many_has_all_its_answers_too(
         assert {item["type"] for item in waiting} == {"busy"}
         assert (refused["type"], refused["seq"]) == ("refused", most)
         rested.set()
-        assert any(hear(page) == {"type": "told", "seq": most} for _ in range(100))
+        assert any(hear(page) == {"type": "answered", "seq": most} for _ in range(100))
 
 
 class Dragged:
@@ -305,7 +305,7 @@ class Dragged:
             self.sent.append((reported["type"], reported["seq"]))
         if reported["type"] == "state" and reported["seq"] < self.moves:
             self.go(reported["seq"] + 1)
-        elif reported == {"type": "told", "seq": self.moves}:
+        elif reported == {"type": "answered", "seq": self.moves}:
             self.coming.put_nowait({"type": "websocket.disconnect"})
 
 
@@ -445,7 +445,7 @@ def test_what_takes_long_is_cancelled_and_asked_again(
             assert begun.wait(300)
             page.send('{"type": "run", "seq": 2}')
             page.send('{"type": "cancel"}')
-            answers = [*iter(lambda: hear(page), {"type": "told", "seq": 2})]
+            answers = [*iter(lambda: hear(page), {"type": "answered", "seq": 2})]
         assert ended.is_set()
         refusals = {
             answer["seq"]: answer["message"] for answer in answers if answer["type"] == "refused"

@@ -619,7 +619,7 @@ def test_couplings_have_teeth() -> None:
 
 
 def test_a_step_that_the_program_cannot_draw_is_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The page is told of the mistake, and goes on with the last machine that it showed."""
+    """The page reports the mistake and goes on with the last machine that it showed."""
     maker = Maker(opened("knife-drive")[0])
     good = maker.session.current_state, maker.session.history
     with monkeypatch.context() as broken:

@@ -104,5 +104,5 @@ def test_lists_are_sent_whole_where_most_of_them_differs() -> None:
 
 
 def test_other_messages_are_left_as_they_are() -> None:
-    reply = Reply({"type": "told", "seq": 3})
+    reply = Reply({"type": "answered", "seq": 3})
     assert StateChanges().of(reply) is reply

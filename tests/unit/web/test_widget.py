@@ -27,7 +27,7 @@ def test_a_widget_answers_as_the_server_does(monkeypatch: pytest.MonkeyPatch) ->
     widget._handle_custom_msg("nonsense", [])
     kinds = [content["type"] for content, _ in sent]
     assert kinds.count("strokes") == 2
-    rest = {"strokes", "told"}
+    rest = {"strokes", "answered"}
     hello, first, second, refused = (item for item in sent if item[0]["type"] not in rest)
     assert hello[0]["type"] == "hello"
     assert len(first[1][0]) == 4 * max(sum(place) for place in first[0]["arrays"].values())

@@ -71,10 +71,10 @@ def shown(example: str) -> Foreground:
 
 def test_a_page_is_answered_and_what_follows_is_computed_beside() -> None:
     page = Foreground()
-    assert kinds(asked(page, "ready")) == ["hello", "told"]
+    assert kinds(asked(page, "ready")) == ["hello", "answered"]
     assert kinds(asked(page, "open", example="transplanter")) == ["state"]
     page.rest()
-    assert kinds(done_beside(page)) == ["strokes", "planting", "told"]
+    assert kinds(done_beside(page)) == ["strokes", "planting", "answered"]
     page.rest()
     assert not page.tasks
 
@@ -146,7 +146,7 @@ def test_what_takes_long_can_be_cancelled(page: Foreground, what: str) -> None:
     *refusals, last = texts(page)
     assert {refusal["message"] for refusal in refusals} == {"cancelled; nothing was changed"}
     assert [refusal["seq"] for refusal in refusals] == [item["seq"] for item in busy]
-    assert last == {"type": "told", "seq": busy[-1]["seq"]}
+    assert last == {"type": "answered", "seq": busy[-1]["seq"]}
     assert kinds(asked(page, "edit", label="mass", edits=[MASS]))[0] == "state"
 
 
