@@ -220,7 +220,7 @@ REFUSED = {
         "'shaking_force.y weight 0'": "--objective: weight: got 0; give more than 0",
         "'shaking_force.y weight 1,2'": "got weight '1,2'; give one number: weight 2",
         "'shaking_force.y speeds 9 rpm'": "--objective: speeds: goes with gauges; oth",
-        "gauges.x": "--objective: there is no gauge; give a support with gauges",
+        "gauges.x": "--objective: there is no gauge; give a support",
         "joints.Q": "--objective: no joint is called 'Q'; there are 'A', 'D', 'B',",
         "roll_moment": "--objective: roll_moment comes from linkages side by side; gi",
         "shaking_moment": (

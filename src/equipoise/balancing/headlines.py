@@ -281,7 +281,7 @@ def _watched_gauges(assessed: AssessedMachine) -> Iterator[HeadlineLimit]:
     judged = [item.output for item in assessed.headline if item.output.startswith(GAUGES)]
     names = dict.fromkeys(judged)
     if judged and machine.support is not None and not unbalances(machine):
-        names |= dict.fromkeys(f"{GAUGES}{name}" for name in machine.support.gauges)
+        names |= dict.fromkeys(f"{GAUGES}{name}" for name in machine.support.readings)
     for name in names:
         for objective in (Objective(name, "ripple"), Objective(name, "peak_to_peak")):
             most = HEADLINE_GROWTH * Problem.value_of(machine, objective)

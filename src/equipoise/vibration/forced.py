@@ -184,10 +184,10 @@ def respond(
 
 
 def readings_of(machine: Machine, speed: float) -> Mapping[str, GaugeSignals] | None:
-    """What the gauges of a machine read at a speed, rad/s, by name; None where there are none, or
+    """What the gauges of a machine read at a speed, rad/s, by name; None without a support, or
     no steady state from which they could be read.
     """
-    if machine.support is None or not machine.support.gauges or massless(machine):
+    if machine.support is None or massless(machine):
         return None
     try:
         return respond(machine, speed).gauges

@@ -17,7 +17,7 @@ from equipoise.exposure.daily import LIMIT, partial_exposure, total_value, verdi
 from equipoise.exposure.weighting import factor
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.support import AXES, TIME_IN_PERIOD, Support
+from equipoise.mechanism.parts.support import TIME_IN_PERIOD, Support
 from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
 from equipoise.results.declaring import NOTES, OWN, TITLE, Declarations, ResultOutput, columns_of
@@ -437,8 +437,8 @@ def members_of(key: str) -> Callable[[Any], Mapping[str, bool]]:
         support: Support | None = getattr(model, "support", None)
         if support is None:
             return {}
-        if key == "gauges" and not support.gauges:  # then the coordinates are read
-            return {name: name in AXES for name in support.coordinates}
+        if key == "gauges":
+            return support.readings
         return {name: place.axis is not None for name, place in getattr(support, key).items()}
 
     return members

@@ -105,7 +105,7 @@ def _with_gauge_limits(machine: Machine, plan: Balance) -> Balance:
     """A plan by which no gauge reads more, RMS about the mean at the machine's own speed."""
     if machine.support is None or plan.phases is not None:
         return plan
-    gauges = (Objective(f"gauges.{name}", "ripple") for name in machine.support.gauges)
+    gauges = (Objective(f"gauges.{name}", "ripple") for name in machine.support.readings)
     return replace(plan, limits=(*plan.limits, *(Limit(gauge, ratio=1.0) for gauge in gauges)))
 
 

@@ -216,7 +216,7 @@ GAUGES = "gauges."
 def gauges_of(computed: Computed) -> tuple[str, ...]:
     """Names of the gauges of a machine's support."""
     support = computed.design.machine.support
-    return () if support is None else tuple(support.gauges)
+    return () if support is None else tuple(support.readings)
 
 
 def charted(output: str) -> bool:

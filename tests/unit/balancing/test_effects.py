@@ -13,6 +13,7 @@ import pytest
 from scipy.optimize import minimize
 
 import equipoise as eq
+from equipoise.balancing.advice import advise
 from equipoise.balancing.effects import ANGLES, Effects, Signal
 from equipoise.balancing.objectives import (
     LinearizationPoint,
@@ -380,6 +381,29 @@ def test_gauges_need_a_support() -> None:
         signals_of(Effects(machine, ()), RIPPLE, LinearizationPoint(machine))
     with refused(ModelError, "support.gauges", kind="gauge"):
         signals_of(Effects(RIG, ()), Objective("gauges.other"), LinearizationPoint(RIG))
+
+
+def test_without_gauges_the_coordinates_of_a_support_are_read_and_balanced() -> None:
+    """As by gauges that read them: along x and y at its centre of mass, and about z."""
+    assert RIG.support is not None
+    x, y, z = RIG.support.reference
+    free = RIG.with_support(gauges={})
+    read_by = {"surge": eq.Gauge((x, y, z), 0.0), "pitch": eq.Gauge(axis="pitch")}
+    explicit = RIG.with_support(gauges={name: read_by[name] for name in RIG.support.coordinates})
+    assert free.support is not None
+    assert explicit.support is not None
+    assert free.support.readings == explicit.support.readings
+    shafts = BalanceShafts(1, ((0.0, -0.1), (0.1, -0.1)), Weight(radius=0.05, at_most=0.5))
+    for name in explicit.support.gauges:
+        plan = Balance(shafts=(shafts,), objectives=(Objective(f"gauges.{name}", "ripple"),))
+        (bare, named) = (eq.balance(machine, plan) for machine in (free, explicit))
+        assert bare.objectives[f"ripple of gauges.{name}"] == pytest.approx(
+            named.objectives[f"ripple of gauges.{name}"], rel=EXACT
+        )
+        assert bare.machine.with_support(gauges=explicit.support.gauges) == named.machine
+    assert [item.name for item in advise(free).plan.objectives] == [
+        f"ripple of gauges.{name}" for name in explicit.support.gauges
+    ]
 
 
 N = 96

@@ -603,6 +603,6 @@ declare_as(
         None,
         needs="support",
         yardstick="vibration",
-        members=lambda machine: [] if machine.support is None else list(machine.support.gauges),
+        members=lambda machine: [] if machine.support is None else list(machine.support.readings),
     )
 )

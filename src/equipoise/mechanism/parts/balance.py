@@ -221,7 +221,7 @@ def output_of(name: str, machine: Mechanism) -> Declared:
     element, item = values[0]
     names, kind = list(element.members(machine)), element.group.removesuffix("s")
     if kind == "gauge" and not names:
-        raise ModelError("", Note("there is no gauge; give a support with gauges"))
+        raise ModelError("", Note("there is no gauge; give a support"))
     if not names and element.reason:
         raise ModelError("", Note(element.reason, what=name))
     if not element.is_family:
@@ -243,7 +243,7 @@ def _balanced(declared: Declared, item: str, machine: Mechanism) -> Declared:
         )
     if declared.reason:
         raise ModelError("", Note(declared.reason, what=name))
-    if declared.needs == "support" and machine.support.gauges[item].axis is not None:  # type: ignore[union-attr]
+    if declared.needs == "support" and machine.support.readings[item]:  # type: ignore[union-attr]
         return replace(declared, dimension="angle")
     return declared
 

@@ -363,6 +363,15 @@ class Support(Frozen):
         return ("pitch",) if self.pivot is not None else PLANAR
 
     @property
+    def readings(self) -> Mapping[str, bool]:
+        """What is read of its motion, and whether that is a rotation: its gauges; its coordinates
+        where it has none.
+        """
+        if not self.gauges:
+            return {name: name in AXES for name in self.coordinates}
+        return {name: gauge.axis is not None for name, gauge in self.gauges.items()}
+
+    @property
     def planar(self) -> bool:
         """Whether it moves in the plane of the drawing only."""
         return set(self.coordinates) <= set(PLANAR)
