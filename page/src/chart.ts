@@ -5,6 +5,7 @@
 
 import { fresh, h, put, set, write } from "./dom";
 import type { ChartData, Choice, Numbers, PageRequest, State, Unit } from "./protocol";
+import { render, v } from "./render";
 import { turning } from "./scale";
 import { type Curve, Strip } from "./strip";
 import type { Role, Theme } from "./theme";
@@ -100,7 +101,7 @@ export function chooser(name: string, changed: () => void): Chooser {
     },
     has,
     offer(options) {
-      select.replaceChildren(...options.map(([value, label]) => h("option", { value }, label)));
+      render(select, ...options.map(([value, label]) => v("option", { value }, label)));
     },
   };
 }

@@ -1,4 +1,4 @@
-/** Elements in one call each. */
+/** Elements in one call each: made once, and changed by their attributes.  What a message lists is rendered (`render.ts`). */
 
 type Value = string | number | boolean | null | undefined | ((event: never) => void);
 type Child = Node | string | null | undefined | false;

@@ -2,12 +2,12 @@
 
 import { h } from "./dom";
 import type { State } from "./protocol";
+import { render, v } from "./render";
 import { say } from "./words";
 
 export class Heading {
   readonly about = h("details", { class: "about" });
   readonly notes = h("div", { class: "notes", role: "status" });
-  private written = "";
   private later = new Map<string, string[]>();
 
   /** What is told after a state, by what it is of: it stays until it is told anew. */
@@ -21,15 +21,9 @@ export class Heading {
   }
 
   show(state: State): void {
-    const about = [state.name, state.title, state.description].join("\n");
-    if (about !== this.written) {
-      this.written = about;
-      const text = state.description.trim() || say("This file has no description.");
-      this.about.replaceChildren(h("summary", {}, h("h1", {}, state.title || state.name)), h("p", {}, text));
-    }
+    const text = state.description.trim() || say("This file has no description.");
+    render(this.about, v("summary", {}, v("h1", {}, state.title || state.name)), v("p", {}, text));
     const notes = [...new Set([state.notes, ...this.later.values()].flat())];
-    if (this.notes.textContent !== notes.join("")) {
-      this.notes.replaceChildren(...notes.map((note) => h("p", {}, note)));
-    }
+    render(this.notes, ...notes.map((note) => v("p", {}, note)));
   }
 }

@@ -1,8 +1,9 @@
 /** Figures of what shakes, and what balancing made of them; those that are pinned on the drawing. */
 
-import { h, icon, set, show, write } from "./dom";
+import { h, show } from "./dom";
 import { decimals, unbroken } from "./format";
 import type { Balanced, Change, Figure, Planted, State, Strokes } from "./protocol";
+import { type ComponentChild, pictogram, render, v } from "./render";
 import { say } from "./words";
 
 const KEPT = "equipoise-pinned";
@@ -17,7 +18,6 @@ interface Reading {
 class Pins {
   readonly root = h("ul", { class: "pins", "aria-label": say("Figures on the drawing"), hidden: true });
   private readonly names = new Set<string>(remembered());
-  private shape = "";
 
   has(name: string): boolean {
     return this.names.has(name);
@@ -34,13 +34,8 @@ class Pins {
 
   show(readings: Reading[]): void {
     const pinned = readings.filter(({ name }) => this.names.has(name));
-    const shape = pinned.map(({ label }) => label).join("\n");
-    if (shape !== this.shape) {
-      this.shape = shape;
-      this.root.replaceChildren(...pinned.map(({ label }) => h("li", {}, h("span", {}, label), h("b"))));
-      this.root.hidden = !pinned.length;
-    }
-    for (const [i, { text }] of pinned.entries()) write(this.root.children[i]?.lastElementChild as Element, text);
+    render(this.root, ...pinned.map(({ label, text }) => v("li", {}, v("span", {}, label), v("b", {}, text))));
+    show(this.root, pinned.length > 0);
   }
 }
 
@@ -68,84 +63,59 @@ export class Readings {
   readonly root = h("div", { class: "readings" });
   /** Those that are pinned, which stand on the drawing. */
   readonly pins = new Pins();
-  private lines: Line[] = [];
-  private shape = "";
-  private cells = new Map<string, { value: HTMLElement; before: HTMLElement | null }>();
 
   show(state: State): void {
     const lines = [...byLine(state.figures).values()];
-    const shape = JSON.stringify([lines.map((l) => [l.label, !!l.rms, !!l.peak]), state.compared]);
-    if (shape !== this.shape) this.build(lines, state, shape);
-    for (const figure of state.figures) {
-      const cell = this.cells.get(figure.name);
-      if (!cell) continue;
-      write(cell.value, decimals(figure.text));
-      if (cell.before) write(cell.before, decimals(figure.was ?? ""));
-    }
-    this.lines = lines;
-    this.pin();
+    this.root.classList.toggle("compared", state.compared);
+    render(
+      this.root,
+      lines.length ? this.table(lines, state) : v("p", { class: "quiet" }, say("Motion only, no forces.")),
+    );
+    this.pins.show(lines.map(reading));
   }
 
-  private pin(): void {
-    const pinned = (line: Line) => {
-      const rms = line.rms && say("RMS {value} {unit}", { value: line.rms.text, unit: line.unit });
-      const peak = line.peak && say("peak {value} {unit}", { value: line.peak.text, unit: line.unit });
-      return { name: line.name, label: line.label, text: [rms, peak].filter((text) => text).join(", ") };
-    };
-    this.pins.show(this.lines.map(pinned));
+  private table(lines: Line[], state: State): ComponentChild {
+    const caption = state.compared ? say("Figures, and what they were before") : say("Figures");
+    const column = (text: string) => v("th", { scope: "col" }, text);
+    const row = (line: Line) => [
+      v("th", { scope: "row" }, line.label),
+      ...[line.rms, line.peak].map((figure) => valueCell(figure?.text ?? "", state.compared && (figure?.was ?? ""))),
+      v("td", { class: "unit" }, unbroken(line.unit), this.pinner(line, state)),
+    ];
+    return v(
+      "table",
+      {},
+      v("caption", { class: "unseen" }, caption),
+      v("thead", {}, v("tr", {}, v("td", {}), column(say("RMS")), column(say("peak")), v("td", {}))),
+      v("tbody", {}, ...lines.map((line) => v("tr", {}, ...row(line)))),
+    );
   }
 
   /** The button that pins a line on the drawing, or takes it off. */
-  private pinner({ name, label }: Line): HTMLElement {
+  private pinner({ name, label }: Line, state: State): ComponentChild {
     const title = say("Pin {name} on the drawing", { name: label });
-    const button = h("button", { type: "button", class: "pin", title, "aria-label": title }, icon(PIN));
-    const mark = () => set(button, { "aria-pressed": String(this.pins.has(name)) });
-    button.addEventListener("click", () => {
+    const onclick = () => {
       this.pins.turn(name);
-      mark();
-      this.pin();
-    });
-    mark();
-    return button;
-  }
-
-  private build(lines: Line[], state: State, shape: string): void {
-    this.shape = shape;
-    this.cells.clear();
-    this.root.classList.toggle("compared", state.compared);
-    if (!lines.length) {
-      return this.root.replaceChildren(h("p", { class: "quiet" }, say("Motion only, no forces.")));
-    }
-    const cell = (figure: Figure | undefined) => {
-      if (!figure) return h("td");
-      const value = h("span", { class: "value" });
-      const before = state.compared ? h("span", { class: "was" }) : null;
-      this.cells.set(figure.name, { value, before });
-      return h("td", {}, value, before);
+      this.show(state);
     };
-    const head = h(
-      "tr",
-      {},
-      ...["", say("RMS"), say("peak"), ""].map((t, i) => h(i ? "th" : "td", i ? { scope: "col" } : {}, t)),
-    );
-    head.lastElementChild?.replaceWith(h("td"));
-    const rows = lines.map((line) =>
-      h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, line.label),
-        cell(line.rms),
-        cell(line.peak),
-        h("td", { class: "unit" }, unbroken(line.unit), this.pinner(line)),
-      ),
-    );
-    const caption = h(
-      "caption",
-      { class: "unseen" },
-      state.compared ? say("Figures, and what they were before") : say("Figures"),
-    );
-    this.root.replaceChildren(h("table", {}, caption, h("thead", {}, head), h("tbody", {}, ...rows)));
+    const attributes = { type: "button", class: "pin", title, "aria-label": title } as const;
+    return v("button", { ...attributes, "aria-pressed": this.pins.has(name), onclick }, pictogram(PIN));
   }
+}
+
+/** What is pinned of a line. */
+function reading({ name, label, unit, rms, peak }: Line): Reading {
+  const texts = [
+    rms && say("RMS {value} {unit}", { value: rms.text, unit }),
+    peak && say("peak {value} {unit}", { value: peak.text, unit }),
+  ];
+  return { name, label, text: texts.filter((text) => text).join(", ") };
+}
+
+/** A value, and what it was before; false where nothing is compared. */
+function valueCell(value: string, before: string | false): ComponentChild {
+  const was = before !== false && v("span", { class: "was" }, decimals(before));
+  return v("td", {}, v("span", { class: "value" }, decimals(value)), was);
 }
 
 /** Figures of a planting finger, of gauges, or of sliders and rockers; they come a little after the machine. */
@@ -154,21 +124,20 @@ export class FigureTable {
 
   constructor(private readonly caption: string) {}
 
-  show(planted: Planted | Strokes): void {
-    this.root.classList.toggle("compared", planted.compared);
-    const rows = planted.figures.map(({ label, unit, text, was }) =>
-      h(
+  show({ figures, compared }: Planted | Strokes): void {
+    this.root.classList.toggle("compared", compared);
+    const rows = figures.map(({ label, unit, text, was }) =>
+      v(
         "tr",
         {},
-        h("th", { scope: "row" }, capital(label)),
-        h("td", {}, h("span", { class: "value" }, text), planted.compared && h("span", { class: "was" }, was ?? "")),
-        h("td", { class: "unit" }, unbroken(unit)),
+        v("th", { scope: "row" }, capital(label)),
+        valueCell(text, compared && (was ?? "")),
+        v("td", { class: "unit" }, unbroken(unit)),
       ),
     );
-    const words = planted.compared ? `${this.caption}, ${say("and what they were before")}` : this.caption;
-    const caption = h("caption", { class: "unseen" }, words);
-    this.root.replaceChildren(h("table", {}, caption, h("tbody", {}, ...rows)));
-    this.root.hidden = !rows.length;
+    const caption = compared ? `${this.caption}, ${say("and what they were before")}` : this.caption;
+    render(this.root, v("table", {}, v("caption", { class: "unseen" }, caption), v("tbody", {}, ...rows)));
+    show(this.root, rows.length > 0);
   }
 
   hide(): void {
@@ -214,21 +183,22 @@ export class BalancePanel {
     );
     const main = [...balanced.aims, ...rest];
     const others = balanced.figures.filter(({ label }) => !main.some((aim) => aim.label === label));
-    this.root.replaceChildren(
-      h("h2", {}, say("Balanced")),
-      h("ul", {}, ...balanced.changes.map((change) => h("li", {}, unbroken(change)))),
-      h(
+    render(
+      this.root,
+      v("h2", {}, say("Balanced")),
+      v("ul", {}, ...balanced.changes.map((change) => v("li", {}, unbroken(change)))),
+      v(
         "div",
         { class: "buttons" },
-        h("button", { type: "button", class: "strong", onclick: () => this.keep() }, say("Keep")),
-        h("button", { type: "button", onclick: () => this.takeBack() }, say("Take back")),
+        v("button", { type: "button", class: "strong", onclick: this.keep }, say("Keep")),
+        v("button", { type: "button", onclick: this.takeBack }, say("Take back")),
         balanced.gauges_worse &&
-          h("button", { type: "button", onclick: () => this.hold() }, say("Balance so that no gauge reads more")),
+          v("button", { type: "button", onclick: this.hold }, say("Balance so that no gauge reads more")),
       ),
       comparison(main),
-      ...(others.length ? [h("details", {}, h("summary", {}, say("All other figures")), comparison(others))] : []),
-      ...balanced.worse.map((text) => h("p", { class: "worse" }, unbroken(text))),
-      ...[balanced.proof, ...balanced.notes].map((text) => h("p", { class: "quiet" }, unbroken(text))),
+      others.length > 0 && v("details", {}, v("summary", {}, say("All other figures")), comparison(others)),
+      ...balanced.worse.map((text) => v("p", { class: "worse" }, unbroken(text))),
+      ...[balanced.proof, ...balanced.notes].map((text) => v("p", { class: "quiet" }, unbroken(text))),
     );
     this.root.hidden = false;
     this.root.focus({ preventScroll: true });
@@ -249,17 +219,17 @@ export function headline({ aims, figures }: Balanced): string {
 }
 
 /** Figures before and after, and by how much they have changed. */
-export function comparison(figures: Change[], heads = [say("before"), say("after"), say("change")]): HTMLTableElement {
+export function comparison(figures: Change[], heads = [say("before"), say("after"), say("change")]): ComponentChild {
   const rows = figures.map(({ label, unit, texts: [before, after, change], way }) =>
-    h(
+    v(
       "tr",
       {},
-      h("th", { scope: "row" }, capital(label), h("span", { class: "unit" }, `\u00a0${unbroken(unit)}`)),
-      h("td", {}, before),
-      h("td", { class: "after" }, after),
-      h("td", { class: way }, unbroken(change)),
+      v("th", { scope: "row" }, capital(label), v("span", { class: "unit" }, `\u00a0${unbroken(unit)}`)),
+      v("td", {}, before),
+      v("td", { class: "after" }, after),
+      v("td", { class: way }, unbroken(change)),
     ),
   );
-  const head = heads.map((text) => h("th", { scope: "col" }, text));
-  return h("table", {}, h("thead", {}, h("tr", {}, h("td"), ...head)), h("tbody", {}, ...rows));
+  const head = heads.map((text) => v("th", { scope: "col" }, text));
+  return v("table", {}, v("thead", {}, v("tr", {}, v("td", {}), ...head)), v("tbody", {}, ...rows));
 }

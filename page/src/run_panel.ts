@@ -4,6 +4,7 @@ import { type Ask, Chart, explain } from "./chart";
 import { h, show, write } from "./dom";
 import { unbroken } from "./format";
 import type { Numbers, RunMessage, State, TableBlock } from "./protocol";
+import { type ComponentChild, render, v } from "./render";
 import { indexAtOrBelow } from "./scale";
 import type { Swing } from "./signs";
 import { moves } from "./support";
@@ -14,30 +15,30 @@ import { say } from "./words";
 const NARROW = 4;
 
 /** Elements of some blocks, one below the other. */
-function blocksOf(blocks: RunMessage["blocks"]): HTMLElement[] {
+function blocksOf(blocks: RunMessage["blocks"]): ComponentChild[] {
   return blocks.flatMap((block) => {
-    if (block.kind === "text") return [h("p", block.emphasized ? { class: "worse" } : {}, unbroken(block.text))];
+    if (block.kind === "text") return [v("p", block.emphasized ? { class: "worse" } : {}, unbroken(block.text))];
     if (block.kind === "table") return [tableOf(block)];
-    const items = block.items.map((item) => h("li", {}, unbroken(item)));
-    return [...(block.title ? [h("h3", {}, block.title)] : []), h("ul", {}, ...items)];
+    const items = block.items.map((item) => v("li", {}, unbroken(item)));
+    return [...(block.title ? [v("h3", {}, block.title)] : []), v("ul", {}, ...items)];
   });
 }
 
-function tableOf({ title, heads, rows, numbers, emphasized }: TableBlock): HTMLElement {
+function tableOf({ title, heads, rows, numbers, emphasized }: TableBlock): ComponentChild {
   const side = (i: number) => (numbers[i] ? {} : { class: "word" });
   const strong = new Set(emphasized.map((place) => place.join()));
   const look = (row: number, i: number) => {
     const classes = [!numbers[i] && i > 0 && "word", strong.has(`${row},${i}`) && "worse"].filter(Boolean);
     return classes.length ? { class: classes.join(" ") } : {};
   };
-  const head = heads.map((text, i) => (text ? h("th", { scope: "col", ...side(i) }, unbroken(text)) : h("td")));
+  const head = heads.map((text, i) => (text ? v("th", { scope: "col", ...side(i) }, unbroken(text)) : v("td", {})));
   const cell = (row: number, text: string, i: number) =>
-    h(i ? "td" : "th", { ...look(row, i), scope: i ? null : "row" }, unbroken(text));
-  const body = rows.map((row, k) => h("tr", {}, ...row.map((text, i) => cell(k, text, i))));
-  const table = h("table", {}, h("caption", {}, title), h("thead", {}, h("tr", {}, ...head)), h("tbody", {}, ...body));
+    i ? v("td", look(row, i), unbroken(text)) : v("th", { ...look(row, i), scope: "row" }, unbroken(text));
+  const body = rows.map((row, k) => v("tr", {}, ...row.map((text, i) => cell(k, text, i))));
+  const table = v("table", {}, v("caption", {}, title), v("thead", {}, v("tr", {}, ...head)), v("tbody", {}, ...body));
   // Where it may have to be moved from side to side, keys can do so too.
   return heads.length > NARROW
-    ? h("div", { class: "wide", tabindex: 0, role: "group", "aria-label": title }, table)
+    ? v("div", { class: "wide", tabindex: 0, role: "group", "aria-label": title }, table)
     : table;
 }
 
@@ -62,6 +63,7 @@ export class RunPanel {
     "aria-label": say("Run over time"),
     hidden: true,
   });
+  private readonly blocks = h("div", { class: "blocks" });
   private readonly turn: HTMLButtonElement;
   private readonly drawn = new Map<string, Chart>();
   private run: Run | null = null;
@@ -71,11 +73,13 @@ export class RunPanel {
   constructor(
     private readonly theme: Theme,
     play: () => void,
-    private readonly close: () => void,
+    close: () => void,
     private readonly picked: (time: number) => void,
     private readonly ask: Ask,
   ) {
     this.turn = h("button", { type: "button", class: "strong", onclick: play });
+    const away = h("button", { type: "button", onclick: close }, say("Close"));
+    this.root.append(h("h2", {}, say("Run")), h("div", { class: "buttons" }, this.turn, away), this.blocks);
   }
 
   /** The design that has run; none where nothing is shown. */
@@ -91,12 +95,7 @@ export class RunPanel {
   show(message: RunMessage, numbers: Numbers, state: State): void {
     const [time, cycles] = ["time", "cycles"].map((name) => numbers.get(`run.${name}`) ?? new Float32Array(0));
     this.run = { message, numbers, time: time as Float32Array, cycles: cycles as Float32Array };
-    const close = h("button", { type: "button", onclick: this.close }, say("Close"));
-    this.root.replaceChildren(
-      h("h2", {}, say("Run")),
-      h("div", { class: "buttons" }, this.turn, close),
-      ...blocksOf(message.blocks),
-    );
+    render(this.blocks, ...blocksOf(message.blocks));
     this.clear();
     for (const data of message.charts) {
       const chart = new Chart(data, this.theme, true, { picked: this.picked, chosen: () => undefined });
@@ -124,7 +123,6 @@ export class RunPanel {
   drop(): void {
     this.run = null;
     this.clear();
-    this.root.replaceChildren();
     show(this.root, false);
     show(this.charts, false);
   }

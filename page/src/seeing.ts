@@ -3,6 +3,7 @@
 import { h, put, s, set, show } from "./dom";
 import { plain, round, unbroken } from "./format";
 import type { ArrowOf, Numbers, PageRequest, Pair, ResponseMessage, Scene, State } from "./protocol";
+import { type ComponentChild, render, v } from "./render";
 import { at, curve, type Overlay, Piece } from "./signs";
 import type { Stage } from "./stage";
 import { Support } from "./support";
@@ -105,22 +106,22 @@ class Arrows implements Overlay {
         most = Math.max(most, Math.hypot(values[i] as number, values[i + 1] as number));
       longest.set(arrow.kind, most);
     }
-    this.drawn.forEach((drawn, i) => {
-      const most = longest.get(drawn.arrow.kind) ?? 0;
-      // The scale moves in steps, so that arrows grow while something is dragged.
-      drawn.scale = most > 0 ? LONGEST / round(most) : 0;
-      const item = this.legend.children[i];
-      if (item) item.replaceChildren(...this.scaleOf(drawn, most));
-    });
+    const most = (drawn: Drawn) => longest.get(drawn.arrow.kind) ?? 0;
+    // The scale moves in steps, so that arrows grow while something is dragged.
+    for (const drawn of this.drawn) drawn.scale = most(drawn) > 0 ? LONGEST / round(most(drawn)) : 0;
+    render(this.legend, ...this.drawn.map((drawn) => v("li", {}, ...this.scaleOf(drawn, most(drawn)))));
   }
 
-  private scaleOf({ arrow, scale }: Drawn, most: number): (Element | string)[] {
+  private scaleOf({ arrow, scale }: Drawn, most: number): ComponentChild[] {
     const value = round((most * arrow.factor) / 2.5);
     const length = (value / arrow.factor) * scale;
-    const key = s("svg", { width: (length + 2).toFixed(1), height: 10, class: arrow.kind });
     const d = `M0 5H${(length - HEAD).toFixed(1)}`;
-    key.append(s("path", { class: "shaft", d }));
-    key.append(s("path", { class: "head", d: head([length, 5], 0) }));
+    const key = v(
+      "svg",
+      { width: (length + 2).toFixed(1), height: 10, class: arrow.kind },
+      v("path", { class: "shaft", d }),
+      v("path", { class: "head", d: head([length, 5], 0) }),
+    );
     return [arrow.label, ...(scale ? [key, `${plain(value)}\u00a0${arrow.unit}`] : [": 0"])];
   }
 
@@ -134,7 +135,6 @@ class Arrows implements Overlay {
     this.element.replaceChildren(
       ...this.drawn.map(({ arrow: { kind }, line, head }) => s("g", { class: kind }, line, head)),
     );
-    this.legend.replaceChildren(...arrows.map(() => h("li")));
   }
 
   pose(view: View, k: number): void {
@@ -167,8 +167,6 @@ export class Seeing {
   private readonly record = h("p", { class: "quiet", role: "status", hidden: true });
   private readonly motion = h("p", { class: "quiet", role: "status" });
   private state: State | null = null;
-  private offered = "";
-  private recorded = "";
 
   constructor(
     private readonly stage: Stage,
@@ -226,12 +224,10 @@ export class Seeing {
     const left = record?.left_out.join(", ") ?? "";
     const parts = record ? [say("Record {name}", { name: record.name }), ...record.lines] : [];
     if (left) parts.push(say("no outputs of this machine: {names}", { names: left }));
-    const text = unbroken(parts.join("; "));
-    if (this.recorded === text) return;
-    this.recorded = text;
-    this.record.hidden = !text;
     const remove = () => this.ask({ type: "record", name: "", text: "" });
-    this.record.replaceChildren(`${text} `, h("button", { type: "button", onclick: remove }, say("Remove the record")));
+    const button = v("button", { type: "button", onclick: remove }, say("Remove the record"));
+    render(this.record, `${unbroken(parts.join("; "))} `, button);
+    show(this.record, parts.length > 0);
   }
 
   answered(message: ResponseMessage, numbers: Numbers): void {
@@ -280,12 +276,8 @@ export class Seeing {
   }
 
   private offer(state: State): void {
-    const shape = state.points.join("\n");
-    if (shape !== this.offered) {
-      this.offered = shape;
-      const options = state.points.map((name) => h("option", { value: name }, name));
-      this.at.replaceChildren(h("option", { value: "" }, say("no point")), ...options);
-    }
+    const options = state.points.map((name) => v("option", { value: name }, name));
+    render(this.at, v("option", { value: "" }, say("no point")), ...options);
     put(this.at, state.arrows_at ?? "");
   }
 }

@@ -6,6 +6,7 @@ import { h, write } from "./dom";
 import { shown, unbroken } from "./format";
 import type { Numbers, PageRequest, Pair, StudyMessage } from "./protocol";
 import { capital } from "./readings";
+import { render, v } from "./render";
 import type { Theme } from "./theme";
 import { say } from "./words";
 
@@ -84,8 +85,8 @@ export class StudyView {
       ["itself", say("the model itself"), study.own !== null],
     ];
     const visible = keys.filter(([, , there]) => there);
-    this.keys.replaceChildren(...visible.map(([kind, text]) => h("li", {}, h("i", { class: `key-${kind}` }), text)));
-    this.refused.replaceChildren(...study.refused.map(({ why, count }) => h("li", {}, `${count} × ${why}`)));
+    render(this.keys, ...visible.map(([kind, text]) => v("li", {}, v("i", { class: `key-${kind}` }), text)));
+    render(this.refused, ...study.refused.map(({ why, count }) => v("li", {}, `${count} × ${why}`)));
     this.measure();
     this.again();
   }
@@ -102,9 +103,8 @@ export class StudyView {
   }
 
   private offer({ columns }: StudyMessage): void {
-    const options = () => columns.map(({ label }, k) => h("option", { value: k }, label));
-    this.across.replaceChildren(...options());
-    this.up.replaceChildren(...options());
+    for (const select of [this.across, this.up])
+      render(select, ...columns.map(({ label }, k) => v("option", { value: k }, label)));
     const outputs = columns.flatMap(({ kind }, k) => (kind === "output" ? [k] : []));
     // Two aims against each other where there are two; else the aim over the first number.
     const aims = columns.flatMap(({ make }, k) => (make ? [k] : []));
@@ -162,16 +162,17 @@ export class StudyView {
     const line = (i: number) => {
       const number = designs.numberOf(i);
       const words = say("Open design {number}", { number });
-      const open = h("button", { type: "button", onclick: () => this.open(i) }, words);
-      const cells = columns.map(({ values }) => h("td", {}, shown(values[i] ?? NaN)));
-      return h("tr", { class: designs.kind(i) }, h("td", {}, open), ...cells);
+      const open = v("button", { type: "button", onclick: () => this.open(i) }, words);
+      const cells = columns.map(({ values }) => v("td", {}, shown(values[i] ?? NaN)));
+      return v("tr", { key: number, class: designs.kind(i) }, v("td", {}, open), ...cells);
     };
-    this.list.replaceChildren(
-      h(
+    render(
+      this.list,
+      v(
         "table",
         {},
-        h("thead", {}, h("tr", {}, ...head.map((text) => h("th", { scope: "col" }, unbroken(text))))),
-        h("tbody", {}, ...rows.map(line)),
+        v("thead", {}, v("tr", {}, ...head.map((text) => v("th", { scope: "col" }, unbroken(text))))),
+        v("tbody", {}, ...rows.map(line)),
       ),
     );
   }

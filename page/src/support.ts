@@ -2,6 +2,7 @@
 
 import { h, set, show } from "./dom";
 import type { Numbers, Pair, ResponseMessage, State } from "./protocol";
+import { render, v } from "./render";
 import type { Swing } from "./signs";
 import { say } from "./words";
 
@@ -59,7 +60,7 @@ export class Support {
     const { value } = this.select;
     const first = this.offered === "" || this.offered === JSON.stringify([[REST, say("at rest")]]);
     this.offered = shape;
-    this.select.replaceChildren(...options.map(([name, text]) => h("option", { value: name }, text)));
+    render(this.select, ...options.map(([name, text]) => v("option", { value: name }, text)));
     const kept = options.some(([name]) => name === value) && !first;
     this.select.value = kept ? value : (options[0]?.[0] ?? REST);
   }

@@ -8,6 +8,7 @@ import { Heading } from "./heading";
 import { Inspector, Locks } from "./inspector";
 import type { DrawnShape, Numbers, State, ToolMessage, ToolScene } from "./protocol";
 import { comparison } from "./readings";
+import { render, v } from "./render";
 import { runs, shapePath, at as spot } from "./signs";
 import type { Theme } from "./theme";
 import { ruled, View } from "./view";
@@ -266,7 +267,7 @@ export class ToolView {
     const state = tool as unknown as State;
     this.heading.show(state);
     this.inspector.show(state);
-    this.figures.replaceChildren(comparison(tool.figures, [say("as opened"), say("now"), say("change")]));
+    render(this.figures, comparison(tool.figures, [say("as opened"), say("now"), say("change")]));
     this.chart();
     this.pose();
   }
@@ -274,7 +275,7 @@ export class ToolView {
   private offer(tool: ToolMessage, other: boolean): void {
     const names = [say("at rest"), ...tool.views.map(({ name }) => name)];
     const chosen = other ? Math.min(1, tool.views.length) : this.views.selectedIndex;
-    this.views.replaceChildren(...names.map((name, i) => h("option", { value: i }, name)));
+    render(this.views, ...names.map((name, i) => v("option", { value: i }, name)));
     this.views.selectedIndex = Math.min(chosen, names.length - 1);
   }
 

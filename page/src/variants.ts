@@ -4,6 +4,7 @@ import { h, icon } from "./dom";
 import { unbroken } from "./format";
 import type { PageRequest, VariantsMessage } from "./protocol";
 import { capital } from "./readings";
+import { type ComponentChild, pictogram, render, v } from "./render";
 import { say } from "./words";
 
 const VARIANT = "variant:";
@@ -17,7 +18,6 @@ export class Variants {
   /** What figures and curves are compared with. */
   readonly choice: HTMLElement;
   private readonly select: HTMLSelectElement;
-  private shape = "";
 
   constructor(private readonly ask: (request: PageRequest) => void) {
     this.select = h("select", {
@@ -42,9 +42,7 @@ export class Variants {
   show(message: VariantsMessage): void {
     this.offer(message.kept, message.against);
     this.root.hidden = !message.kept.length;
-    const typing = this.root.contains(document.activeElement) && this.shape === message.kept.join();
-    this.shape = message.kept.join("\n");
-    if (!typing || !message.kept.length) this.fill(message);
+    this.fill(message);
   }
 
   private offer(kept: string[], against: string): void {
@@ -54,17 +52,17 @@ export class Variants {
       ...kept.map((name): [string, string] => [VARIANT + name, name]),
       ["nothing", say("nothing")],
     ];
-    this.select.replaceChildren(...options.map(([value, text]) => h("option", { value }, text)));
+    render(this.select, ...options.map(([value, text]) => v("option", { value }, text)));
     this.select.value = against;
   }
 
   private fill({ kept, against, rows }: VariantsMessage): void {
     const heads = kept.map((name) =>
-      h(
+      v(
         "th",
-        { scope: "col", class: against === VARIANT + name && "chosen" },
+        { key: name, scope: "col", class: against === VARIANT + name ? "chosen" : "" },
         this.naming(name),
-        h(
+        v(
           "span",
           { class: "doing" },
           this.button(say("Go to {name}", { name }), "M3 8h9M8.500 4.500 12 8l-3.500 3.500", () =>
@@ -76,53 +74,55 @@ export class Variants {
         ),
       ),
     );
-    const head = h("tr", {}, h("td"), ...heads, h("th", { scope: "col" }, say("now")));
+    const head = v("tr", {}, v("td", {}), ...heads, v("th", { scope: "col" }, say("now")));
     const lines = rows.map(({ label, unit, texts, best }) =>
-      h(
+      v(
         "tr",
         {},
-        h("th", { scope: "row" }, capital(label), h("span", { class: "unit" }, ` ${unbroken(unit)}`)),
+        v("th", { scope: "row" }, capital(label), v("span", { class: "unit" }, ` ${unbroken(unit)}`)),
         ...texts.map((text, i) => {
           const first = best.includes(i);
-          const said = first && h("span", { class: "unseen" }, ` (${say("best")})`);
-          return h("td", { class: first && "best", title: first && say("best") }, text, said);
+          const said = first && v("span", { class: "unseen" }, ` (${say("best")})`);
+          return v("td", first ? { class: "best", title: say("best") } : {}, text, said);
         }),
       ),
     );
-    const caption = h("caption", {}, say("Variants"));
-    this.root.replaceChildren(
-      h(
+    const caption = v("caption", {}, say("Variants"));
+    render(
+      this.root,
+      v(
         "div",
         { class: "scrolled", tabindex: 0 },
-        h("table", {}, caption, h("thead", {}, head), h("tbody", {}, ...lines)),
+        v("table", {}, caption, v("thead", {}, head), v("tbody", {}, ...lines)),
       ),
     );
   }
 
-  private naming(name: string): HTMLInputElement {
-    const input = h("input", {
-      type: "text",
-      "aria-label": say("Name of variant {name}", { name }),
-      size: Math.max(name.length, 3),
-      maxlength: 40,
-      value: name,
-    });
-    const give = () => {
+  private naming(name: string): ComponentChild {
+    const give = ({ currentTarget: input }: { currentTarget: HTMLInputElement }) => {
       const to = input.value.trim();
       if (to && to !== name) this.ask({ type: "variant", do: "rename", name, to });
       else input.value = name;
     };
-    input.addEventListener("change", give);
-    input.addEventListener("keydown", (event) => {
-      if (event.key === "Enter") input.blur();
+    const key = (event: KeyboardEvent & { currentTarget: HTMLInputElement }) => {
+      if (event.key === "Enter") event.currentTarget.blur();
       if (event.key !== "Escape") return;
       event.stopPropagation();
-      input.value = name;
+      event.currentTarget.value = name;
+    };
+    return v("input", {
+      key: name,
+      type: "text",
+      "aria-label": say("Name of variant {name}", { name }),
+      size: Math.max(name.length, 3),
+      maxlength: 40,
+      defaultValue: name, // what is typed stays when a message comes
+      onchange: give,
+      onkeydown: key,
     });
-    return input;
   }
 
-  private button(name: string, path: string, onclick: () => void): HTMLButtonElement {
-    return h("button", { type: "button", "aria-label": name, title: name, onclick }, icon(path));
+  private button(name: string, path: string, onclick: () => void): ComponentChild {
+    return v("button", { type: "button", "aria-label": name, title: name, onclick }, pictogram(path));
   }
 }
