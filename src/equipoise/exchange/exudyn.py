@@ -15,13 +15,15 @@ from equipoise.exchange.tree import (
     constant_loads,
     mass_of,
     moment_of,
+    place_of,
     preloads,
+    pull_of,
+    push_of,
     trees,
     weighed,
 )
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
-from equipoise.mechanism.kinematics.motion import PlacedBodies, move
 from equipoise.mechanism.parts.element_kinds import BetweenPoints
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.support import PLANAR, Support, unit_vector
@@ -66,7 +68,7 @@ def _model(job: Job) -> Data:
         **{kind: [] for kind in LISTS},
     }
     for tree in trees_of_links:
-        _row(model, tree, job, machine.drive.flywheel if tree is trees_of_links[0] else 0.0)
+        _row(model, tree, job)
     if support is not None:
         constrained = (
             number for number, name in enumerate(PLANAR) if name not in support.coordinates
@@ -84,12 +86,9 @@ def _model(job: Job) -> Data:
 # -- bodies, joints --------------------------------------------------------------------------------
 
 
-def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
+def _row(model: Data, tree: Tree, job: Job) -> None:
     """One linkage."""
-    machine, motion = (
-        tree.machine,
-        move(tree.machine, [tree.crank_angle + tree.row.phase], acceleration=0.0),
-    )
+    machine, motion = tree.machine, tree.motion
     shift = complex(*tree.row.offset)
     for name, link in machine.links.items():
         mass, _, inertia = mass_of(link)
@@ -97,7 +96,7 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
         place, speed = complex(center.place[0]) + shift, complex(center.velocity[0])
         model["bodies"][f"{name}{tree.suffix}"] = {
             "mass": mass,
-            "inertia": inertia + (flywheel if name == machine.drive.link else 0.0),
+            "inertia": inertia + (tree.flywheel if name == machine.drive.link else 0.0),
             "pose": [place.real, place.imag, float(turning.angle[0])],
             "velocity": [speed.real, speed.imag, float(turning.angular_velocity[0])],
         }
@@ -113,18 +112,21 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
     for write in job.writers("exudyn"):
         write(model, tree, job)
     for _, load in constant_loads(job):
-        if load.toward is not None and load.point is not None and load.force is not None:
-            ends = [_end(tree, load.reaction or FRAME, load.toward),
-                    _end(tree, load.link, load.point)]  # fmt: skip
-            pull: Data = {"stiffness": 0.0, "length": 0.0, "preload": load.force[0]}
-            model["springs"].append({"ends": ends, **pull})
+        if (pull := pull_of(load)) is not None:
+            end, to, force_in_line = pull
+            ends = [_end(tree, *to), _end(tree, *end)]
+            rates: Data = {"stiffness": 0.0, "length": 0.0, "preload": force_in_line}
+            model["springs"].append({"ends": ends, **rates})
             continue
-        end = _end(tree, load.link, load.point or next(iter(machine.links[load.link].points)))
-        force, turns = complex(*(load.force or (0.0, 0.0))), load.axes is not None
-        if turns:
-            force *= np.exp(1j * load.axes_angle(machine.sliders))
-        model["loads"].append({"end": end, "force": [float(force.real), float(force.imag)],
-                               "torque": load.torque or 0.0, "turns": turns})  # fmt: skip
+        point, force, torque = push_of(load, machine)
+        model["loads"].append(
+            {
+                "end": _end(tree, load.link, point),
+                "force": [float(force.real), float(force.imag)],
+                "torque": torque,
+                "turns": load.axes is not None,
+            }
+        )
 
 
 def springs(model: Data, tree: Tree, job: Job) -> None:
@@ -132,7 +134,7 @@ def springs(model: Data, tree: Tree, job: Job) -> None:
     for spring in tree.machine.springs:
         ends = [_end(tree, spring.on, spring.to), _end(tree, spring.link, spring.point)]
         if spring.stiffness is None:
-            job.leave_out(Note("springs with a table"))
+            job.leave_out_table(spring)
             continue
         rates = {"stiffness": spring.stiffness, "length": spring.free_length}
         if spring.preload is not None:
@@ -155,7 +157,7 @@ def torsion_dampers(model: Data, tree: Tree, job: Job) -> None:
     base = "" if tree.machine.support is None else BASE
     for torsion in tree.machine.torsion_dampers:
         if not torsion.linear:
-            job.leave_out(Note("torsion dampers with a table"))
+            job.leave_out_table(torsion)
             continue
         on, by = (base if body == FRAME else f"{body}{tree.suffix}"
                   for body in (torsion.link, torsion.on))  # fmt: skip
@@ -164,30 +166,19 @@ def torsion_dampers(model: Data, tree: Tree, job: Job) -> None:
 
 def stops(model: Data, tree: Tree, job: Job) -> None:
     """Over the ground."""
-    for item in tree.machine.stops:
-        if _ground(tree, item):
-            law: Data = {"direction": item.direction, "stiffness": item.stiffness}
-            if item.dissipation is not None:
-                law["loss"] = item.dissipation
-            model["stops"].append({"ends": _over_ground(tree, item), **law})
-        else:
-            job.leave_out(Note("stops over a body that moves"))
+    for _, item in tree.on_ground(tree.machine.stops, job):
+        law: Data = {"direction": item.direction, "stiffness": item.stiffness}
+        if item.dissipation is not None:
+            law["loss"] = item.dissipation
+        model["stops"].append({"ends": _over_ground(tree, item), **law})
 
 
 def resistances(model: Data, tree: Tree, job: Job) -> None:
     """Over the ground."""
     names = ("direction", "one_way", "force", "damping", "positions", "forces", "speed")
-    for item in tree.machine.resistances:
-        if _ground(tree, item):
-            law = {name: getattr(item, name) for name in names}
-            model["resistances"].append({"ends": _over_ground(tree, item), **law})
-        else:
-            job.leave_out(Note("resistances over a body that moves"))
-
-
-def _ground(tree: Tree, item: BetweenPoints) -> bool:
-    """Whether a part is between a link and what stands still."""
-    return item.on == FRAME and tree.machine.support is None
+    for _, item in tree.on_ground(tree.machine.resistances, job):
+        law = {name: getattr(item, name) for name in names}
+        model["resistances"].append({"ends": _over_ground(tree, item), **law})
 
 
 def _over_ground(tree: Tree, item: BetweenPoints) -> list[ForceEnd]:
@@ -196,15 +187,8 @@ def _over_ground(tree: Tree, item: BetweenPoints) -> list[ForceEnd]:
 
 def bushings(model: Data, tree: Tree, job: Job) -> None:
     """Bushings on the ground; angles count from where the linkage is drawn."""
-    machine = tree.machine
-    motion = move(machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
-    for number, item in enumerate(machine.bushings):
-        if not _ground(tree, item):
-            job.leave_out(Note("bushings on a body that moves"))
-            continue
-        *_, (turned, _) = item.ways(PlacedBodies(motion, f"bushings[{number + 1}]"))
+    for number, item in tree.on_ground(tree.machine.bushings, job):
         stiffness = item.torsional_stiffness or 0.0
-        rest = item.torque / stiffness - float(np.ravel(turned)[0]) if stiffness else 0.0
         own = f"{item.link}{tree.suffix}"
         model["bushings"].append(
             {
@@ -215,7 +199,7 @@ def bushings(model: Data, tree: Tree, job: Job) -> None:
                 "turning": {
                     "stiffness": stiffness,
                     "damping": item.torsional_damping or 0.0,
-                    "offset": rest,
+                    "offset": tree.rest_angle(number, item),
                 },
             }
         )
@@ -301,7 +285,7 @@ def _mounts(machine: Machine, support: Support) -> list[Data]:
     carried = preloads(machine)
     data = []
     for name, mount in support.mounts.items():
-        place = (support.reference if mount.point is None else mount.point)[:2]
+        place = place_of(mount, support)[:2]
         data.append(
             {
                 "body": BASE,

@@ -11,7 +11,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, localized, say, to_say
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.parts.element_kinds import PartKind, named_function, part_kinds
+from equipoise.mechanism.parts.element_kinds import Element, PartKind, named_function, part_kinds
 
 if TYPE_CHECKING:
     from equipoise.balancing.workshop import Change
@@ -265,6 +265,10 @@ class Job:
         """Report, once, what the file does not hold."""
         if what not in self.left_out:
             self.left_out.append(what)
+
+    def leave_out_table(self, part: Element) -> None:
+        """Note that elements of a kind have no tables in the format."""
+        self.leave_out(Note("{parts} with a table", parts=Note(part.group)))
 
     def leave_out_forces(self) -> None:
         """Note that there are no forces where links lack masses."""

@@ -20,7 +20,10 @@ from equipoise.exchange.tree import (
     Tree,
     constant_loads,
     moment_of,
+    place_of,
     preloads,
+    pull_of,
+    push_of,
     tensor_of,
     trees,
     weighed,
@@ -29,9 +32,8 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.friction_joints import rubbing_joints
-from equipoise.mechanism.kinematics.motion import PlacedBodies, move
+from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.links import Link, size_of
-from equipoise.mechanism.parts.loads import Load
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.support import FREEDOMS, Support, unit_vector
 from equipoise.signals import Array
@@ -64,7 +66,7 @@ def export_bytes(job: Job) -> str:
             dx, dy = tree.row.offset
             _site(base, f"{FRAME} {name}{tree.suffix}", (x + dx, y + dy, tree.row.lateral))
     for tree in trees_of_links:
-        _links(base, tree, job, machine.drive.flywheel if tree is trees_of_links[0] else 0.0)
+        _links(base, tree, job)
         _constraints(root, tree)
         for write in job.writers("mjcf"):
             write(root, tree, job)
@@ -111,11 +113,8 @@ def _site(body: ET.Element, name: str, place: Sequence[float]) -> None:
 # -- bodies ----------------------------------------------------------------------------------------
 
 
-def _links(base: ET.Element, tree: Tree, job: Job, flywheel: float) -> None:
-    """Every link inside of the body that carries it.
-
-    flywheel : moment of inertia that turns with the drive's link, whose mass is the support's.
-    """
+def _links(base: ET.Element, tree: Tree, job: Job) -> None:
+    """Every link inside of the body that carries it; the mass of a flywheel is the support's."""
     machine, bodies = tree.machine, {FRAME: base}
     size = _size(machine)
     least = LIGHT * machine.mass, LIGHT * machine.mass * size**2
@@ -137,7 +136,7 @@ def _links(base: ET.Element, tree: Tree, job: Job, flywheel: float) -> None:
                 )
             )
         if link.name == machine.drive.link:
-            tensor = tensor + flywheel * np.eye(3)
+            tensor = tensor + tree.flywheel * np.eye(3)
         _inertial(body, max(mass, least[0]), center, _moments(tensor, least[1]))
         _shape(body, name, machine.links[link.name], size / 100)
 
@@ -264,7 +263,7 @@ def springs(root: ET.Element, tree: Tree, job: Job) -> None:
     """Tendons with a stiffness."""
     for spring in tree.machine.springs:
         if spring.stiffness is None:
-            job.leave_out(Note("springs with a table"))
+            job.leave_out_table(spring)
             continue
         rest = spring.free_length
         if spring.preload is not None:
@@ -278,12 +277,11 @@ def springs(root: ET.Element, tree: Tree, job: Job) -> None:
 
 def torsion_springs(root: ET.Element, tree: Tree, job: Job) -> None:
     """Tendons as long as an angle, with a stiffness."""
-    motion = move(tree.machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
     for number, torsion in enumerate(tree.machine.torsion_springs):
         if torsion.stiffness is None:
-            job.leave_out(Note("torsion springs with a table"))
+            job.leave_out_table(torsion)
             continue
-        start_angle = float(motion.element_values("torsion_springs", number)["angle"][0])
+        start_angle = float(tree.motion.element_values("torsion_springs", number)["angle"][0])
         rest = torsion.angle + torsion.preload / torsion.stiffness - start_angle
         rates = {"stiffness": repr(torsion.stiffness), "springlength": _row((rest, rest))}
         _turning(root, tree, (torsion.link, torsion.on), rates)
@@ -317,7 +315,7 @@ def dampers(root: ET.Element, tree: Tree, job: Job) -> None:
         if damper.linear:
             _between(root, tree, damper.points, {"damping": repr(damper.damping)})
         else:
-            job.leave_out(Note("dampers with a table"))
+            job.leave_out_table(damper)
 
 
 def torsion_dampers(root: ET.Element, tree: Tree, job: Job) -> None:
@@ -327,15 +325,12 @@ def torsion_dampers(root: ET.Element, tree: Tree, job: Job) -> None:
             rates = {"damping": repr(torsion.damping)}
             _turning(root, tree, (torsion.link, torsion.on), rates)
         else:
-            job.leave_out(Note("torsion dampers with a table"))
+            job.leave_out_table(torsion)
 
 
 def resistances(root: ET.Element, tree: Tree, job: Job) -> None:
     """Viscous ones, as forces on sites against their speeds along lines of the frame."""
-    for number, item in enumerate(tree.machine.resistances, 1):
-        if item.on != FRAME or tree.machine.support is not None:
-            job.leave_out(Note("resistances over a body that moves"))
-            continue
+    for number, item in tree.on_ground(tree.machine.resistances, job):
         if not item.linear:
             job.leave_out(Note("dry and one-way parts of resistances"))
         if not item.damping or item.one_way:
@@ -351,11 +346,7 @@ def resistances(root: ET.Element, tree: Tree, job: Job) -> None:
 
 def bushings(root: ET.Element, tree: Tree, job: Job) -> None:
     """Pushes on sites by their way and speed in the axes of the frame, and turning tendons."""
-    motion = move(tree.machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
-    for number, item in enumerate(tree.machine.bushings, 1):
-        if item.on != FRAME or tree.machine.support is not None:
-            job.leave_out(Note("bushings on a body that moves"))
-            continue
+    for number, item in tree.on_ground(tree.machine.bushings, job):
         site, other = _place(tree, item.link, item.point), _place(tree, FRAME, item.to)
         laws = zip(item.preload, item.stiffness, item.damping, strict=True)
         for k, (preload, stiffness, damping) in enumerate(laws):
@@ -366,8 +357,7 @@ def bushings(root: ET.Element, tree: Tree, job: Job) -> None:
         stiffness = item.torsional_stiffness or 0.0
         rates = {"stiffness": repr(stiffness), "damping": repr(item.torsional_damping or 0.0)}
         if stiffness:
-            *_, (turned, _) = item.ways(PlacedBodies(motion, f"bushings[{number}]"))
-            rest = item.torque / stiffness - float(np.ravel(turned)[0])
+            rest = tree.rest_angle(number, item)
             rates["springlength"] = _row((rest, rest))
         elif item.torque:
             gear = (0.0, 0.0, 0.0, 0.0, 0.0, item.torque)
@@ -382,10 +372,7 @@ def stops(root: ET.Element, tree: Tree, job: Job) -> None:
     """Pushes on sites that never pull; what contacts lose is a product of way and speed, which no
     actuator has.
     """
-    for number, item in enumerate(tree.machine.stops, 1):
-        if item.on != FRAME or tree.machine.support is not None:
-            job.leave_out(Note("stops on a body that moves"))
-            continue
+    for number, item in tree.on_ground(tree.machine.stops, job):
         if item.dissipation is not None:
             job.leave_out(Note("the restitution of stops: they lose nothing"))
         site, other = _place(tree, item.link, item.point), _place(tree, FRAME, item.to)
@@ -418,26 +405,17 @@ def _loads(root: ET.Element, world: ET.Element, tree: Tree, job: Job) -> None:
     """Loads that are always the same."""
     for number, load in constant_loads(job):
         name = f"load {number}{tree.suffix}"
-        if load.toward is not None:
-            _pull(root, tree, load, name)
+        if (pull := pull_of(load)) is not None:
+            end, to, force_in_line = pull
+            _between(root, tree, (end, to), {"name": name})  # a tendon that an actuator shortens
+            _actuator(root, name, {"tendon": name}, (-force_in_line, 0.0, 0.0))
             continue
-        point = load.point or next(iter(tree.machine.links[load.link].points))
-        force = complex(*(load.force or (0, 0)))
+        point, force, torque = push_of(load, tree.machine)
         site, turns = _place(tree, load.link, point), load.axes is not None
-        if turns:
-            force *= np.exp(1j * load.axes_angle(tree.machine.sliders))
-        else:
+        if not turns:
             _site(world, name, (0, 0, 0))
-        gear = (force.real, force.imag, 0, 0, 0, load.torque or 0)
+        gear = (force.real, force.imag, 0, 0, 0, torque)
         _push(root, name, site, None if turns else name, gear, (1.0, 0.0, 0.0))
-
-
-def _pull(root: ET.Element, tree: Tree, load: Load, name: str) -> None:
-    """A load in the line between two points: a tendon that an actuator shortens."""
-    assert load.point is not None and load.toward is not None and load.force is not None
-    ends = (load.link, load.point), (load.reaction or FRAME, load.toward)
-    _between(root, tree, ends, {"name": name})
-    _actuator(root, name, {"tendon": name}, (-load.force[0], 0.0, 0.0))
 
 
 def _push(
@@ -489,7 +467,7 @@ def _mounts(root: ET.Element, world: ET.Element, base: ET.Element, machine: Mach
     support, carried = machine.support, preloads(machine)
     assert support is not None
     for name, mount in support.mounts.items():
-        place = support.reference if mount.point is None else mount.point
+        place = place_of(mount, support)
         rates = (carried[name], -mount.spring, -mount.damper)
         if mount.axis is not None:
             turning = np.eye(6)[FREEDOMS.index(mount.axis)]

@@ -10,14 +10,18 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import field
 
-import numpy as np
-
 from equipoise.dataclass import dataclass
 from equipoise.exchange.formats import Job
-from equipoise.exchange.tree import constant_loads, mass_of, weighed
+from equipoise.exchange.tree import (
+    constant_loads,
+    mass_of,
+    torsional_deflection,
+    turning_shares,
+    weighed,
+)
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
-from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move
+from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.element_kinds import BetweenPoints
 from equipoise.mechanism.parts.machine import FRAME, Load, Machine
 from equipoise.mechanism.parts.row_laws import Damping, Ramps, ramps_of
@@ -28,10 +32,11 @@ class Flat:
     """The model as it is written.
 
     names : link -> identifier.  acting : link -> terms of its force along x and y, and of its
-    moment about its centre of mass.
+    moment about its centre of mass.  motion : where the model begins.
     """
 
     machine: Machine
+    motion: Motion
     names: Mapping[str, str]
     variables: list[str] = field(default_factory=list)
     equations: list[str] = field(default_factory=list)
@@ -71,6 +76,14 @@ class Flat:
     def angle(self, body: str) -> str:
         """Of a body in the frame."""
         return "0.0" if body == FRAME else f"phi_{self.names[body]}"
+
+    def angle_between(self, link: str, on: str, start: float) -> str:
+        """Of a link against another body, where it has a value, rad, as the model begins."""
+        first, other = (
+            0.0 if body == FRAME else self.motion.links[body].angle[0] for body in (link, on)
+        )
+        offset = _in_brackets(float(start - first + other))
+        return f"{self.angle(link)} - {self.angle(on)} + {offset}"
 
     def rate(self, body: str) -> str:
         """Angular velocity of a body."""
@@ -117,13 +130,13 @@ def export_bytes(job: Job) -> str:
     job.need_every_joint(structure(machine))
     job.leave_out_motor()
     job.leave_out_planes()
-    model = Flat(machine, _identifiers(machine))
     motion = move(machine, [job.crank_angle], acceleration=0.0)
+    model = Flat(machine, motion, _identifiers(machine))
     for name in machine.links:
-        _link(model, name, motion)
+        _link(model, name)
     _pins(model)
-    _sliders(model, motion)
-    _couplings(model, motion)
+    _sliders(model)
+    _couplings(model)
     for write in job.writers("modelica"):
         write(model, job)
     _loads(model, job)
@@ -156,11 +169,11 @@ def _in_brackets(value: float) -> str:
     return f"({value!r})" if value < 0 else repr(value)
 
 
-def _link(model: Flat, link: str, motion: Motion) -> None:
+def _link(model: Flat, link: str) -> None:
     """Where its centre of mass is, and how it is turned."""
-    name, center = model.names[link], motion.mass_centers[link].place[0]
+    name, center = model.names[link], model.motion.mass_centers[link].place[0]
     model.acting[link] = ([], [], [])
-    starts = {"x": center.real, "y": center.imag, "phi": motion.links[link].angle[0]}
+    starts = {"x": center.real, "y": center.imag, "phi": model.motion.links[link].angle[0]}
     for key, start in starts.items():
         model.real(f"{key}_{name}", start=float(start))
         model.real(f"v{key}_{name}")
@@ -178,7 +191,7 @@ def _pins(model: Flat) -> None:
             model.push(first, pin, force, "-")
 
 
-def _sliders(model: Flat, motion: Motion) -> None:
+def _sliders(model: Flat) -> None:
     """A normal force at the point that slides, and a couple."""
     for number, slider in enumerate(model.machine.sliders, 1):
         normal, couple, ends = f"N_{number}", f"M_{number}", (slider.link, slider.on)
@@ -189,7 +202,7 @@ def _sliders(model: Flat, motion: Motion) -> None:
             model.place(slider.on, slider.through),
         )
         model.equations.append(f"cos{way} * ({y} - {y0}) - sin{way} * ({x} - {x0}) = 0.0;")
-        first = (0.0 if body == FRAME else motion.links[body].angle[0] for body in ends)
+        first = (0.0 if body == FRAME else model.motion.links[body].angle[0] for body in ends)
         turned = float(next(first)) - float(next(first))
         angles = f"{model.angle(slider.link)} - {model.angle(slider.on)}"
         model.equations.append(f"{angles} = {turned!r};")
@@ -200,19 +213,14 @@ def _sliders(model: Flat, motion: Motion) -> None:
         model.turn(slider.on, f"(-{couple})")
 
 
-def _couplings(model: Flat, motion: Motion) -> None:
+def _couplings(model: Flat) -> None:
     """What teeth do, as couples on driver, driven and carrier that do no work together."""
     for number, coupling in enumerate(model.machine.couplings, 1):
-        ratio = coupling.speed_ratio
         couple = f"G_{number}"
-        shares = (
-            (coupling.driven, 1.0),
-            (coupling.driver, -ratio),
-            (coupling.carrier, ratio - 1.0),
-        )
         model.real(couple)
+        shares = turning_shares(coupling)
         known = [(body, share) for body, share in shares if body != FRAME and share]
-        total = sum(share * float(motion.links[body].angle[0]) for body, share in known)
+        total = sum(share * float(model.motion.links[body].angle[0]) for body, share in known)
         terms = " + ".join(f"{_in_brackets(s)} * {model.angle(body)}" for body, s in known)
         model.equations.append(f"{terms} = {total!r};")
         for body, share in known:
@@ -268,22 +276,17 @@ def _force(model: Flat, load: Load) -> tuple[str, str]:
     return f"({fx} * {cos} - {fy} * {sin})", f"({fx} * {sin} + {fy} * {cos})"
 
 
-def torsion_springs(model: Flat, job: Job) -> None:
+def torsion_springs(model: Flat, _: Job) -> None:
     """Torques by sums of ramps; each angle is counted on from where it is drawn."""
-    motion = move(model.machine, [job.crank_angle], acceleration=0.0)
     for number, spring in enumerate(model.machine.torsion_springs):
         angle, torque = f"A_{number + 1}", f"T_{number + 1}"
         model.real(angle, torque)
-        ends = (spring.link, spring.on)
-        first, other = (0.0 if end == FRAME else motion.links[end].angle[0] for end in ends)
-        element_value = motion.element_values("torsion_springs", number)["angle"][0]
-        turned = _in_brackets(float(element_value - first + other))
-        model.equations.append(
-            f"{angle} = {model.angle(ends[0])} - {model.angle(ends[1])} + {turned};"
-        )
+        start = model.motion.element_values("torsion_springs", number)["angle"][0]
+        turned = model.angle_between(spring.link, spring.on, start)
+        model.equations.append(f"{angle} = {turned};")
         model.equations.append(f"{torque} = {_ramps(spring.pieces, angle)};")
-        model.turn(ends[0], torque)
-        model.turn(ends[1], f"(-{torque})")
+        model.turn(spring.link, torque)
+        model.turn(spring.on, f"(-{torque})")
 
 
 def dampers(model: Flat, _: Job) -> None:
@@ -320,9 +323,8 @@ def _resisted(damper: Damping, speed: str) -> str:
     return _ramps(ramps_of(*damper.rows), speed)
 
 
-def bushings(model: Flat, job: Job) -> None:
+def bushings(model: Flat, _: Job) -> None:
     """Forces along a direction and across it, and couples; angles count from where it is drawn."""
-    motion = move(model.machine, [job.crank_angle], acceleration=0.0)
     for number, item in enumerate(model.machine.bushings, 1):
         at, pushes = _Guided.of(model, item, item.direction), []
         laws = zip(item.preload, item.stiffness, item.damping, strict=True)
@@ -331,17 +333,14 @@ def bushings(model: Flat, job: Job) -> None:
             force = f"{force} - {damping!r} * ({at.speed(across)})"
             pushes.append(model.define(f"FB{'ac'[across]}_{number}", force))
         at.push(*pushes)
-        *_, (turned, _) = item.ways(PlacedBodies(motion, f"bushings[{number}]"))
-        ends = item.link, item.on
-        first, other = (0.0 if end == FRAME else motion.links[end].angle[0] for end in ends)
-        begin = _in_brackets(float(np.ravel(turned)[0] - first + other))
-        angle = f"({model.angle(ends[0])} - {model.angle(ends[1])} + {begin})"
-        rate = f"({model.rate(ends[0])} - {model.rate(ends[1])})"
+        start = torsional_deflection(model.motion, number, item)
+        angle = f"({model.angle_between(item.link, item.on, start)})"
+        rate = f"({model.rate(item.link)} - {model.rate(item.on)})"
         rates = item.torsional_stiffness or 0.0, item.torsional_damping or 0.0
         couple = f"{_in_brackets(item.torque)} - {rates[0]!r} * {angle} - {rates[1]!r} * {rate}"
         couple = model.define(f"MB_{number}", couple)
-        model.turn(ends[0], couple)
-        model.turn(ends[1], f"(-{couple})")
+        model.turn(item.link, couple)
+        model.turn(item.on, f"(-{couple})")
 
 
 def stops(model: Flat, _: Job) -> None:

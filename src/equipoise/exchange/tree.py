@@ -6,9 +6,9 @@ all in the tree, since most programs close loops at pins only.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -19,16 +19,20 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import Structure, joined
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.dynamics.loads import own_axis
+from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies, move
 from equipoise.mechanism.parts.bodies import inertia_of
-from equipoise.mechanism.parts.couplings import Turning
+from equipoise.mechanism.parts.bushings import Bushing
+from equipoise.mechanism.parts.couplings import Coupling, Turning
+from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.machine import FRAME, Link, Load, Machine, Slider, Vector
-from equipoise.mechanism.parts.support import Row, Support
+from equipoise.mechanism.parts.support import Mount, Row, SpaceVector, Support
 from equipoise.signals import Array
 from equipoise.vibration.free import modes
 from equipoise.vibration.linkages import rows_of
 
 TreeJointKind = Literal["hinge", "slide"]
+PartT = TypeVar("PartT", bound=Element)
 
 
 @dataclass(frozen=True)
@@ -74,16 +78,19 @@ class LoopClosure:
 class Tree:
     """One linkage of a machine, drawn at a crank angle.
 
-    crank_angle : rad.  links : parents before children.  shift : of its frame beside the file's, m.
+    motion : at that crank angle alone, without acceleration of the crank.
+    links : parents before children.
     suffix : behind every name, so that those of rows differ.
+    flywheel : moment of inertia that turns with its drive's link, kg m2: the first row has that.
     """
 
     machine: Machine
-    crank_angle: float
+    motion: Motion
     links: tuple[Hung, ...]
     loops: tuple[LoopClosure, ...]
     row: Row
     suffix: str
+    flywheel: float
 
     @cached_property
     def hung(self) -> Mapping[str, Hung]:
@@ -136,17 +143,28 @@ class Tree:
         for coupling in self.machine.couplings:
             if not isinstance(coupling, Turning):
                 continue
-            ratio = coupling.speed_ratio
             factors = dict[str, float]()
-            shares = (
-                (coupling.driven, 1.0),
-                (coupling.driver, -ratio),
-                (coupling.carrier, ratio - 1),
-            )
-            for body, share in shares:
+            for body, share in turning_shares(coupling):
                 for link in self.turning(body):
                     factors[link] = factors.get(link, 0.0) + share
             yield coupling.name, {link: share for link, share in factors.items() if share}
+
+    def on_ground(self, parts: Sequence[PartT], job: Job) -> Iterator[tuple[int, PartT]]:
+        """Parts of a kind between a link and what stands still, by number; a note names others."""
+        for number, part in enumerate(parts, 1):
+            if part.bodies[1] == FRAME and self.machine.support is None:
+                yield number, part
+            else:
+                job.leave_out(Note("{parts} on a body that moves", parts=Note(part.group)))
+
+    def rest_angle(self, number: int, bushing: Bushing) -> float:
+        """Angle of a bushing's link, counted from where it is drawn, at which its springs exert no
+        torque, rad; 0 of one without torsional stiffness.
+        """
+        if not bushing.torsional_stiffness:
+            return 0.0
+        deflection = torsional_deflection(self.motion, number, bushing)
+        return float(bushing.torque / bushing.torsional_stiffness - deflection)
 
 
 def trees(job: Job) -> tuple[Tree, ...]:
@@ -170,7 +188,13 @@ def trees(job: Job) -> tuple[Tree, ...]:
             )
     rows = rows_of(machine)
     return tuple(
-        _tree(machine, job.crank_angle, row, f" {number}" if len(rows) > 1 else "")
+        _tree(
+            machine,
+            move(machine, [job.crank_angle + row.phase], acceleration=0.0),
+            row,
+            f" {number}" if len(rows) > 1 else "",
+            machine.drive.flywheel if number == 1 else 0.0,
+        )
         for number, row in enumerate(rows, 1)
     )
 
@@ -227,6 +251,26 @@ def preloads(machine: Machine) -> Mapping[str, float]:
     return modes(machine, "moment").preloads
 
 
+def place_of(mount: Mount, support: Support) -> SpaceVector:
+    """Point at which a mount pushes or turns a support, m: its own, or the reference."""
+    return support.reference if mount.point is None else mount.point
+
+
+def turning_shares(coupling: Coupling) -> tuple[tuple[str, float], ...]:
+    """Bodies of a coupling in a fixed ratio, each with its share in a sum of angles that stays."""
+    ratio = coupling.speed_ratio
+    return (coupling.driven, 1.0), (coupling.driver, -ratio), (coupling.carrier, ratio - 1.0)
+
+
+def torsional_deflection(motion: Motion, number: int, bushing: Bushing) -> float:
+    """How far the link of a bushing has turned from its `angle` where a motion begins, rad.
+
+    number : its place in the file, from 1.
+    """
+    *_, (turned, _) = bushing.ways(PlacedBodies(motion, f"bushings[{number}]"))
+    return float(np.ravel(turned)[0])
+
+
 def constant_loads(job: Job, *, between: bool = False) -> Iterator[tuple[int, Load]]:
     """Constant loads by number; notes name the others, and soil, which are left out.
 
@@ -250,11 +294,29 @@ def constant_loads(job: Job, *, between: bool = False) -> Iterator[tuple[int, Lo
         yield number, load
 
 
-def _tree(machine: Machine, crank_angle: float, row: Row, suffix: str) -> Tree:
-    motion = move(machine, [crank_angle + row.phase], acceleration=0.0)
+def pull_of(load: Load) -> tuple[tuple[str, str], tuple[str, str], float] | None:
+    """Where a load in the line between two points acts, the point that it is pulled to, and its
+    force, N; None of other loads.
+    """
+    if load.toward is None or load.point is None or load.force is None:
+        return None
+    return (load.link, load.point), (load.reaction or FRAME, load.toward), load.force[0]
+
+
+def push_of(load: Load, machine: Machine) -> tuple[str, complex, float]:
+    """Point of its link where a constant load acts, its force, N, and torque, N m.
+
+    The force is in the axes of the link where the load has any, else in those of the frame.
+    """
+    point = load.point or next(iter(machine.links[load.link].points))
+    force = complex(*(load.force or (0.0, 0.0))) * own_axis(load, machine)
+    return point, force, load.torque or 0.0
+
+
+def _tree(machine: Machine, motion: Motion, row: Row, suffix: str, flywheel: float) -> Tree:
     tree_joints, loose = _spanned(machine)
     links = tuple(_hung(machine, motion, *outward) for outward in _outwards(tree_joints))
-    return Tree(machine, crank_angle, links, loose, row, suffix)
+    return Tree(machine, motion, links, loose, row, suffix, flywheel)
 
 
 def _joints(machine: Machine) -> Structure:

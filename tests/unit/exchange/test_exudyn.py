@@ -114,8 +114,8 @@ def test_what_a_script_leaves_out_of_force_elements(tmp_path: Path) -> None:
     assert eq.export(machine_with(ON_LINKS), tmp_path / "model.py") == (
         "torsion dampers with a table",
         "bushings on a body that moves",
-        "stops over a body that moves",
-        "resistances over a body that moves",
+        "stops on a body that moves",
+        "resistances on a body that moves",
     )
 
 

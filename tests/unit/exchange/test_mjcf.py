@@ -198,7 +198,7 @@ def test_what_a_file_leaves_out_of_force_elements(tmp_path: Path) -> None:
         "torsion dampers with a table",
         "bushings on a body that moves",
         "stops on a body that moves",
-        "resistances over a body that moves",
+        "resistances on a body that moves",
     )
 
 
