@@ -1,4 +1,4 @@
-/** The page as a whole: what it shows, and who tells whom. */
+/** The page as a whole: what it shows, and how its parts are connected. */
 
 import { Bench } from "./bench";
 import { Board } from "./board";
@@ -106,7 +106,7 @@ export class App {
 
   private hello: Hello | null = null;
   private state: State | null = null;
-  /** What is told of what is open: a machine, a tool or a study. */
+  /** What is open: a machine, a tool or a study. */
   private named: Opened | null = null;
   private turned = true;
   private held = false;
@@ -441,7 +441,7 @@ export class App {
     if (this.state) this.heading.show(this.state);
   }
 
-  /** A frame comes; tells whether another is wanted. */
+  /** Draw a frame; returns whether another is needed. */
   private tick(now: number): boolean {
     if (this.player.tick(now) || this.turned) this.point();
     return this.player.playing;
@@ -675,7 +675,7 @@ export class App {
 
   private step(type: "undo" | "redo"): void {
     this.talk.release();
-    // What was held until now is a step of its own, which the state does not tell yet.
+    // What was held until now is a step of its own, which the state does not have yet.
     if (!this.named || !(this.talk.busy || this.named[type])) return;
     this.board.say("", false);
     this.inspector.forget();

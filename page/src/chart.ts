@@ -275,7 +275,7 @@ export function scaled({ values, before }: Columns, unit: Unit): Columns {
 
 export type Ask = (request: PageRequest) => void;
 
-/** Put a "?" at the end of the heading of a chart of that title; `choice` tells what of it is shown. */
+/** Put a "?" at the end of the heading of a chart of that title; `choice` gives which of its signals is shown. */
 export function explain(figure: HTMLElement, title: string, name: string, ask: Ask, choice: () => string): void {
   const heading = figure.querySelector("figcaption");
   if (!heading || heading.querySelector(".why")) return;

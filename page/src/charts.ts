@@ -96,7 +96,7 @@ export class Charts {
     for (const strip of this.strips) strip.read();
   }
 
-  /** Draw what is out of sight too, and tell in words what there is to see. */
+  /** Draw what is out of sight too, and describe it in words. */
   settle(): void {
     for (const strip of this.strips) {
       strip.settle();
@@ -184,7 +184,7 @@ export class Charts {
     for (const strip of this.strips) strip.repaint();
   }
 
-  /** Charts in their order, but first those that tell what the machine is for. */
+  /** Charts in their order, but first those of what the machine is for. */
   private arrange(first: State["first"]): void {
     this.leads = first;
     const { squares, forces, answers } = this;
@@ -252,7 +252,7 @@ export class Charts {
     this.draw(message.charts, source, this.answers, other);
   }
 
-  /** Draw charts in their order; those of before that are told no more are hidden. */
+  /** Draw charts in their order; those that are no longer sent are hidden. */
   private draw(all: ChartData[], source: Source, within: HTMLElement, other: boolean): void {
     const { rows } = this;
     const idle = all.filter((data) => Chart.idle(data, source, rows));

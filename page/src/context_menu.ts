@@ -50,7 +50,7 @@ export class ContextMenu {
   }
 
   private open(asking: Asking): boolean {
-    if (!this.root.hidden) return true; // a finger that rests is told of twice
+    if (!this.root.hidden) return true; // a finger that rests causes two events
     const menu = this.offered(asking);
     if (!menu?.actions.length) return false;
     const focused = (this.around.getRootNode() as Document | ShadowRoot).activeElement;

@@ -109,7 +109,7 @@ export class Conversation {
   /** What the server computes, by the numbers of the questions. */
   private readonly computed = new Map<number, Computation>();
   private readonly story: Story;
-  /** The last question of which all is told. */
+  /** The last request that is answered completely. */
   private whole = 0;
   private late = 0;
   /** The last question of a story that is done again. */
@@ -295,7 +295,7 @@ export class Conversation {
     }
     question.answered?.(refusal, refused);
     this.next();
-    this.rest(); // all else may have been told before
+    this.rest(); // all other answers may have come before
   }
 
   private land(): void {
@@ -323,7 +323,7 @@ export class Conversation {
     this.end(seq, null);
   }
 
-  /** Do again what was done in this tab; tells whether there was anything. */
+  /** Repeat the steps made in this tab; returns whether there were any. */
   recall(base: string): boolean {
     return this.goOn(this.story.begin(base));
   }
@@ -394,7 +394,7 @@ export class Conversation {
     else this.events.refused(message, null, null);
   }
 
-  /** A new connection knows nothing: tell it all that was done, and then what has waited. */
+  /** A new connection knows nothing: repeat all steps on it, and then send what has waited. */
   private back(base: string): void {
     this.returning = false;
     if (!this.story.fits(base)) return this.wait(true);

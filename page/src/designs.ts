@@ -8,7 +8,7 @@ const ROOM = 0.03;
 
 interface Column {
   declared: ColumnOf;
-  /** In the unit that is told; NaN where a design has none. */
+  /** In the declared unit; NaN where a design has no value. */
   values: Float64Array;
   scale: Scale;
   /** Of the model itself. */

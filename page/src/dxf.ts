@@ -9,7 +9,7 @@ export interface Drawing {
   lines: Pair[][];
   /** Ends and corners of lines, and centres of circles and arcs. */
   snaps: Pair[];
-  /** Whether the file tells its unit; where not, it is taken for mm. */
+  /** Whether the file states its unit; if not, it is read in mm. */
   hasUnit: boolean;
 }
 

@@ -1,5 +1,5 @@
 /**
- * The form of one table of a model file: a control for each key, as the server tells them, and which
+ * The form of one table of a model file: a control for each key, as the server sends them, and which
  * keys go together.
  */
 
@@ -81,7 +81,7 @@ export interface Subject {
   group: string;
   /** Its path in the file; of a new one with a name that of what it goes into. */
   place: string;
-  /** Its path, as refusals tell it. */
+  /** Its path, as in refusals. */
   where: string;
   /** Of one that has a name: that name, empty where it is new. */
   name: string | null;

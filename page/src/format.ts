@@ -35,7 +35,7 @@ export function asTyped(text: string): string {
 const MINUS = "\u2212";
 const FIXED = "\u00a0";
 
-/** Those of the server, which are the product's: told before anything is drawn. */
+/** Those of the server, received before anything is drawn. */
 let rules: NumberRules = {
   least: 0,
   most: Infinity,
@@ -104,7 +104,7 @@ export function lengths(): Unit {
   return drawing;
 }
 
-/** Lengths (m) as the drawing tells them, without their unit. */
+/** Lengths (m) as the drawing shows them, without their unit. */
 export function length(metres: number): string {
   return signed((metres * drawing.factor).toFixed(2));
 }

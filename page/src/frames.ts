@@ -1,7 +1,7 @@
 /** When to draw: a frame is asked for where there is a reason, and what follows it waits. */
 
 interface Reasons {
-  /** Draw a frame; tells whether another is wanted. */
+  /** Draw a frame; returns whether another is needed. */
   tick(now: number): boolean;
   /** What was drawn has been painted. */
   painted(): void;

@@ -7,7 +7,7 @@ export interface Attempts {
   readonly open: Set<{ end(): void; ending: boolean }>;
   /** End what is held. */
   release(): void;
-  /** Try edits; `done` is told why they were refused, or null. */
+  /** Try edits; `done` gets the reason of a refusal, or null. */
   attempt(label: string, edits: Edit[], stamp: number, done: (refusal: string | null) => void): void;
   ask(request: { type: "edit"; commit: boolean; label: string; edits: Edit[] }): void;
   /** Nothing is tried any more. */

@@ -46,7 +46,7 @@ export class Hands<S extends Drawable = State> {
   private grip: Grip | null = null;
   private target: Pair | null = null;
   private keys = false;
-  /** Of which handle the line below the drawing tells, and what more. */
+  /** The handle that the line below the drawing describes, and a remark. */
   private hinted: [Grip, string] | null = null;
 
   constructor(

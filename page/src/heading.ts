@@ -10,12 +10,12 @@ export class Heading {
   readonly notes = h("div", { class: "notes", role: "status" });
   private later = new Map<string, string[]>();
 
-  /** What is told after a state, by what it is of: it stays until it is told anew. */
+  /** Notes that come after a state, by their source: they stay until that sends others. */
   also(of: string, notes: string[]): void {
     this.later.set(of, notes);
   }
 
-  /** Another machine: nothing is told of it yet. */
+  /** Another machine has no such notes yet. */
   forget(): void {
     this.later.clear();
   }

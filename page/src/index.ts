@@ -31,7 +31,7 @@ export function connect(el: HTMLElement, address: string): Socket {
   return new Socket(url.href);
 }
 
-/** The whole page; in another language it is loaded again, and tells anew what was done. */
+/** The whole page; for another language it is loaded again, and repeats the steps that were made. */
 async function begin(el: HTMLElement, wire: Wire): Promise<void> {
   await agree(wire, wished());
   document.documentElement.lang = language();

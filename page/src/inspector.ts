@@ -207,7 +207,7 @@ export class Row {
       this.attempt((min ?? 0) + part * ((max ?? 1) - (min ?? 0)), event.timeStamp);
       slider.style.setProperty("--part", String(part));
     });
-    // Keys tell of each step that it is the last one; a pointer tells when it lets go.
+    // Each step by a key ends with a change event; a pointer causes one when it is released.
     slider.addEventListener("change", () => this.gesture?.endSoon(PAUSE));
     for (const name of ["pointerup", "blur"]) slider.addEventListener(name, () => this.gesture?.end());
     return slider;

@@ -138,7 +138,7 @@ export class Keeping {
     return this.page.shown()?.file?.saved === false;
   }
 
-  /** A page begins: by what its address holds, or by what was done here; tells whether it has. */
+  /** Restore what the address holds, or the steps made here; returns whether there was any. */
   async begin(hello: Hello): Promise<boolean> {
     this.largest = hello.largest;
     const resumed = await this.goOn(hello);

@@ -12,7 +12,7 @@ import { Strip } from "./strip";
 import type { Role, Theme } from "./theme";
 import { say } from "./words";
 
-/** What can be found: by any of the words that tell of it. */
+/** An output to search for, by any word of its label. */
 interface Entry {
   name: string;
   label: string;

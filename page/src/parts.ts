@@ -266,7 +266,7 @@ export class Parts {
     });
   }
 
-  /** Let a place be shown on the drawing; told in the axes of a body. */
+  /** Let a place be picked on the drawing, in the axes of a body. */
   private async pick(body: string, named: boolean, taken: (picked: Picked) => void): Promise<void> {
     const prompt = named
       ? say("Click a point or a link on the drawing, or go there with the arrow keys and press Enter.")
@@ -291,7 +291,7 @@ export class Parts {
     return [own[0] + dx * c - dy * s, own[1] + dx * s + dy * c];
   }
 
-  /** As finely as a pixel tells. */
+  /** As finely as a pixel resolves. */
   written(metres: number): string {
     const { unit, factor } = lengths();
     const digits = Math.max(0, -Math.floor(Math.log10(round(factor / this.page.scale()) / 4)));

@@ -1,4 +1,4 @@
-/** A wire without a server: it answers from what a page was told, which the file holds. */
+/** A wire without a server: it answers from the messages that a file holds. */
 
 import type { Heard, Incoming, PageRequest, StateMessage, Wire } from "./protocol";
 import { say } from "./words";

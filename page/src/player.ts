@@ -111,7 +111,7 @@ export class Player {
     return this.speed ? (this.rate * this.speed) / (2 * Math.PI) : 1 / SLOW;
   }
 
-  /** Let time pass; tells whether another sample is to be shown. */
+  /** Let time pass; returns whether another sample is to be shown. */
   tick(now: number): boolean {
     const before = this.sample;
     const passed = this.last === null ? 0 : Math.min((now - this.last) / 1000, 0.1);

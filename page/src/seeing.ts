@@ -76,7 +76,7 @@ interface Drawn {
 
 class Arrows implements Overlay {
   readonly element = s("g", { class: "arrows", "aria-hidden": "true" });
-  /** Names of what is drawn, each with an arrow of the length that is told. */
+  /** Names of what is drawn, each with an arrow of the stated size. */
   readonly legend = h("ul", { class: "scales" });
   /** Kinds that are wanted. */
   readonly kinds = new Set<ArrowOf["kind"]>(["velocity", "acceleration", "force"]);

@@ -17,7 +17,7 @@ interface Shortcuts {
   turn(by: number): void;
   zoom(factor: number): void;
   fit(): void;
-  /** Take the tool of a key; tells whether there is one. */
+  /** Take the tool of a key; returns whether there is one. */
   tool(key: string): boolean;
 }
 

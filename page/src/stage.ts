@@ -10,7 +10,7 @@ import { at, build, curve, type Overlay, outside, Piece, quarters, type Swing, s
 import { ruled, View } from "./view";
 import { say } from "./words";
 
-/** Points of a link of which every two have their line told. */
+/** Most points of a link between all of which lines are labelled. */
 const MOST = 4;
 /** Pixels between a line and what is written at it. */
 const BESIDE = 12;
@@ -19,7 +19,7 @@ class Dimensions {
   readonly layer = s("g", { class: "dims", "aria-hidden": "true" });
   private lines: { from: string; to: string; text: SVGTextElement }[] = [];
 
-  /** Of which points lines are told; of none where nothing is chosen. */
+  /** Label the lines between points; none where nothing is selected. */
   choose(points: readonly string[]): void {
     const labelled = points.slice(0, MOST);
     this.lines = labelled.flatMap((from, i) =>

@@ -49,7 +49,7 @@ const STEPS = new Set(["edit", "make", "balance", "entry"]);
 /** Of these the last one is enough. */
 const SETTINGS = new Set(["compare", "outputs", "arrows"]);
 
-/** What is told of a machine, or a tool, that is open. */
+/** State of the machine or tool that is open, as far as a story needs it. */
 export type Shown = Pick<State, "seq" | "name" | "steps">;
 
 export class Story {
@@ -85,7 +85,7 @@ export class Story {
     return left.filter((data) => stepCount(data) && fits(data, base));
   }
 
-  /** Whether a server which has that open can be told it. */
+  /** Whether it can be repeated on a server that has the file open. */
   fits(base: string): boolean {
     return fits(this.data, base);
   }
@@ -108,13 +108,13 @@ export class Story {
     this.write();
   }
 
-  /** Whether an answer tells of a step more. */
+  /** Whether an answer has one step more. */
   private deeper(question: PageRequest, { steps: [past, future] }: Shown): boolean {
     if (past !== this.depth || past < DEEPEST) return past > this.depth;
     return future === 0 && STEPS.has(question.type);
   }
 
-  /** A state was told. */
+  /** A state has come. */
   heard(state: Shown): void {
     [this.depth] = state.steps;
   }
@@ -158,7 +158,7 @@ function empty(base: string): StoryData {
   return { base, name: "", when: 0, start: [], past: [], future: [] };
 }
 
-/** Whether it can be told to a server which has that open: nothing, or the same file. */
+/** Whether it can be repeated on a server that has that open: nothing, or the same file. */
 function fits(data: StoryData, base: string): boolean {
   if (data.start.some(({ type }) => OPENS.has(type))) return true;
   return data.base === base || (data.saved === base && data.text !== undefined);

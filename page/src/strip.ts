@@ -96,7 +96,7 @@ export function optionsOf(look: Look, theme: Theme, curves: Curve[], width: numb
 /**
  * A curve, behind it what it was before: pale and dotted, or the dashed outline of a bar.
  *
- * The second of two is told from the first without colour too: dashed, or hatched.
+ * The second of two differs from the first without colour too: dashed, or hatched.
  */
 function series(curve: Curve, look: Look, theme: Theme, i: number, count: number): uPlot.Series[] {
   const stroke = () => theme.colours[curve.role];
@@ -169,7 +169,7 @@ function gapped(values: Float64Array, log: boolean): uPlot.TypedArray | (number 
 const LINE = 13;
 const NONE = new Float64Array(0);
 
-/** One chart with a heading that tells the values at the cursor. */
+/** One chart, with the values at the cursor in its heading. */
 export class Strip {
   readonly root: HTMLElement;
   private readonly holder = h("div", { class: "canvas" });

@@ -16,7 +16,7 @@ export class Theme {
   private readonly dark = matchMedia("(prefers-color-scheme: dark)");
   private readonly probe = document.createElement("i");
 
-  /** `changed` is told after colours have become others. */
+  /** `changed` is called after the colours have changed. */
   constructor(
     private readonly root: HTMLElement,
     private readonly changed: () => void,

@@ -16,7 +16,7 @@ const ICONS = {
   open: "M2 12.5v-9h4l1.5 2H14v7z",
 };
 
-/** What is told of whatever is open. */
+/** What the toolbar needs of whatever is open. */
 export type Opened = Pick<State, "name" | "undo" | "redo" | "lacking" | "file"> & {
   /** Downloads that there are; all where it is left out. */
   downloads?: DownloadKind[];
@@ -230,7 +230,7 @@ function button(text: string, picture: keyof typeof ICONS, onclick: () => void, 
   return h("button", { type: "button", "aria-label": name, title: name, onclick }, icon(ICONS[picture]), word);
 }
 
-/** What a command would do, and why it cannot (where `what` is null), is told to the eye and to the ear. */
+/** What a command would do, and why it cannot (where `what` is null), as a tooltip and for screen readers. */
 function able(element: HTMLButtonElement, name: string, what: string | null, why: string): void {
   element.disabled = what === null;
   const text = what ?? why;

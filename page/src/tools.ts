@@ -65,7 +65,7 @@ export class Tools {
     turnable(page);
   }
 
-  /** A state was told. */
+  /** A state has come. */
   show(state: State): void {
     this.palette.tell(state.status);
     if (this.pending?.point && !state.numbers.has(`place.${this.pending.point}`)) this.leave();
@@ -242,7 +242,7 @@ export class Tools {
     event.stopPropagation();
   };
 
-  /** Take a tool by its key, where something else than the drawing has the focus; tells whether there is one. */
+  /** Take a tool by its key, where something else than the drawing has the focus; returns whether there is such a tool. */
   pick(key: string): boolean {
     const tool = toolOf(key.toLowerCase());
     if (!tool || tool.tool === "delete") return false;

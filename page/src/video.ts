@@ -7,7 +7,7 @@ const KINDS = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "
 /** How long a video is at least and at most, s. */
 const [SHORTEST, LONGEST] = [2, 20];
 const BITS = 8e6;
-/** Of which attributes do not tell what was chosen or typed. */
+/** Elements whose attributes do not hold what was chosen or typed. */
 const TYPED = "select, input";
 
 /** What is recorded: elements side by side, each as much of it as is seen. */
@@ -17,7 +17,7 @@ interface Scenery {
   areas: HTMLElement[];
   /** How long what moves takes as it is played, s. */
   seconds: number;
-  /** Show the moment at which a share of it is over; tells whether it can still be shown. */
+  /** Show the moment at which a share of it is over; returns whether it can still be shown. */
   show(share: number): boolean;
 }
 

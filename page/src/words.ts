@@ -1,5 +1,5 @@
 /**
- * The page's texts in the reader's language: English in the code, the rest told by the server, with
+ * The page's texts in the reader's language: English in the code, the rest from the server, with
  * the rules of Korean particles.
  */
 

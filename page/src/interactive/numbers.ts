@@ -17,7 +17,7 @@ const ROUNDING = 1e-10;
 /** Share of a change that is none to a reader. */
 const SAME = 5e-4;
 
-/** Tries a design; tells why it cannot be, or null. */
+/** Tries a design; returns why it is refused, or null. */
 export type Try = (design: Float64Array, label: string) => string | null;
 
 interface Row {

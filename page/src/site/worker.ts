@@ -6,7 +6,7 @@
  * one that is called `cells`, which runs the cells of a tutorial (`equipoise/web/cells.py`).
  */
 
-/** What `site.json` tells: where the runtime is, and what Python packages there are. */
+/** Content of `site.json`: where the runtime is, and what Python packages there are. */
 interface Site {
   runtime: string;
   /** Wheels of this package and of pure Python. */
@@ -78,7 +78,7 @@ const base = new URL(".", self.location.href);
 const post = (content: unknown, bytes?: Uint8Array): void =>
   (self as unknown as Worker).postMessage(content, bytes ? [bytes.buffer] : []);
 
-/** Tell which files have been loaded since this was told last. */
+/** Post which files have been loaded since the last time. */
 function tellLoaded(): void {
   post({ type: "loaded", files: performance.getEntriesByType("resource").map(({ name }) => name) });
   performance.clearResourceTimings();
@@ -168,7 +168,7 @@ async function start(
 /** What has been loaded: if a module is still missing then, asking for it again leads nowhere. */
 const requested = new Set<string>();
 
-/** Load the package that has a module; tells whether it could be. */
+/** Load the package that has a module; returns whether that succeeded. */
 async function load(python: Pyodide, module: string): Promise<boolean> {
   if (requested.has(module)) return false;
   requested.add(module);
