@@ -12,10 +12,10 @@ from equipoise.i18n import Note, localized, say, to_say
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.element_kinds import Element, PartKind, named_function, part_kinds
+from equipoise.mechanism.parts.machine import Machine
 
 if TYPE_CHECKING:
     from equipoise.balancing.workshop import Change
-    from equipoise.mechanism.parts.machine import Machine
 
 
 @dataclass(frozen=True)
@@ -24,8 +24,9 @@ class Format:
 
     name : as `format` takes it.  module : that makes it, in this package; the one of its name here
     if not given.
-    ending : of its files, with the dot.  holds : what is in it.  needs : a library of the extra
-    `exchange`.  of_store : whether it is of the designs of a study, not of a machine.
+    ending : of its files, with the dot.  needs : a library of the extra `exchange`.
+    holds : what is in it, with ``{parts}`` for the kinds of parts that it has.
+    of_store : whether it is of the designs of a study, not of a machine.
     posed : whether it shows the machine at a crank angle, or begins there.
     turns : whether it turns the driven link all the way round at constant speed.
     by_kind : whether it has code for each kind of parts that it holds (`PartKind.exports`), beside
@@ -65,6 +66,18 @@ class Format:
             return part.in_fixed_ratio or self.name in part.exports
         return self.evaluates or part.has_formula
 
+    def has_kind(self, kind: type[PartKind]) -> bool:
+        """Whether it holds parts of a kind, at least the simplest."""
+        if self.by_kind:
+            return kind.fixes_ratio or self.name in kind.exports
+        return self.evaluates or kind.by_formula
+
+    @property
+    def contents(self) -> str:
+        """What is in it, in words."""
+        kinds = (kind for kind in part_kinds(Machine).values() if self.has_kind(kind))
+        return self.holds.format(parts=", ".join(kind.group for kind in kinds))
+
     @property
     def maker(self) -> str:
         """Name of the module that makes it, which may stand in a room above this one."""
@@ -78,9 +91,8 @@ FORMATS: Mapping[str, Format] = {
             "mjcf",
             ".xml",
             "MuJoCo (MJCF)",
-            "bodies, pins, sliders, gears, belts, linear springs, torsion springs and dampers, "
-            "bushings, elastic stops, viscous resistances, damping and drag of joints, constant "
-            "loads, rows, the support on its mounts, the drive at constant speed",
+            "bodies, pins, sliders, {parts}, as far as they are linear, damping and drag of "
+            "joints, constant loads, rows, the support on its mounts, the drive at constant speed",
             turns=True,
             by_kind=True,
             rubs=False,
@@ -91,9 +103,8 @@ FORMATS: Mapping[str, Format] = {
             "exudyn",
             ".py",
             "Exudyn",
-            "a script that builds and runs bodies, pins, sliders, gears, belts, linear springs, "
-            "dampers, bushings, stops, resistances, constant loads, rows, the support on its "
-            "mounts in the plane, the drive at constant speed",
+            "a script that builds and runs bodies, pins, sliders, {parts}, constant loads, rows, "
+            "the support on its mounts in the plane, the drive at constant speed",
             turns=True,
             by_kind=True,
             rubs=False,
@@ -103,8 +114,8 @@ FORMATS: Mapping[str, Format] = {
             "urdf",
             ".urdf",
             "robots (URDF)",
-            "the tree: links with masses, hinges and slides with their damping and drag, gears and "
-            "belts of two joints; loops are cut",
+            "the tree: links with masses, hinges and slides with their damping and drag, {parts}, "
+            "each of two joints; loops are cut",
             by_kind=True,
             rubs=False,
             drags=True,
@@ -114,8 +125,7 @@ FORMATS: Mapping[str, Format] = {
             "fmu",
             ".fmu",
             "co-simulation (FMI 2.0)",
-            "motion and forces as outputs, speed and acceleration of the crank as inputs; gears, "
-            "belts, racks, springs, torsion springs, dampers, bushings, stops, resistances, "
+            "motion and forces as outputs, speed and acceleration of the crank as inputs; {parts}, "
             "constant loads; C sources, and a library where a C compiler is found",
             turns=True,
             evaluates=False,
@@ -125,9 +135,8 @@ FORMATS: Mapping[str, Format] = {
             "modelica",
             ".mo",
             "Modelica",
-            "one flat model: equations of motion of each link, pins, sliders, gears, belts, "
-            "springs, torsion springs, dampers, bushings, stops, resistances, constant loads, the "
-            "drive at constant speed",
+            "one flat model: equations of motion of each link, pins, sliders, {parts}, constant "
+            "loads, the drive at constant speed",
             turns=True,
             by_kind=True,
             rubs=False,

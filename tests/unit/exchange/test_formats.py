@@ -48,8 +48,8 @@ def holding_parts() -> dict[str, tuple[Machine, str, PartKind]]:
 def lacking(item: Format) -> list[str]:
     """Joints and couplings that a format has none of, and force elements."""
     parts = [name for name, (*_, part) in holding_parts().items() if not item.has(part)]
-    forces = force_kinds(Machine).values() if item.by_kind else ()
-    return parts + [kind.group for kind in forces if item.name not in kind.exports]
+    forces = force_kinds(Machine).values()
+    return parts + [kind.group for kind in forces if not item.has_kind(kind)]
 
 
 def table() -> str:
@@ -64,7 +64,7 @@ def table() -> str:
             f"`{value.ending}`",
             f"`{value.name}`",
             value.title,
-            value.holds,
+            value.contents,
             ", ".join(
                 [*lacking(value), *([] if value.rubs else [PRESSED if value.drags else FRICTION])]
             ),

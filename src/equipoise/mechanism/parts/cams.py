@@ -49,6 +49,7 @@ class Cam(Coupling):
     page_tool = "equipoise.web.cams:CAM"
     noun = to_say("cam")
     group = to_say("cams")
+    by_formula = False
     columns: ClassVar[Mapping[PathPattern, Set[str]]] = {
         (): {"base_radius", "roller_radius", "normal"},
         **{(law,): {"between", "values", "phase"} for law in ("lift", "swing")},
@@ -133,10 +134,6 @@ class Cam(Coupling):
         "towards the follower's pivot",
         default="left",
     )
-
-    @property
-    def has_formula(self) -> bool:
-        return False
 
     @property
     def points(self) -> tuple[tuple[str, str], ...]:

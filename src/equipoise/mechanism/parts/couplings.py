@@ -398,6 +398,7 @@ class Turning(Coupling):
         )
     }
     heading: ClassVar[Note]
+    fixes_ratio = True
 
     @property
     def in_fixed_ratio(self) -> bool:

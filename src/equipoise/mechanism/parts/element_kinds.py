@@ -84,6 +84,8 @@ class PartKind(Frozen):
     remarks : ``module:function`` that says, by the forces of a machine, where its parts fail.
     exports : ``module:function`` that writes all parts of the kind into a file, by the name of a
         format whose code knows kinds of parts.
+    fixes_ratio : whether the simplest of the kind do nothing but turn two links in a fixed ratio.
+    by_formula : whether the motion of the simplest of the kind has a formula.
     """
 
     list_name: ClassVar[str]
@@ -100,6 +102,8 @@ class PartKind(Frozen):
     questions: ClassVar[str] = ""
     remarks: ClassVar[str] = ""
     exports: ClassVar[Mapping[str, str]] = {}
+    fixes_ratio: ClassVar[bool] = False
+    by_formula: ClassVar[bool] = True
     legend: ClassVar[tuple[str, str] | None] = None
 
     @property
@@ -135,12 +139,12 @@ class PartKind(Frozen):
     @property
     def in_fixed_ratio(self) -> bool:
         """Whether it does nothing but turn two links in a fixed ratio, which any format has."""
-        return False
+        return self.fixes_ratio
 
     @property
     def has_formula(self) -> bool:
         """Whether its motion has a formula, for formats that evaluate no tables and laws."""
-        return True
+        return self.by_formula
 
     @abstractmethod
     def sentence(self) -> Note:
