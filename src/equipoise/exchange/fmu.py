@@ -43,10 +43,7 @@ def export_bytes(job: Job) -> bytes:
     """The file's content."""
     loads = tuple(load for _, load in constant_loads(job, between=True))
     machine = replace(job.machine, loads=loads, planting=None, balance=None)
-    if machine.support:
-        job.leave_out(Note("the support"))
-    if machine.rows[1:]:
-        job.leave_out(Note("all rows but one"))
+    job.leave_out_support()
     job.leave_out_forces()
     job.leave_out_motor()
     job.leave_out_planes()

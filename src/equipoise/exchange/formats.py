@@ -299,6 +299,13 @@ class Job:
                 )
             )
 
+    def leave_out_support(self) -> None:
+        """Note that one linkage on solid ground is all that there is."""
+        if self.machine.support:
+            self.leave_out(Note("the support"))
+        if self.machine.rows[1:]:
+            self.leave_out(Note("all rows but one"))
+
     def leave_out_soil(self) -> None:
         """Note that soil forces are left out."""
         if self.machine.in_soil:

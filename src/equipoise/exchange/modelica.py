@@ -19,7 +19,6 @@ from equipoise.exchange.tree import (
     turning_shares,
     weighed,
 )
-from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import structure
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.element_kinds import BetweenPoints
@@ -123,10 +122,7 @@ class Flat:
 def export_bytes(job: Job) -> str:
     """The file's text."""
     machine = weighed(job.machine)
-    if machine.support:
-        job.leave_out(Note("the support"))
-    if machine.rows[1:]:
-        job.leave_out(Note("all rows but one"))
+    job.leave_out_support()
     job.need_every_joint(structure(machine))
     job.leave_out_motor()
     job.leave_out_planes()

@@ -146,10 +146,7 @@ class Part:
         if holes:
             lines.append(say("holes: {list}", list=", ".join(dict.fromkeys(holes))))
         if self.joints:
-            places = ", ".join(
-                f"{name} ({coordinates([in_mm(1e3 * at.real), in_mm(1e3 * at.imag)])})"
-                for name, at in self.joints
-            )
+            places = ", ".join(f"{name} {place_in_mm(at)}" for name, at in self.joints)
             lines.append(say("joints at {places} mm in the axes of the link", places=places))
         if self.threads is not None:
             lines.extend(self._thread_lines(self.threads))
@@ -174,10 +171,9 @@ class Part:
                 **words,
             )
         else:
-            axes = ([in_mm(1e3 * place.real), in_mm(1e3 * place.imag)] for place in threads.places)
             yield say(
                 "{count} threads M{size} at {places} mm in the axes of the link",
-                places=", ".join(f"({coordinates(place)})" for place in axes),
+                places=", ".join(map(place_in_mm, threads.places)),
                 **words,
             )
         if threads.is_blind:
@@ -221,8 +217,7 @@ class Part:
             )
         elif self.is_round:
             (circle_of, *_) = (curve for curve in _curves(self.edges[0]) if curve.whole)
-            x, y = circle_of.center.real, circle_of.center.imag
-            place = f"({coordinates([in_mm(1e3 * x), in_mm(1e3 * y)])})"
+            place = place_in_mm(circle_of.center)
             yield say("its centre at {place} mm in the axes of the link", place=place)
 
     @property
@@ -237,7 +232,7 @@ class Part:
         """Points of the link that lie within the outline of the part or at its edge."""
         low, high = self.box
         slack = ON_EDGE * abs(high - low)
-        outline = np.concatenate([*_places(self.edges[0])])
+        outline = np.concatenate([*places_along(self.edges[0])])
         return tuple((name, at) for name, at in self.points if _within(outline, at, slack))
 
     @property
@@ -251,7 +246,7 @@ class Part:
     @property
     def box(self) -> tuple[complex, complex]:
         """Lower left and upper right corner, m."""
-        every = np.concatenate([*chain(*map(_places, self.edges))])
+        every = np.concatenate([*chain(*map(places_along, self.edges))])
         low = complex(every.real.min(), every.imag.min())
         return low, complex(every.real.max(), every.imag.max())
 
@@ -301,6 +296,11 @@ def in_mm(length: float) -> str:
     return decimals(f"{length:.2f}".rstrip("0").rstrip("."))
 
 
+def place_in_mm(place: complex) -> str:
+    """Both coordinates of a place, m, in mm and in brackets."""
+    return f"({coordinates([in_mm(1e3 * place.real), in_mm(1e3 * place.imag)])})"
+
+
 GRAM, LIGHT = 1e-3, 1e-2
 """kg; below the second a workshop weighs to a tenth of the first."""
 
@@ -313,10 +313,16 @@ def workshop_mass(mass: float) -> str:
     return unit.with_unit(decimals(fixed(unit, mass, digits)))
 
 
+def sides(edges: tuple[BulgedCorner, ...]) -> Iterator[tuple[complex, float, complex]]:
+    """Both ends, m, of each edge of a closed outline, and its bulge between them."""
+    for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+        yield item, bulge, other
+
+
 def area_of(edges: tuple[BulgedCorner, ...]) -> float:
     """Area of a closed outline, m2: that of its corners, and the segments below its arcs."""
     total = 0.0
-    for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+    for item, bulge, other in sides(edges):
         total += (item.conjugate() * other).imag / 2
         if bulge:
             angle = 4 * atan(bulge)
@@ -333,7 +339,7 @@ def _rounded(center: complex, radius: float) -> tuple[float, ...]:
 def _curves(edges: tuple[BulgedCorner, ...]) -> Iterator[RoundEdge]:
     """Circles and arcs of a closed outline; the halves of an arc are one."""
     by_name: dict[tuple[float, ...], list[tuple[complex, float, complex, float]]] = {}
-    for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+    for item, bulge, other in sides(edges):
         if bulge:
             center = (item + other) / 2 + 1j * (other - item) / 2 / tan(2 * atan(bulge))
             radius = abs(item - center)
@@ -358,9 +364,9 @@ def along(point: complex, other: complex, bulge: float, count: int) -> Any:
     return center + (point - center) * np.exp(2j * half * share)
 
 
-def _places(edges: tuple[BulgedCorner, ...]) -> Iterator[Any]:
-    """Places along each edge in turn, m."""
-    for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
+def places_along(edges: tuple[BulgedCorner, ...]) -> Iterator[Any]:
+    """Places (n,) along each edge in turn, m; of an arc a degree apart at most."""
+    for item, bulge, other in sides(edges):
         yield along(item, other, bulge, 181 if bulge else 2)
 
 

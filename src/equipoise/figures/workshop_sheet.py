@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.exchange.formats import Job
-from equipoise.exchange.parts import COUNTERWEIGHT, Part, along, in_mm, parts
+from equipoise.exchange.parts import COUNTERWEIGHT, Part, in_mm, parts, places_along
 from equipoise.figures.paint import fonts_for, settings
 from equipoise.figures.sheet import lines_of
 from equipoise.figures.style import INK, MAIN
@@ -148,9 +148,8 @@ def _sheet(part: Part, lines: Sequence[str]) -> Figure:
     axes.set_xlim(center.real - half.real, center.real + half.real)
     axes.set_ylim(center.imag - half.imag, center.imag + half.imag)
     for edges in part.edges:
-        for (item, bulge), (other, _) in zip(edges, (*edges[1:], edges[0]), strict=True):
-            places = MM * along(item, other, bulge, 181 if bulge else 2)
-            axes.plot(places.real, places.imag, color=INK, linewidth=1.0)
+        for places in places_along(edges):
+            axes.plot(MM * places.real, MM * places.imag, color=INK, linewidth=1.0)
     if part.arcs:
         _angle(axes, part, scale)
     elif not part.is_round:

@@ -6,7 +6,6 @@ is (`Frozen.called`).
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import field
 from numbers import Real
@@ -34,7 +33,7 @@ from equipoise.keys import Kind as KeyKind
 from equipoise.keys.paths import KeyPath, with_values
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.shown_units import SIGN
-from equipoise.quantities import KINDS, NUMBER, Dimension, plain_unit
+from equipoise.quantities import KINDS, Dimension
 from equipoise.quantities.reading import described
 from equipoise.schema.numbers import (
     POLAR,
@@ -43,6 +42,7 @@ from equipoise.schema.numbers import (
     FileVector,
     PlanePair,
     read_number,
+    unit_of,
     vector_of,
 )
 from equipoise.schema.open_files import ModelKind, document_of
@@ -288,7 +288,6 @@ def _check_company(
 
 
 SHARE = "%"
-_QUANTITY = re.compile(rf"{NUMBER} +(\S.*)")
 
 
 def unit_in(content: Mapping[str, Any], location: NumberLocation) -> str:
@@ -309,12 +308,6 @@ def unit_in(content: Mapping[str, Any], location: NumberLocation) -> str:
         if read is not None and read.dimension == number.dimension:
             return unit_of(given)
     return handy(number.dimension)
-
-
-def unit_of(given: str) -> str:
-    """Unit of a quantity that can be read, as the lists have it."""
-    match = _QUANTITY.fullmatch(given)
-    return "" if match is None else plain_unit(match[1])
 
 
 def handy(dimension: Dimension) -> str:

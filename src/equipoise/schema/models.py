@@ -26,6 +26,7 @@ from equipoise.schema.open_files import (
     content_of,
     in_file,
     opened,
+    opened_beside,
     opened_example,
 )
 from equipoise.schema.reading import Context, read_table
@@ -165,10 +166,9 @@ class AdjacentFiles:
 
     def _opened(self, file: str) -> Opened:
         """The model file of a linkage, of which one beside goes before a bundled one."""
-        in_folder = self.folder is not None and os.path.isfile(self.folder / file)
-        if not in_folder and file in bundled():
-            return opened_example(file)
         if self.folder is None:
+            if file in bundled():
+                return opened_example(file)
             raise ModelError(
                 "",
                 Note(
@@ -178,7 +178,7 @@ class AdjacentFiles:
                 ),
             )
         try:
-            return opened(self.folder / file, within=self.folder)
+            return opened_beside(file, self.folder)
         except ModelError as error:
             raise ModelError("", at_place(printable(file), error.what)) from error
 

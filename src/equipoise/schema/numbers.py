@@ -153,6 +153,12 @@ class FileNumber:
         return int(value) if whole else float(value)
 
 
+def unit_of(given: str) -> str:
+    """Unit of a quantity, as the lists of units have it; empty of what is none."""
+    match = _QUANTITY.fullmatch(given)
+    return "" if match is None else plain_unit(match[1])
+
+
 def read_number(given: Any, whole: bool = False) -> FileNumber | None:
     """What a value of a model file is as a number; None where it is none.
 
@@ -165,8 +171,7 @@ def read_number(given: Any, whole: bool = False) -> FileNumber | None:
     if not isinstance(given, str):
         return None
     try:
-        match = _QUANTITY.fullmatch(given)
-        dimension = OF_UNIT.get(plain_unit(match[1])) if match else None
+        dimension = OF_UNIT.get(unit_of(given))
         if dimension is not None:
             return FileNumber(parse(given, dimension), dimension)
         share = parse_share(given)

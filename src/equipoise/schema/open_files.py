@@ -249,6 +249,18 @@ def opened(path_or_name: str | os.PathLike[str], *, within: FolderPath = None) -
     return Opened(text, source, Path(name).parent)
 
 
+def opened_beside(file: str, folder: Path) -> Opened:
+    """Open a file of a folder, out of which no link may lead, or else a bundled example.
+
+    Raises
+    ------
+    ModelError : there is neither, or the file cannot be read.
+    """
+    if file in bundled() and not os.path.isfile(folder / file):
+        return opened_example(file)
+    return opened(folder / file, within=folder)
+
+
 def opened_example(name: str) -> Opened:
     """Open a bundled example."""
     example = bundled()[name]

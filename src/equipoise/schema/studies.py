@@ -21,7 +21,7 @@ from equipoise.schema.open_files import (
     in_file,
     kind_of,
     opened,
-    opened_example,
+    opened_beside,
     toml_content,
 )
 from equipoise.schema.reading import Context, read_table
@@ -129,11 +129,8 @@ def _study(text: str, folder: Path) -> Study:
 
 def _template(name: str, folder: Path) -> Template:
     """The model of a study: a file beside it goes before a bundled example."""
-    isfile = os.path.isfile(folder / name)
     try:
-        is_example = not isfile and name in bundled()
-        file = opened_example(name) if is_example else opened(folder / name, within=folder)
-        return Template.of_opened(file)
+        return Template.of_opened(opened_beside(name, folder))
     except ModelError as error:
         raise ModelError("model", error.note).like(error) from error
 

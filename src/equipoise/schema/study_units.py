@@ -15,8 +15,9 @@ from equipoise.i18n import Note
 from equipoise.quantities import KINDS, chosen_unit
 from equipoise.quantities.units import FACTORS
 from equipoise.results.outputs import figure_named
-from equipoise.schema.file_numbers import SHARE, handy, unit_of
+from equipoise.schema.file_numbers import SHARE, handy
 from equipoise.schema.files import printable
+from equipoise.schema.numbers import unit_of
 from equipoise.schema.studies import restore
 from equipoise.schema.template import Template
 from equipoise.studies.blocks import Unit

@@ -255,7 +255,7 @@ def _headed(name: str, kind: keys.Kind, value: Any) -> Iterator[str]:
         yield "".join([f"[{name}]\n", *_lines(value)])
     elif isinstance(kind, keys.Named):
         for key, item in value.items():
-            inner = f"{name}.{_key(key)}"
+            inner = f"{name}.{key_text(key)}"
             yield from _blocks(f"[{inner}]", inner, kind.item.type, item)  # type: ignore[attr-defined]
     elif isinstance(kind, keys.KeyTable):
         yield from _blocks(f"[{name}]", name, kind.type, value)
@@ -287,9 +287,9 @@ def _is_tables(value: Any) -> bool:
 def _lines(table: Mapping[str, Any], prefix: str = "") -> Iterable[str]:
     for key, value in table.items():
         if isinstance(value, dict) and not _is_polar(value):
-            yield from _lines(value, f"{prefix}{_key(key)}.")
+            yield from _lines(value, f"{prefix}{key_text(key)}.")
         else:
-            yield f"{prefix}{_key(key)} = {value_text(value)}\n"
+            yield f"{prefix}{key_text(key)} = {value_text(value)}\n"
 
 
 def _is_polar(table: Mapping[str, Any]) -> bool:
@@ -304,12 +304,13 @@ def value_text(value: Any) -> str:
     if isinstance(value, list):  # tomli_w spreads lists over several lines
         return f"[{', '.join(map(value_text, value))}]"
     if isinstance(value, dict):
-        items = ", ".join(f"{_key(name)} = {value_text(item)}" for name, item in value.items())
+        items = ", ".join(f"{key_text(name)} = {value_text(item)}" for name, item in value.items())
         return f"{{ {items} }}"
     return tomli_w.dumps({"k": value}).removeprefix("k = ").removesuffix("\n")
 
 
-def _key(name: str) -> str:
+def key_text(name: str) -> str:
+    """A key as it stands in TOML, in quotes where it needs them."""
     import tomli_w
 
     return tomli_w.dumps({name: 0}).removesuffix(" = 0\n")

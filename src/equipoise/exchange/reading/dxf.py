@@ -12,7 +12,15 @@ from typing import Any
 
 from equipoise.errors import EquipoiseError, ModelError, needed
 from equipoise.exchange.reading.imported import Read
-from equipoise.exchange.reading.strokes import WORDS, Drawing, DrawnLine, Marks, Ring, skeleton
+from equipoise.exchange.reading.strokes import (
+    WORDS,
+    Drawing,
+    DrawnLine,
+    Marks,
+    Ring,
+    skeleton,
+    within_reach,
+)
 from equipoise.i18n import Note
 from equipoise.limits import check_memory
 
@@ -188,9 +196,4 @@ def _corners(path: Any, scale: float) -> Iterator[complex]:
 
 
 def _place(x: float, y: float, scale: float) -> complex:
-    place = complex(x, y) * scale
-    if not abs(place) < 1e9:
-        raise ModelError(
-            "", Note("a line lies beyond all machines; check the drawing's coordinates")
-        )
-    return place
+    return within_reach(complex(x, y) * scale)

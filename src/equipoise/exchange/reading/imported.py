@@ -134,10 +134,9 @@ DRIVE = '# [drive]\n# link = "{names}"\n# speed = "60 rpm"\n'
 
 def _header(name: str) -> str:
     """Line that begins the table of a link."""
-    import tomli_w
+    from equipoise.schema.writing import key_text
 
-    key = tomli_w.dumps({name: 0}).removesuffix(" = 0\n")
-    return f"[links.{key}]\n"
+    return f"[links.{key_text(name)}]\n"
 
 
 # -- the drive -------------------------------------------------------------------------------------

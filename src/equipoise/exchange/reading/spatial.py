@@ -205,6 +205,12 @@ class Space:
         self.sums = [item for item in self.sums if item[1]]
 
 
+SHORTEST = 1e-12
+"""Length below which an axis or a quaternion is 0 but for the digits of the file: of numbers of
+about 1, which have 15 at most, no fewer than three would be left.
+"""
+
+
 def direction(where: str, given: tuple[float, ...]) -> Array:
     """A vector (3,) of length 1.
 
@@ -214,16 +220,21 @@ def direction(where: str, given: tuple[float, ...]) -> Array:
     """
     vector = np.array(given)
     length = float(np.linalg.norm(vector))
-    if length < 1e-12:
+    if length < SHORTEST:
         raise ModelError(where, Note("its axis has no length; give one such as 0 0 1"))
     values: Array = vector / length
     return values
 
 
+def _cross_matrix(vector: Array) -> Array:
+    """The matrix (3, 3) whose product with another vector is the cross product with it."""
+    x, y, z = vector
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
 def turned(axis: Array, angle: float) -> Array:
     """Rotation about an axis of length 1 by an angle, rad: (3, 3)."""
-    x, y, z = axis
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    cross = _cross_matrix(axis)
     values: Array = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
     return values
 
@@ -242,7 +253,7 @@ def by_euler(angles: tuple[float, ...], order: str) -> Array:
 def by_quaternion(where: str, given: tuple[float, ...]) -> Array:
     """Rotation of w, x, y, z, of any length but 0."""
     length = float(np.linalg.norm(given))
-    if length < 1e-12:
+    if length < SHORTEST:
         raise ModelError(where, Note("its quat has no length; give one such as 1 0 0 0"))
     w, *rest = (item / length for item in given)
     vector = np.array(rest)
@@ -291,8 +302,7 @@ def toward(axis: Array) -> Array:
     across, along = np.cross(z, axis), float(axis @ z)
     if along < -1 + 1e-12:
         return np.diag([1.0, -1.0, -1.0])
-    x, y, w = across
-    cross = np.array([[0, -w, y], [w, 0, -x], [-y, x, 0]])
+    cross = _cross_matrix(across)
     values: Array = np.eye(3) + cross + cross @ cross / (1 + along)
     return values
 

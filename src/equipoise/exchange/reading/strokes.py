@@ -35,6 +35,24 @@ LINK = "link "
 """Before the name of a link in its layer there."""
 
 
+FARTHEST = 1e9
+"""m, from the origin; farther away floats are coarser than a tenth of a micrometre."""
+
+
+def within_reach(place: complex) -> complex:
+    """A place of a drawing, m.
+
+    Raises
+    ------
+    ModelError : no machine is there, or it is no number.
+    """
+    if not abs(place) < FARTHEST:
+        raise ModelError(
+            "", Note("a line lies beyond all machines; check the drawing's coordinates")
+        )
+    return place
+
+
 @dataclass(frozen=True)
 class DrawnLine:
     """A line with corners; `closed` where it comes back.  places : m.  names : by which it goes."""

@@ -10,7 +10,14 @@ from xml.etree.ElementTree import Element
 from equipoise.errors import ModelError, at_place, needed
 from equipoise.exchange.reading.imported import Read
 from equipoise.exchange.reading.markup import called, number, numbers
-from equipoise.exchange.reading.strokes import Drawing, DrawnLine, Marks, Ring, skeleton
+from equipoise.exchange.reading.strokes import (
+    Drawing,
+    DrawnLine,
+    Marks,
+    Ring,
+    skeleton,
+    within_reach,
+)
 from equipoise.i18n import Note
 
 METRES = {"": 0.0254 / 96, "px": 0.0254 / 96, "mm": 1e-3, "cm": 1e-2, "in": 0.0254,
@@ -126,12 +133,8 @@ class _Reader:
                 yield name
 
     def _place(self, x: float, y: float, at: Any) -> complex:
-        place = complex(at.a * x + at.c * y + at.e, -(at.b * x + at.d * y + at.f)) * self.scale
-        if not abs(place) < 1e9:
-            raise ModelError(
-                "", Note("a line lies beyond all machines; check the drawing's coordinates")
-            )
-        return place
+        place = complex(at.a * x + at.c * y + at.e, -(at.b * x + at.d * y + at.f))
+        return within_reach(place * self.scale)
 
     def _circle(self, element: Element, at: Any, names: tuple[str, ...]) -> None:
         x, y, r = (number(element, key, "0") for key in ("cx", "cy", "r"))
