@@ -150,7 +150,10 @@ export interface Hold {
 
 /** A part of the drawing, in its own axes; without a hold it does not move. */
 export interface Sign {
-  layer: string;
+  /** Whether it is around the linkage, and paths are drawn on it. */
+  ground: boolean;
+  /** Whether a pale design beside another is drawn by it. */
+  compared: boolean;
   /** The link that it draws, if any. */
   link: string;
   hold: Hold | null;

@@ -11,9 +11,6 @@ import { Variants } from "./variants";
 import type { View } from "./view";
 import { say } from "./words";
 
-/** Layers of signs that tell a design; soil and support would only hide. */
-const DRAWN = ["wheels", "links", "pivots", "blocks", "riders", "springs", "joints"];
-
 class Ghost implements Overlay {
   readonly element = s("g", { class: "pale", "aria-hidden": "true" });
   private readonly paths = s("path", { class: "path" });
@@ -26,7 +23,7 @@ class Ghost implements Overlay {
   /** Take another design, or none. */
   take(scene: Scene | null, numbers: Numbers): void {
     [this.scene, this.numbers, this.drawn] = [scene, numbers, 0];
-    const signs = scene?.signs.filter(({ layer }) => DRAWN.includes(layer)) ?? [];
+    const signs = scene?.signs.filter(({ compared }) => compared) ?? [];
     this.pieces = scene ? signs.map((sign) => new Piece(sign, scene)) : [];
     this.element.replaceChildren(this.paths, ...this.pieces.map(({ element }) => element));
   }

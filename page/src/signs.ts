@@ -48,8 +48,6 @@ export function swung(swing: Swing, view: View, k: number): Swung {
 
 /** Shades of links, one after the other. */
 const TINTS = 5;
-/** Layers that paths are drawn on. */
-const FAR = ["field", "support"];
 
 export class Piece {
   readonly element: SVGGElement;
@@ -79,8 +77,8 @@ export class Piece {
     return this.sign.link;
   }
 
-  get far(): boolean {
-    return FAR.includes(this.sign.layer);
+  get ground(): boolean {
+    return this.sign.ground;
   }
 
   /** Draw the shapes of a sign of the same build, with so many pixels a metre. */

@@ -44,7 +44,7 @@ class Dimensions {
 }
 
 /** From below to above. */
-const LAYERS = ["far", "signs", "paths", "ghost", "grips", "labels"] as const;
+const LAYERS = ["ground", "signs", "paths", "ghost", "grips", "labels"] as const;
 /** Those that the support carries as a whole. */
 const SWUNG = ["paths", "ghost", "grips", "labels"] as const;
 /** Pixels from a point to the middle of its name. */
@@ -333,9 +333,9 @@ export class Stage<S extends Drawable = State> {
 
   private build(scene: Scene): void {
     this.pieces = scene.signs.map((sign) => new Piece(sign, scene));
-    const far = this.pieces.filter((piece) => piece.far);
-    const near = this.pieces.filter((piece) => !piece.far);
-    this.layer.far?.replaceChildren(...far.map(({ element }) => element));
+    const ground = this.pieces.filter((piece) => piece.ground);
+    const near = this.pieces.filter((piece) => !piece.ground);
+    this.layer.ground?.replaceChildren(...ground.map(({ element }) => element));
     this.layer.signs?.replaceChildren(...near.map(({ element }) => element));
     this.mark();
   }

@@ -95,7 +95,7 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
     expect(
         page.get_by_text(re.compile("movement of the support .+ times as large"))
     ).to_be_visible()
-    spring = page.locator(".linkage .far .piece").nth(2)
+    spring = page.locator(".linkage .ground .piece").nth(2)
     crank, places = page.get_by_role("slider", name="Crank angle"), []
     for sample in (0, 90, 180):
         crank.fill(str(sample))

@@ -173,8 +173,6 @@ def _of_paths(stage: Stage, traced: tuple[str, ...]) -> Iterator[list[Label]]:
 
 HEAD = 13.0
 """Length of the head of an arrow, units."""
-BEHIND = ("field", "support", "rows", "wheels", "guides", "stands")
-"""Layers of pieces on which paths and links stand."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,7 +249,7 @@ def laid_out(
         origin = stage.origin if moves[hold] is None else 0
         strokes = tuple(_stroke(stage, shape, origin) for shape in piece.shapes)
         part = MovingGroup(strokes, moves[hold])
-        (behind if piece.layer in BEHIND else before).append(part)
+        (behind if piece.lies.behind else before).append(part)
     behind.append(MovingGroup((*_paths(stage, names), _ruler(stage))))
     return Moving(stage, tuple(behind), captions(stage, names), (*before, *_force(stage)))
 

@@ -20,7 +20,7 @@ from equipoise.mechanism.outputs.declared import instant_center, pairs, pinned
 from equipoise.results.charts import Axis, Chart, Curve, Mark, Panel, four_digits
 from equipoise.signals import Array
 from equipoise.symbols.looks import in_turn
-from equipoise.symbols.pieces import GROUND, pieces, placed
+from equipoise.symbols.pieces import pieces, placed
 from equipoise.symbols.scene import Scene, called, clear_angle
 from equipoise.symbols.shapes import Shape, line
 
@@ -138,8 +138,8 @@ def panel_content(scene: Scene, k: int, without: str = "") -> dict[str, Any]:
     without : a layer that is left out.
     """
     every = [piece for piece in pieces(scene) if piece.layer != without]
-    ground = [piece for piece in every if piece.layer in GROUND]
-    signs = [piece for piece in every if piece.layer not in GROUND]
+    ground = [piece for piece in every if piece.lies.ground]
+    signs = [piece for piece in every if not piece.lies.ground]
     return {"ground": tuple(placed(scene, ground, k)), "signs": tuple(placed(scene, signs, k))}
 
 

@@ -147,7 +147,7 @@ LOOKS = {
 }
 """Role -> look."""
 
-LAYERS = {
+LAYERS_OF_MARKS = {
     "strand": {"springs": "strand"},
     "spiral": {"springs": "spiral"},
     "damper": {"springs": "damper"},

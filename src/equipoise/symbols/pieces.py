@@ -12,7 +12,7 @@ from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.support import Mount, unit_vector
 from equipoise.signals import Array
 from equipoise.symbols.carrier import MOUNT, foot, gauge, ground, strut, turning
-from equipoise.symbols.looks import LAYERS
+from equipoise.symbols.looks import LAYERS_OF_MARKS
 from equipoise.symbols.scene import WIDE, DriveSign, GuideSign, LinkOutline, Scene
 from equipoise.symbols.shapes import (
     PIN,
@@ -143,12 +143,44 @@ def _strutted(scene: Scene, name: str, unit: float) -> PieceTrack:
 # -- signs -----------------------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
+class PieceLayer:
+    """What lies in a layer of a drawing, and so what else may cover it.
+
+    ground : what is around the linkage; paths of points are drawn on it.
+    behind : what links move in front of, so that a film need not draw it with them.
+    compared : what differs between designs; a pale design beside another is drawn by it.
+    """
+
+    ground: bool = False
+    behind: bool = False
+    compared: bool = False
+
+
+LAYERS = {
+    "field": PieceLayer(ground=True, behind=True),
+    "support": PieceLayer(ground=True, behind=True),
+    "rows": PieceLayer(ground=True, behind=True),
+    "wheels": PieceLayer(behind=True, compared=True),
+    "guides": PieceLayer(behind=True),
+    "stands": PieceLayer(behind=True),
+    "links": PieceLayer(compared=True),
+    "springs": PieceLayer(compared=True),
+    "pivots": PieceLayer(compared=True),
+    "blocks": PieceLayer(compared=True),
+    "riders": PieceLayer(compared=True),
+    "joints": PieceLayer(compared=True),
+    "tray": PieceLayer(),
+    "drive": PieceLayer(),
+}
+"""From the back to the front."""
+
+
 @dataclass(frozen=True, eq=False)
 class Piece:
     """Shapes that move together, in axes of their own; those without a hold stand still.
 
-    layer : ``field``, ``support``, ``rows``, ``wheels``, ``guides``, ``stands``, ``links``,
-        ``springs``, ``pivots``, ``blocks``, ``riders``, ``joints``, ``tray`` or ``drive``.
+    layer : one of `LAYERS`.
     link : whose plate or bar it is, if any.
     part : ``slider``, or the list of a coupling, and the name of what it shows.
     still : whether it stands on the ground, and not on the support.
@@ -162,6 +194,11 @@ class Piece:
     still: bool = False
     part: tuple[str, str] | None = None
     table: str = ""
+
+    @property
+    def lies(self) -> PieceLayer:
+        """Its layer."""
+        return LAYERS[self.layer]
 
     def track(self, scene: Scene, unit: float = 0.0) -> PieceTrack | None:
         """How it moves; None where it stands still.  unit : of signs, m; the scene's if 0."""
@@ -275,7 +312,9 @@ def _pieces(scene: Scene, layer: str) -> Iterator[Piece]:
     """What moves with bodies and lies in a layer, of marks that lie in one or two."""
     bodies = {body.name: body for body in scene.bodies}
     for mark in scene.marks:
-        if not (role := LAYERS.get(mark.shape.role, {"wheels": mark.shape.role}).get(layer)):
+        if not (
+            role := LAYERS_OF_MARKS.get(mark.shape.role, {"wheels": mark.shape.role}).get(layer)
+        ):
             continue
         if mark.to:
             usual = scene.usual_length(mark.point, mark.to)
@@ -444,9 +483,6 @@ def _cylinder(scene: Scene) -> Iterator[Piece]:
 
 
 # -- at one crank angle ----------------------------------------------------------------------------
-
-GROUND = ("field", "support", "rows")
-"""Layers of pieces that paths are drawn on."""
 
 
 def placed(scene: Scene, every: Iterable[Piece], k: int) -> list[Shape]:

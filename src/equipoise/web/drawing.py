@@ -41,11 +41,11 @@ def stage_of(
 ) -> JsonObject:
     """Names and the drawing of a scene.
 
-    signs : from the back to the front, each with its ``layer``, the ``link`` that it is, the
-        ``part`` (``slider`` or ``gears``, and its name) that it shows, what it moves with
-        (`symbols.pieces.Hold`, with the ``length`` of which it is stretched), and its shapes:
-        role, whether it is closed, radius (m), and that in pixels, then x and y (m) and offsets
-        from there (pixels) of each corner.
+    signs : from the back to the front, each with what its layer is (``ground``, ``compared``), the
+        ``link`` that it is, the ``part`` (``slider`` or ``gears``, and its name) that it shows,
+        what it moves with (`symbols.pieces.Hold`, with the ``length`` of which it is stretched),
+        and its shapes: role, whether it is closed, radius (m), and that in pixels, then x and y (m)
+        and offsets from there (pixels) of each corner.
     looks : role -> style.
     circles : see `circles_of`.
     """
@@ -78,7 +78,8 @@ def _sign(scene: Scene, piece: Piece) -> JsonObject:
     if hold is not None and "mount" in hold:
         hold |= _strut(scene, hold["mount"])
     return {
-        "layer": piece.layer,
+        "ground": piece.lies.ground,
+        "compared": piece.lies.compared,
         "link": piece.link,
         "hold": hold,
         "part": piece.part,

@@ -90,7 +90,8 @@ class HoldValues(TypedDict):
 class SignValues(TypedDict):
     """A part of the drawing, in its own axes; without a hold it does not move."""
 
-    layer: str
+    ground: Annotated[bool, "Whether it is around the linkage, and paths are drawn on it."]
+    compared: Annotated[bool, "Whether a pale design beside another is drawn by it."]
     link: Annotated[str, "The link that it draws, if any."]
     hold: HoldValues | None
     part: Annotated[

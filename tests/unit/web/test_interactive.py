@@ -307,7 +307,7 @@ def outlines(signs: Any) -> dict[str, list[Any]]:
                     np.round(np.reshape(corners, (-1, 4)), 6) + 0.0
                 )  # as -0.0 sorts by rounding
                 rows = sorted(map(tuple, places.tolist()))
-                key = f"{sign['layer']} {sign['link']} {role}"
+                key = f"{sign['ground']} {sign['compared']} {sign['link']} {role}"
                 shapes.setdefault(key, []).append(
                     [radius, grown, *(x for row in rows for x in row)]
                 )
