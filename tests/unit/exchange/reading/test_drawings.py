@@ -297,7 +297,7 @@ def test_a_hatching_marks_the_frame(tmp_path: Path) -> None:
             {},
             {"place": "line", "given": "1e400", "count": 1},
         ),
-        (['<path d="M 0 0 L 1e99 0"/>'], {}, {"by": "_Reader._place"}),
+        (['<path d="M 0 0 L 1e99 0"/>'], {}, {"by": "within_reach"}),
         (["<g>" * 120 + "</g>" * 120], {}, {"deepest": 100}),
     ],
 )
