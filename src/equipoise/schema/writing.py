@@ -201,14 +201,18 @@ def _planes(kind: keys.Planes, value: Any, place: KeyPath, writer: Writer) -> An
     return named[0] if len(named) == 1 else dict(zip(keys.PLANES, named, strict=False))
 
 
+def _as_it_is(kind: keys.Kind, value: Any, place: KeyPath, writer: Writer) -> Any:
+    return value
+
+
 WRITERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Writer], Any]] = {
     keys.ParameterValue: lambda kind, value, place, writer: (
         value if isinstance(value, str) else tidy(value)
     ),
-    keys.Anything: lambda kind, value, place, writer: value,
+    keys.Anything: _as_it_is,
     keys.DirectionKind: _direction,
     keys.File: lambda kind, value, place, writer: writer.names[place.abbreviated],
-    keys.Flag: lambda kind, value, place, writer: value,
+    keys.Flag: _as_it_is,
     keys.Listing: _listing,
     keys.Named: _named,
     keys.Number: _number,
@@ -220,8 +224,8 @@ WRITERS: dict[type[keys.Kind], Callable[[Any, Any, KeyPath, Writer], Any]] = {
     keys.Tables: lambda kind, value, place, writer: [
         writer.plain(kind.item, item, place / n) for n, item in enumerate(value)
     ],
-    keys.TextKind: lambda kind, value, place, writer: value,
-    keys.DependentQuantity: lambda kind, value, place, writer: value,
+    keys.TextKind: _as_it_is,
+    keys.DependentQuantity: _as_it_is,
     keys.Whole: _number,
     keys.Wording: lambda kind, value, place, writer: (
         dict(value.texts) if isinstance(value, Worded) else value

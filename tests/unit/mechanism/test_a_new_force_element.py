@@ -13,7 +13,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.exchange.formats import Job
+from equipoise.exchange.formats import FORMATS, Job
 from equipoise.exchange.tree import Tree
 from equipoise.i18n import Note
 from equipoise.keys import TextKind, declared, key
@@ -175,7 +175,9 @@ def test_formats_write_it_as_it_says_or_leave_it_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     left_out_by_formats(MACHINE, "magnets", tmp_path)
+    assert not FORMATS["mjcf"].has_kind(Magnet)
     monkeypatch.setattr(Magnet, "exports", {"mjcf": f"{__name__}:mjcf_site"})
+    assert FORMATS["mjcf"].has_kind(Magnet)
     assert "magnets" not in eq.export(MACHINE, tmp_path / "mine.xml")
     assert 'name="magnet at S"' in (tmp_path / "mine.xml").read_text("utf-8")
 

@@ -31,6 +31,17 @@ MOST = 20
 """Links that are tried as the crank."""
 
 
+class NoteTaker:
+    """What is read, with notes on what was left out or assumed."""
+
+    notes: list[str]
+
+    def note(self, sentence: str) -> None:
+        """Add a note, unless it is there already."""
+        if sentence not in self.notes:
+            self.notes.append(sentence)
+
+
 @dataclass(frozen=True)
 class Read:
     """What was read.

@@ -33,7 +33,8 @@ from equipoise.quantities import clean_place
 from equipoise.signals import Array
 
 SAME = 1e-9
-"""Distance over the size of the machine below which two places are one."""
+"""Distance over the size of the machine below which two places are one: more than the rounding
+that a chain of bodies leaves."""
 
 
 @dataclass(eq=False)

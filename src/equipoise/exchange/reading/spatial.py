@@ -12,6 +12,7 @@ import numpy as np
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, at_place
+from equipoise.exchange.reading.imported import NoteTaker
 from equipoise.exchange.reading.markup import called, number, numbers
 from equipoise.i18n import Note
 from equipoise.signals import Array
@@ -22,6 +23,11 @@ DOWN = (0.0, 0.0, -9.80665)
 
 MOST = 200
 """Bodies; no linkage has so many."""
+
+
+ONE_SHAFT = 1e-9
+"""By which the cosine between axes of one shaft may differ from 1, and they may lie apart over
+their distance from the origin: more than the rounding of a chain of bodies leaves."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +128,7 @@ class Pull:
 
 
 @dataclass(eq=False)
-class Space:
+class Space(NoteTaker):
     """A system of bodies, where it is drawn.
 
     rigid : pairs of bodies that are one.  sums : of angles of hinges by name, each with a factor,
@@ -142,11 +148,6 @@ class Space:
     speed: float | None = None
     notes: list[str] = field(default_factory=list)
     loose: list[str] = field(default_factory=list)
-
-    def note(self, sentence: str) -> None:
-        """Add a note, unless it is there already."""
-        if sentence not in self.notes:
-            self.notes.append(sentence)
 
     def add(self, solid: Solid) -> None:
         """Refuses a name that is there already, and more bodies than a machine has."""
@@ -198,8 +199,8 @@ class Space:
             entry, other = (self.joints[key] for key in sorted(factors, key=order.index))
             apart = np.linalg.norm(np.cross(other.place - entry.place, entry.axis))
             reach = np.linalg.norm(entry.place) + np.linalg.norm(other.place)
-            same = entry.parent == other.parent and float(entry.axis @ other.axis) > 1 - 1e-9
-            if same and apart <= 1e-9 * (1 + reach):
+            same = entry.parent == other.parent and float(entry.axis @ other.axis) > 1 - ONE_SHAFT
+            if same and apart <= ONE_SHAFT * (1 + reach):
                 self.rigid.append((entry.child, other.child))
                 self._drop(other.name, {other.name: entry.name})
         self.sums = [item for item in self.sums if item[1]]

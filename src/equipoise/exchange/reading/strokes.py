@@ -11,7 +11,7 @@ from string import ascii_uppercase
 
 from equipoise.dataclass import dataclass
 from equipoise.errors import ModelError, at_place, unknown
-from equipoise.exchange.reading.imported import Read, SlotLine, free, outline_of
+from equipoise.exchange.reading.imported import NoteTaker, Read, SlotLine, free, outline_of
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -88,7 +88,7 @@ class Ring:
 
 
 @dataclass
-class Drawing:
+class Drawing(NoteTaker):
     """What is drawn: lines, circles and points, hatched areas, and words where they are."""
 
     title: str
@@ -97,11 +97,6 @@ class Drawing:
     areas: list[DrawnLine] = field(default_factory=list)
     words: list[tuple[complex, str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-
-    def note(self, sentence: str) -> None:
-        """Add a note, unless it is there already."""
-        if sentence not in self.notes:
-            self.notes.append(sentence)
 
 
 @dataclass(frozen=True)
