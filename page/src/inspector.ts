@@ -235,9 +235,6 @@ export class Row {
   }
 }
 
-/** x or y of a place. */
-const AXIS = /^(.*)\.([xy])$/;
-
 /** The group of a body's counterweight stands below the body's own. */
 const WEIGHT = "counterweight on ";
 
@@ -330,11 +327,10 @@ export class Inspector {
   /** x and y beside each other. */
   private pair(x: Field, y: Field): HTMLElement {
     const [first, second] = [this.row(x, false), this.row(y, false)];
-    const name = x.label.replace(/, x$/, "");
     return h(
       "div",
       { class: "pair" },
-      h("span", { class: "name", "aria-hidden": "true" }, breakable(name)),
+      h("span", { class: "name", "aria-hidden": "true" }, breakable(x.pair ?? x.label)),
       first.root,
       second.root,
     );
@@ -359,6 +355,5 @@ function ordered(fields: Field[]): Map<string, Field[]> {
 }
 
 function partner(x: Field | undefined, y: Field | undefined): Field | null {
-  const [first, second] = [x && AXIS.exec(x.path), y && AXIS.exec(y.path)];
-  return first && second && y && first[1] === second[1] && first[2] === "x" && second[2] === "y" ? y : null;
+  return x?.pair !== undefined && y?.pair === x.pair && x.path.endsWith(".x") ? y : null;
 }

@@ -236,6 +236,8 @@ export interface Field extends Unit {
   min?: number | null;
   max?: number | null;
   step?: number | null;
+  /** Label of the place whose x or y it is, both shown together. */
+  pair?: string;
   /** The point that a length or direction moves. */
   moves?: string;
   /** Ends of a length between points. */

@@ -128,7 +128,10 @@ export class Palette {
       .get(options?.word ?? "")
       ?.querySelectorAll<HTMLInputElement | HTMLSelectElement>("[name]");
     return Object.fromEntries(
-      [...(inputs ?? [])].map(({ name, value, type }) => [name, type === "text" ? Math.round(Number(value)) : value]),
+      [...(inputs ?? [])].map(({ name, value, type }) => [
+        name,
+        type === "text" && !Number.isNaN(Number(value)) ? Number(value) : value,
+      ]),
     );
   }
 

@@ -107,6 +107,8 @@ export interface MachineData {
   decimal: string;
   title: string;
   description: string;
+  /** What is left out, and what is assumed. */
+  notes: string[];
   rules: NumberRules;
   length: Unit;
   turns: number;

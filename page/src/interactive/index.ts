@@ -117,7 +117,13 @@ class Page implements Attempts {
     );
     sheet.append(this.stage.lines, this.stage.svg, this.stage.numbers, this.hint, this.status, fit);
     root.replaceChildren(
-      h("header", {}, h("h1", {}, data.title), h("p", { class: "quiet" }, data.description)),
+      h(
+        "header",
+        {},
+        h("h1", {}, data.title),
+        h("p", { class: "quiet" }, data.description),
+        ...data.notes.map((note) => h("p", { class: "note" }, note)),
+      ),
       this.motion(sheet),
       this.beside(),
       h("section", { class: "charts", "aria-label": say("Charts") }, this.plots.root),

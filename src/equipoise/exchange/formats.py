@@ -231,6 +231,7 @@ Angles = int | Sequence[float] | None
 LEFT_OUT = {
     "file": to_say("note: the file leaves out {part}"),
     "drawing": to_say("note: the drawing leaves out {part}"),
+    "page": to_say("This page leaves out {part}."),
 }
 """What is said of each thing that is left out, by what is written."""
 
@@ -256,7 +257,7 @@ class Job:
     sizes: str = ""
     left_out: list[Note] = field(default_factory=list)
 
-    def notes(self, of: Literal["file", "drawing"]) -> Iterator[str]:
+    def notes(self, of: Literal["file", "drawing", "page"]) -> Iterator[str]:
         """Lines about what was written: what it leaves out, and how sizes were rounded."""
         yield from (say(LEFT_OUT[of], part=localized(part)) for part in self.left_out)
         if self.sizes:

@@ -309,7 +309,7 @@ def _figure(balanced: Balanced, name: str, before: float, after: float) -> JsonO
     """A figure before and after; `main` where it is of a whole signal on the frame, or the mass."""
     main = True
     if name == "mass":
-        label, unit = "mass of the links", display("mass", [before, after])
+        label, unit = say("mass of the links"), display("mass", [before, after])
     else:
         output, _, measure = name.rpartition(".")
         item, _ = declared(output) or (None, "")

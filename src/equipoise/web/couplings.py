@@ -129,9 +129,9 @@ def _carrier(sketch: Sketch, driver: str, driven: str, given: str | None) -> str
 
 def _asked_wheels(make: Callable[..., Sketch], sketch: Sketch, message: Message) -> Sketch:
     """What two bodies have that turn on a carrier, as a page asks for it."""
-    teeth = message.whole("teeth"), message.whole("driven_teeth")
+    first, second = (message.whole(key, label=Note(text)) for key, text in TEETH.labels.items())
     ends = message.text("driver"), message.text("driven")
-    return make(sketch, *ends, teeth, message.optional("carrier"))
+    return make(sketch, *ends, (first, second), message.optional("carrier"))
 
 
 def _asked_rack(sketch: Sketch, message: Message) -> Sketch:

@@ -201,6 +201,7 @@ class Field:
     measure : the length or direction that it is, if it is one.
     place : of the number in the file, where an expression may stand for it.
     expression : that which does, or by which the page was given it.
+    pair : of a coordinate, the label of the point or place whose x and y are shown together.
     """
 
     path: str
@@ -212,6 +213,7 @@ class Field:
     measure: Measure | None = None
     place: KeyPath | None = None
     expression: str | None = None
+    pair: str = ""
 
     def keeping(self, points: tuple[str, ...]) -> Field:
         """Copy of the field whose moving point keeps its distance from others."""
@@ -307,6 +309,7 @@ class Scale:
             "max": high,
             "step": (high - low) / FINE,
             "kind": "number",
+            **({"pair": field.pair} if field.pair else {}),
             **({} if field.measure is None else field.measure.ends_message),
         }
 
@@ -437,7 +440,8 @@ def _put(path: KeyPath, draft: DraftT, value: float) -> DraftT:
 
 def _point(path: KeyPath, group: str, label: str, point: Vector) -> Iterator[Field]:
     for axis, value in zip("xy", point, strict=True):
-        yield _field(path / axis, group, listed(label, axis), "length", value)
+        field = _field(path / axis, group, listed(label, axis), "length", value)
+        yield replace(field, pair=label)
 
 
 def _numbers(

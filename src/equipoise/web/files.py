@@ -250,14 +250,16 @@ def _rendered(picture: Any, name: str, message: Message) -> NameAndBytes:
 
 
 def _interactive(computed: Computed, message: Message, stem: str) -> NameAndBytes:
-    from equipoise.exchange.formats import Job
-    from equipoise.web.interactive import export_bytes
+    from equipoise.exchange.export import export_content
+    from equipoise.exchange.formats import FORMATS
 
     language = message.text("language", "en")
     if language not in LANGUAGES:
         raise UsageError(unknown(language, LANGUAGES, "language of pages"))
     with speaking(language):
-        return "-interactive.html", export_bytes(Job(computed.analysis.machine)).encode()
+        _, page = export_content(computed.analysis.machine, FORMATS["html"])
+    assert isinstance(page, str)
+    return "-interactive.html", page.encode()
 
 
 FILES: dict[str, Callable[[Computed, Message, str], NameAndBytes]] = {

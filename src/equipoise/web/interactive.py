@@ -68,6 +68,7 @@ def export_bytes(job: Job) -> str:
     job.leave_out_motor()
     machine = replace(job.machine, support=None, balance=None)
     page = Interactive(machine, job.crank_angle)
+    notes = [*job.notes("page"), *map(localized, page.analysis.notes)]
     program = asset("interactive.js")
     own = wording_of(words_of(machine))["words"]
     words = dict(_said_by(program, spoken()))
@@ -76,7 +77,7 @@ def export_bytes(job: Job) -> str:
     body = (
         '<main id="equipoise-interactive"></main>',
         f"<noscript>{escape(say('This page needs JavaScript.'))}</noscript>",
-        data("equipoise-machine", {**page.content, **speech}),
+        data("equipoise-machine", {**page.content, **speech, "notes": notes}),
         script(page.program, 'id="equipoise-states"'),
         script(program, 'type="module" id="equipoise-page"'),
     )

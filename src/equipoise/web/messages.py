@@ -144,11 +144,11 @@ class Message:
         """A text of the message, if it has one there."""
         return None if self.values.get(key) is None else self.text(key)
 
-    def whole(self, key: str, usual: int | None = None) -> int:
-        """A whole number of the message."""
+    def whole(self, key: str, usual: int | None = None, label: Note | None = None) -> int:
+        """A whole number of the message.  label : what a refusal calls it."""
         value = self.values.get(key, usual)
         if isinstance(value, bool) or not isinstance(value, int) or abs(value) > MOST_WHOLE:
-            _wrong(f"{self.kind}: {key}", value, Note("a whole number"))
+            _wrong(label or f"{self.kind}: {key}", value, Note("a whole number"))
         return value
 
     def spot(self, key: str) -> Spot:
@@ -330,7 +330,7 @@ def _number(what: str, value: object) -> float:
     return float(value)
 
 
-def _wrong(what: str, value: object, wanted: Note) -> NoReturn:
+def _wrong(what: str | Note, value: object, wanted: Note) -> NoReturn:
     raise UsageError(
         at_place(what, Note("got {given}; give {wanted}", given=described(value), wanted=wanted))
     )

@@ -55,6 +55,7 @@ class FieldValues(UnitValues):
     min: NotRequired[float | None]
     max: NotRequired[float | None]
     step: NotRequired[float | None]
+    pair: NotRequired[Annotated[str, "Label of the place whose x or y it is, both shown together."]]
     moves: NotRequired[Annotated[str, "The point that a length or direction moves."]]
     between: NotRequired[Annotated[tuple[str, str], "Ends of a length between points."]]
 

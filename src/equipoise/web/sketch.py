@@ -404,6 +404,15 @@ def _loose(sketch: Sketch, joints: Structure) -> str:
         constrained += sum(link in (slider.link, slider.on) for slider in sketch.sliders)
         if constrained < 2 and free:
             points = _listed(free, OR)
+            if any(point in sketch.frame for point in sketch.links[link].points):
+                kinds = [kind.noun for kind in part_kinds(Machine).values() if kind.page_tool]
+                return say(
+                    "{link} turns freely: pin {points} to another link, or add a coupling "
+                    "({kinds})",
+                    link=link,
+                    points=points,
+                    kinds=_listed([say(noun) for noun in kinds], OR),
+                )
             return say(
                 "{link} is not connected: pin {points} to another link or the frame",
                 link=link,

@@ -133,9 +133,9 @@ def test_a_cam_is_deleted_and_goes_with_its_follower() -> None:
     parts = [sign["part"] for sign in page.seen.content["scene"]["signs"]]
     assert ("cams", "crank to rocker") in parts
     reply = page.do("delete", what="cams", name="crank to rocker")
-    assert (
-        reply
-        == "mobility is 2; expected 1; rocker is not connected: pin D to another link or the frame"
+    assert reply == (
+        "mobility is 2; expected 1; rocker turns freely: pin D to another link, or add a coupling "
+        "(pair of gears, belt, rack or cam)"
     )
     ask(page.session, "undo")
     page.do("separate", point="C")  # unfinished, the cam is there and is drawn no more

@@ -618,6 +618,19 @@ def test_couplings_have_teeth() -> None:
             assert text in maker.refused(tool, **asked)
 
 
+@pytest.mark.parametrize(("teeth", "label"), [((12.5, 20), "driver"), ((20, "x"), "driven link")])
+def test_a_part_of_a_tooth_is_refused_by_the_field_in_which_it_is_typed(
+    teeth: tuple[Any, Any], label: str
+) -> None:
+    maker = Maker(opened("knife-drive")[0])
+    maker.do("delete", what="belts", name="shaft to crank")
+    typed = {"driver": "shaft", "driven": "crank", "teeth": teeth[0], "driven_teeth": teeth[1]}
+    for tool in ("belt", "gears"):
+        text = maker.refused(tool, **typed)
+        assert text.startswith(f"Teeth of the {label}: got ")
+        assert text.endswith("give a whole number")
+
+
 def test_a_step_that_the_program_cannot_draw_is_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
     """The page reports the mistake and goes on with the last machine that it showed."""
     maker = Maker(opened("knife-drive")[0])
@@ -662,7 +675,7 @@ def test_forces_of_what_is_drawn_are_there_at_once_and_a_note_says_what_is_assum
     (note,) = [note for note in content["notes"] if "assumed" in note]
     assert note == (
         "the masses of crank, coupler, rocker are assumed, and with them all forces; give "
-        "masses or bodies of these links, or their sections"
+        "masses, bodies or sections instead"
     )
     assert note in [str(item) for item in eq.analyze(page.machine).notes]
 

@@ -537,8 +537,8 @@ def assumed_masses(machine: Machine) -> Note | None:
     if not assumed:
         return None
     return Note(
-        "the masses of {links} are assumed, and with them all forces; give masses or bodies of "
-        "these links, or their sections",
+        "the masses of {links} are assumed, and with them all forces; give masses, bodies or "
+        "sections instead",
         links=", ".join(assumed),
     )
 
