@@ -422,7 +422,8 @@ class _Adviser:
             pairs = zip(before, Problem.values_of(machine, aims), strict=True)
             return 1 - plan.combined([new / old for old, new in pairs if old]) / len(aims)
 
-        mounts = resonant_mounts_for(self.machine, sorted(speeds, key=abs), gain)
+        gauges = {aim.output.removeprefix(GAUGES) for aim in aims}
+        mounts = resonant_mounts_for(self.machine, sorted(speeds, key=abs), gauges, gain)
         leaves_it = self.is_quiet and not self.requested
         return None if mounts is None or (leaves_it and not mounts.is_beside) else mounts
 

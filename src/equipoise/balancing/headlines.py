@@ -282,9 +282,16 @@ def _watched_gauges(assessed: AssessedMachine) -> Iterator[HeadlineLimit]:
     names = dict.fromkeys(judged)
     if judged and machine.support is not None and not unbalances(machine):
         names |= dict.fromkeys(f"{GAUGES}{name}" for name in machine.support.readings)
+    ratios = {item.output: item.ratio for item in assessed.headline}
     for name in names:
+        ratio = ratios.get(name, TRIFLE)
+        if not ratio:
+            continue  # what it is read against after a change holds it down
+        # A trifle may grow to one, as in `allowed_ratios`: a reading that is rounding would else
+        # forbid every change.
+        growth = max(HEADLINE_GROWTH, TRIFLE / ratio)
         for objective in (Objective(name, "ripple"), Objective(name, "peak_to_peak")):
-            most = HEADLINE_GROWTH * Problem.value_of(machine, objective)
+            most = growth * Problem.value_of(machine, objective)
             yield HeadlineLimit((objective,), most)
 
 

@@ -6,7 +6,7 @@ alone, and no counterweight helps as much as another stiffness does, or another 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import sqrt
 from typing import ClassVar
@@ -20,6 +20,7 @@ from equipoise.balancing.policy import (
     LEAST_GAIN,
     MASSES_BESIDE_MOUNTS,
     SHARE_OF_ENERGY,
+    SHARE_OF_READING,
     STIFFNESS_FACTORS,
 )
 from equipoise.dataclass import dataclass
@@ -29,6 +30,8 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Mount
 from equipoise.quantities import PER_RPM, brief, number, percent
 from equipoise.results.declaring import Declarations, ResultOutput
+from equipoise.vibration.body import gauges_of
+from equipoise.vibration.forced import respond
 from equipoise.vibration.linear import LEAST_DAMPING, Linear, Resonance, around, resonances
 
 SAME_SPEED = 0.05
@@ -78,13 +81,17 @@ def outweighs(gain: float, mounts: ResonantMounts) -> bool:
 
 
 def resonant_mounts_for(
-    machine: Machine, speeds: Sequence[float], gain: Callable[[Machine], float]
+    machine: Machine,
+    speeds: Sequence[float],
+    gauges: Collection[str],
+    gain: Callable[[Machine], float],
 ) -> ResonantMounts | None:
     """The resonance beside a speed of a machine that moves it most there; None where none is.
 
     Parameters
     ----------
     speeds : at which it runs, rad/s.
+    gauges : names of those that are to read less.
     gain : share of what the gauges read that is gone with another machine.
 
     Raises
@@ -92,7 +99,7 @@ def resonant_mounts_for(
     ModelError, ResponseError : nothing holds the support, or there is no steady state.
     """
     linear = Linear.of(machine)
-    pairs = _loud_beside(linear, speeds)
+    pairs = [pair for pair in _loud_beside(linear, speeds) if _is_read(linear, gauges, *pair)]
     if not pairs:
         return None
     resonance, speed = max(pairs, key=lambda pair: _motion_beside(linear, speeds, *pair))
@@ -159,6 +166,26 @@ def _loud_beside(
         if edges is not None and (inside or edges[0] < nearest / item.speed < edges[1]):
             pairs.append((item, nearest))
     return pairs
+
+
+def _is_read(linear: Linear, gauges: Collection[str], resonance: Resonance, speed: float) -> bool:
+    """Whether the mode of a resonance, moved by its order, has a part in what any of some gauges
+    reads at a speed.
+    """
+    body, mode, motion = linear.body, linear.modes[resonance.mode - 1], linear.excitation.motion
+    place = np.array([round(resonance.order * motion.turns)])
+    wrench = linear.excitation.at_orders(np.array([speed]), place)[body.free][:, 0]
+    rate, frequency = mode.natural_frequency, resonance.order * abs(speed)
+    stiffness = abs(rate**2 - frequency**2 + 2j * mode.damping_ratio * rate * frequency)
+    inertia = abs(mode.shape @ linear.mass @ mode.shape)
+    moved = abs(mode.shape @ wrench) / max(stiffness * inertia, np.finfo(float).tiny)
+    readings = respond(body.machine, speed).gauges
+    for name, gauge in gauges_of(body).items():
+        if name in gauges:
+            part = frequency * abs(body.row(gauge)[body.free] @ mode.shape) * moved / sqrt(2)
+            if part >= SHARE_OF_READING * readings[name].velocity.figures.rms:
+                return True
+    return False
 
 
 def _is_near(resonance: Resonance, other: Resonance) -> bool:

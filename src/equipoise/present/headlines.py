@@ -123,11 +123,27 @@ ROUND = 0.6
 """Share of the mean square along one direction up to which a force acts in all alike."""
 
 
+TURNING = 0.5
+"""Of what a force encloses that turns evenly with the crank and has the same mean square, from
+which it is said to turn: halfway between that and a force that only goes to and fro."""
+
+
+def circling(force: Array) -> float:
+    """Area that a force (N,), complex, encloses over a cycle, over that of one of the same mean
+    square which turns once a cycle: 1 for that one, 0 for one that comes back the way it went.
+    """
+    area = np.sum((np.conj(force) * np.roll(force, -1)).imag) / 2
+    square = float(np.mean(np.abs(force) ** 2))
+    return float(abs(area)) / (pi * square) if square else 0.0
+
+
 def acting(force: Array) -> str:
     """The way in which a force (N,), complex, acts, as a title has it."""
     way, share = direction(force)
     if share <= ROUND:
-        return say("The force acts in all directions alike, turning with the crank")
+        if circling(force) >= TURNING:
+            return say("The force acts in all directions alike, turning with the crank")
+        return say("The force acts in no direction more than in others")
     if abs(sin(way)) > cos(pi / 6):
         return say("The force acts mostly up and down")
     if abs(cos(way)) > cos(pi / 6):

@@ -106,9 +106,9 @@ def _trouble(run: Run) -> str:
     if run.lacking_torque is not None:
         needed, given = run.lacking_torque
         at = degrees(run.end.crank_angle) % 360
-        return (
-            sentence_start(localized(stall_note(at, needed, given, at_rest=not run.turned))) + "."
-        )
+        starting = not run.crank_speed[0] and abs(run.turned) < 1
+        note = stall_note(at, needed, given, at_rest=not run.turned, starting=starting)
+        return sentence_start(localized(note)) + "."
     return "" if run.driven_back is None else _driven_back(run, run.driven_back)
 
 

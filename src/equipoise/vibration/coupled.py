@@ -237,6 +237,11 @@ STALLS_AT_LIMIT = to_say(
     "the motor stalls at crank angle {angle:.1f} deg: the crank has {given} N m, which just hold "
     "it there; give a stronger motor, a higher ratio or a larger flywheel"
 )
+STALLS_STARTING = to_say(
+    "the motor stalls while it starts, at crank angle {angle:.1f} deg: the crank needs {needed} "
+    "N m to go on, and has {given} N m; give a stronger motor or a higher ratio, or start it "
+    "without the load"
+)
 STALLS_AT_REST = to_say(
     "the motor stalls at rest, at crank angle {angle:.1f} deg: the crank needs {needed} N m to "
     "start, and has {given} N m; give a stronger motor or a higher ratio"
@@ -359,14 +364,20 @@ def _stalled(system: Coupled, table: ReducedInertia, states: Array, angle: float
     return stall_note(float(np.degrees(angle) % 360), needed, given)
 
 
-def stall_note(angle: float, needed: float, given: float, at_rest: bool = False) -> Note:
+def stall_note(
+    angle: float, needed: float, given: float, at_rest: bool = False, starting: bool = False
+) -> Note:
     """Say that a motor stalls at a crank angle, deg, and the torques on the crank there, N m.
 
-    at_rest : whether the crank has not moved before, so that no flywheel could take it further.
+    at_rest : whether the crank has not moved before.
+    starting : whether it began at rest and has made no turn yet.  What a flywheel gives there, the
+        motor has given it before, so that a larger one takes the crank no further.
     """
     lacks, holds = (
         (STALLS_AT_REST, STALLS_AT_REST_AT_LIMIT) if at_rest else (STALLS, STALLS_AT_LIMIT)
     )
+    if starting and not at_rest:
+        lacks = STALLS_STARTING
     for digits in STALL_DIGITS:
         texts = _to_one_place(needed, given, digits)
         if needed > given and texts[0] != texts[1]:

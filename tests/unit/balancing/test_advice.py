@@ -848,3 +848,86 @@ def test_the_rule_of_what_is_offered_says_how_far_small_figures_may_grow() -> No
         if isinstance(block, TextBlock) and block.text.startswith("A change is offered if")
     )
     assert f"stay below {100 * SMALL_FIGURE:.0f} % of what counts as large for them" in rule
+
+
+TWIN = """
+schema = 1
+title = "Two cylinders at 180 deg"
+[drive]
+link = "crank"
+speed = "960 rpm"
+[frame.points]
+A = ["0 mm", "0 mm"]
+[links.crank]
+points = { A = ["0 mm", "0 mm"], B = ["30 mm", "0 mm"], F = ["-30 mm", "0 mm"] }
+planes = { B = "60 mm", F = "-60 mm" }
+mass = "5.5 kg"
+center_of_mass = ["0 mm", "0 mm"]
+inertia = "0.012 kg m^2"
+{cylinders}
+[assembly]
+C = "forward"
+G = "forward"
+[support]
+mass = "78 kg"
+center_of_mass = ["0 mm", "-60 mm", "0 mm"]
+inertia = ["3.1 kg m^2", "3.6 kg m^2", "2.4 kg m^2"]
+freedoms = ["surge", "heave", "sway", "roll", "yaw", "pitch"]
+{mounts}
+"""
+CYLINDER = """
+[links.rod-{pin}]
+points = {{ {pin} = ["0 mm", "0 mm"], {end} = ["130 mm", "0 mm"] }}
+plane = "{plane} mm"
+mass = "0.55 kg"
+center_of_mass = ["40 mm", "0 mm"]
+inertia = "0.0016 kg m^2"
+[links.piston-{end}]
+points = {{ {end} = ["0 mm", "0 mm"] }}
+plane = "{plane} mm"
+mass = "0.48 kg"
+center_of_mass = ["0 mm", "0 mm"]
+inertia = "0.0004 kg m^2"
+[[sliders]]
+link = "piston-{end}"
+point = "{end}"
+on = "frame"
+through = "A"
+direction = "90 deg"
+"""
+MOUNT = """
+[support.mounts.{name}]
+point = ["{x} mm", "-220 mm", "{z} mm"]
+direction = {direction}
+stiffness = "{stiffness} kN/m"
+damping = "120 N s/m"
+"""
+
+
+def twin() -> eq.Machine:
+    """Two cylinders with cranks at 180 deg on soft isolators: a couple shakes it, and no force of
+    the first order.
+    """
+    cylinders = [CYLINDER.format(pin=pin, end=end, plane=plane)
+                 for pin, end, plane in (("B", "C", 60), ("F", "G", -60))]  # fmt: skip
+    mounts = [
+        MOUNT.format(name=f"m{k}{axis}", x=x, z=z, direction=direction, stiffness=stiffness)
+        for k, (x, z) in enumerate(((-200, -250), (200, -250), (-200, 250), (200, 250)))
+        for axis, direction, stiffness in (
+            ("x", [1, 0, 0], 12), ("y", [0, 1, 0], 18), ("z", [0, 0, 1], 12))
+    ]  # fmt: skip
+    text = TWIN.replace("{cylinders}", "".join(cylinders)).replace("{mounts}", "".join(mounts))
+    return eq.loads(text)
+
+
+def test_readings_that_are_rounding_do_not_forbid_a_change() -> None:
+    """Surge and sway are read to 1e-21 m; half of the couple of what turns lowers roll and yaw."""
+    machine = twin()
+    remedy = advise(machine)
+    before, after = eq.respond(machine).gauges, eq.respond(remedy.machine).gauges
+    size = {name: gauge.velocity.figures.rms for name, gauge in before.items()}
+    assert size["surge"] < 1e-9 * size["heave"]
+    assert remedy.helps
+    for name in ("roll", "yaw"):
+        assert after[name].velocity.figures.rms < size[name]
+    assert after["roll"].velocity.figures.rms < 0.5 * size["roll"]

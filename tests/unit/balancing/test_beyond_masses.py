@@ -24,6 +24,7 @@ from equipoise.balancing.policy import (
 )
 from equipoise.balancing.poor_transmission import poor_transmission_for
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.resonant_mounts import resonant_mounts_for
 from equipoise.mechanism.parts.motors import Motor
 from equipoise.results.blocks import Facts, Text
 from equipoise.results.rotors import COARSE, STEADY
@@ -629,3 +630,57 @@ def test_every_answer_is_in_the_machine_readable_output(name: str, key: str) -> 
     others = advice_for("straw-walker").to_dict()
     assert key in others and others[key] is None
     assert {*Beyond.declared} == {field.name for field in fields(Beyond)}
+
+
+SIEVE = """
+schema = 1
+title = "Sieve on hangers"
+[drive]
+link = "eccentric"
+speed = "420 rpm"
+[frame.points]
+O = ["0 mm", "0 mm"]
+A = ["500 mm", "300 mm"]
+[links.eccentric]
+points = { O = ["0 mm", "0 mm"], P = ["15 mm", "0 mm"] }
+mass = "4 kg"
+center_of_mass = ["4 mm", "0 mm"]
+inertia = "0.02 kg m^2"
+[links.rod]
+points = { P = ["0 mm", "0 mm"], C = ["600 mm", "0 mm"] }
+mass = "3 kg"
+center_of_mass = ["280 mm", "0 mm"]
+inertia = "0.12 kg m^2"
+[links.hanger]
+points = { A = ["0 mm", "0 mm"], C = ["300 mm", "0 mm"] }
+mass = "46 kg"
+center_of_mass = ["300 mm", "0 mm"]
+inertia = "1 kg m^2"
+[assembly]
+C = "right"
+[support]
+mass = "160 kg"
+center_of_mass = ["900 mm", "-100 mm"]
+inertia = "40 kg m^2"
+[support.mounts]
+left_x = { point = ["100 mm", "-400 mm"], direction = "0 deg", stiffness = "60 N/mm" }
+left_y = { point = ["100 mm", "-400 mm"], stiffness = "220 N/mm", damping = "1500 N s/m" }
+right_x = { point = ["1700 mm", "-400 mm"], direction = "0 deg", stiffness = "60 N/mm" }
+right_y = { point = ["1700 mm", "-400 mm"], stiffness = "220 N/mm", damping = "1500 N s/m" }
+"""
+"""A sieve on hangers whose frame heaves near its resonance, and surges far above its own."""
+
+
+def test_a_resonance_counts_for_the_gauges_that_read_its_mode() -> None:
+    """Of surge, heave and pitch, as they are read where a support has no gauges."""
+    machine = eq.loads(SIEVE)
+    modes = Linear.of(machine).modes
+    mode = min(modes, key=lambda item: abs(item.natural_frequency - machine.drive.speed))
+    largest = abs(mode.shape).argmax()
+    assert machine.support is not None
+    names = list(machine.support.readings)
+    assert names[largest] == "heave"
+    heave = resonant_mounts_for(machine, [machine.drive.speed], ["heave"], lambda _: 0.5)
+    assert heave is not None
+    assert heave.mounts == ("left_y", "right_y")
+    assert resonant_mounts_for(machine, [machine.drive.speed], ["surge"], lambda _: 0.5) is None

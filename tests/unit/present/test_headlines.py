@@ -32,6 +32,7 @@ from equipoise.present.headlines import (
     Shaking,
     acting,
     caused,
+    circling,
     fastest,
     heaviest,
     kinematic,
@@ -131,6 +132,16 @@ def test_what_is_alike_everywhere_has_no_place_of_its_own() -> None:
 def test_a_force_acts_in_words_of_directions(across: float, along: float, words: str) -> None:
     turned = np.linspace(0.0, 2 * np.pi, 36, endpoint=False)
     assert words in acting(across * np.cos(turned) + 1j * along * np.sin(turned))
+
+
+def test_a_force_is_said_to_turn_only_where_it_does() -> None:
+    """A circle encloses what it can; a Lissajous figure that comes back its own way, nothing."""
+    turned = np.linspace(0.0, 2 * np.pi, 360, endpoint=False)
+    circle, figure = np.exp(1j * turned), np.cos(turned) + 1j * np.sin(2 * turned)
+    assert circling(circle) == pytest.approx(1.0, rel=1e-4)
+    assert circling(figure) == pytest.approx(0.0, abs=1e-12)
+    assert "turning with the crank" in acting(circle)
+    assert acting(figure) == "The force acts in no direction more than in others"
 
 
 def test_titles_name_no_column_that_is_not_there() -> None:

@@ -53,3 +53,10 @@ def test_a_run_from_rest_says_so() -> None:
 @pytest.mark.parametrize("needed", [120.0, 120.0000001, 119.99])
 def test_a_motor_at_its_limit_says_so(needed: float) -> None:
     assert "the crank has 120 N m, which just hold it there" in str(stall_note(30, needed, 120.0))
+
+
+def test_a_flywheel_is_no_cure_before_the_first_turn_from_rest() -> None:
+    """The work of motor and load alone decides there, as a flywheel begins without any."""
+    sentence = str(stall_note(46.7, 66.92, 31.73, starting=True))
+    assert "while it starts" in sentence
+    assert "flywheel" not in sentence
