@@ -176,9 +176,11 @@ def _is_read(linear: Linear, gauges: Collection[str], resonance: Resonance, spee
     place = np.array([round(resonance.order * motion.turns)])
     wrench = linear.excitation.at_orders(np.array([speed]), place)[body.free][:, 0]
     rate, frequency = mode.natural_frequency, resonance.order * abs(speed)
-    stiffness = abs(rate**2 - frequency**2 + 2j * mode.damping_ratio * rate * frequency)
-    inertia = abs(mode.shape @ linear.mass @ mode.shape)
-    moved = abs(mode.shape @ wrench) / max(stiffness * inertia, np.finfo(float).tiny)
+    # Undamped on its resonance it would move without end: LEAST_DAMPING keeps that a number.
+    damping = max(abs(mode.damping_ratio), LEAST_DAMPING)
+    stiffness = abs(rate**2 - frequency**2 + 2j * damping * rate * frequency)
+    inertia = float(abs(mode.shape @ linear.mass @ mode.shape))
+    moved = float(abs(mode.shape @ wrench)) / (stiffness * inertia)
     readings = respond(body.machine, speed).gauges
     for name, gauge in gauges_of(body).items():
         if name in gauges:

@@ -31,6 +31,7 @@ from equipoise.mechanism.kinematics.machine_draft import (
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.bodies import MATERIALS, Body
 from equipoise.mechanism.parts.constraints import changed_points
+from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.element_kinds import PartKind, part_kinds
 from equipoise.mechanism.parts.links import MASS_FIELDS, wrong_link
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Slider, Vector
@@ -405,7 +406,7 @@ def _loose(sketch: Sketch, joints: Structure) -> str:
         if constrained < 2 and free:
             points = _listed(free, OR)
             if any(point in sketch.frame for point in sketch.links[link].points):
-                kinds = [kind.noun for kind in part_kinds(Machine).values() if kind.page_tool]
+                kinds = [kind.noun for kind in coupling_kinds(Machine).values() if kind.page_tool]
                 return say(
                     "{link} turns freely: pin {points} to another link, or add a coupling "
                     "({kinds})",
