@@ -32,6 +32,8 @@ import { language, say } from "./words";
 export interface Computation {
   kind: PageRequest["type"];
   what: string;
+  /** Whether it repeats a step of a story: without it the steps after it would go wrong. */
+  repeated: boolean;
 }
 
 export interface Events {
@@ -258,7 +260,7 @@ export class Conversation {
   private working(seq: number, what: string): void {
     const kind = this.question(seq)?.request.type;
     if (!kind) return; // nobody waits for it any more
-    this.computed.set(seq, { kind, what });
+    this.computed.set(seq, { kind, what, repeated: this.repeated(seq) });
     this.events.busy([...this.computed.values()]);
   }
 

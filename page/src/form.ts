@@ -116,6 +116,8 @@ export class Form {
   private readonly name: HTMLInputElement | null;
   private readonly problem = h("p", { class: "error", role: "alert", hidden: true });
   private readonly files: Record<string, string> = {};
+  /** What was given when it was opened. */
+  private readonly before: string;
 
   constructor(
     private readonly subject: Subject,
@@ -142,6 +144,16 @@ export class Form {
     );
     this.listen();
     this.follow();
+    this.before = this.content();
+  }
+
+  /** Whether anything was typed or chosen that is not saved. */
+  get changed(): boolean {
+    return this.content() !== this.before;
+  }
+
+  private content(): string {
+    return JSON.stringify([this.name?.value, this.entered(), this.files]);
   }
 
   focus(): void {

@@ -6,6 +6,7 @@ import { h } from "./dom";
 import { Form, type Subject } from "./form";
 import { lengths, round } from "./format";
 import type { Picked } from "./inputs";
+import { question } from "./keeping";
 import {
   type Group,
   keyPath,
@@ -145,7 +146,7 @@ export class Parts {
   private listed(group: Group): HTMLElement {
     const lines = group.entries.map((entry) => {
       const name = nameOf(group, entry);
-      const edit = () => this.edit(group, entry);
+      const edit = () => void this.leave(() => this.edit(group, entry));
       return h(
         "li",
         {},
@@ -178,7 +179,16 @@ export class Parts {
     const group = this.tables?.groups[Number(this.select.value)];
     if (!this.select.value || !group) return;
     this.select.value = "";
-    this.begin(group, {});
+    void this.leave(() => this.begin(group, {}));
+  }
+
+  /** Go on from a form, if what was typed there may be lost. */
+  private async leave(then: () => void): Promise<void> {
+    if (this.form?.changed && this.subject) {
+      const text = say("What was typed at “{heading}” is not saved.", { heading: this.subject.heading });
+      if (!(await question(this.root, text, say("Discard")))) return;
+    }
+    then();
   }
 
   private begin(group: Group | undefined, values: Values): void {

@@ -146,7 +146,7 @@ export class Toolbar {
         "working",
         computed.some((work) => work.kind === kind),
       );
-    this.cancel.hidden = !computed.length || !cancel;
+    this.cancel.hidden = !cancel || computed.every(({ repeated }) => repeated);
     this.cancel.onclick = () => cancel?.();
   }
 }

@@ -90,6 +90,23 @@ def test_wheels_become_ellipses_and_circles_again(live: Live) -> None:
     expect(rims).to_have_count(0)
 
 
+def test_what_is_typed_at_a_part_is_not_lost_when_another_is_opened(live: Live) -> None:
+    page = live.page
+    page.get_by_text("Parts of the model").click()
+    page.get_by_title("Change crank", exact=True).click()
+    part(live, "crank").get_by_label("mass", exact=True).fill("777 g")
+    page.get_by_title("Change rocker", exact=True).click()
+    asking = page.get_by_role("dialog", name="Question")
+    expect(asking).to_contain_text("What was typed at “crank” is not saved.")
+    press(asking, "Cancel")
+    expect(part(live, "crank").get_by_label("mass", exact=True)).to_have_value("777 g")
+    page.get_by_title("Change rocker", exact=True).click()
+    press(asking, "Discard")
+    expect(part(live, "rocker")).to_be_visible()
+    page.get_by_title("Change crank", exact=True).click()  # nothing was typed
+    expect(part(live, "crank")).to_be_visible()
+
+
 def test_a_spring_and_a_body_are_added_changed_and_deleted(live: Live) -> None:
     page = live.page
     page.get_by_text("Parts of the model").click()

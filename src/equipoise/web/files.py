@@ -354,6 +354,14 @@ class Disk:
         """
         text = dumps(model)
         with self.lock:
+            if not os.path.lexists(self.place):
+                raise UsageError(
+                    Note(
+                        "{name}: the file was moved or deleted since it was opened here; download "
+                        "the model to keep it",
+                        name=self.name,
+                    )
+                )
             if self._on_disk() != self.text:
                 raise UsageError(
                     Note(
