@@ -53,9 +53,9 @@ def machine_of(name: str) -> eq.Machine:
         return in_soil()
     kind, _, seed = name.partition(":")
     # What may be changed of it does nothing to what is analysed, and its names need not follow.
-    # Friction, which has laws of its own, is left out.
+    # Friction and resistances, which have laws of their own, are left out.
     actual = make(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
-    return spelled_out(actual.without_friction())
+    return spelled_out(replace(actual.without_friction(), resistances=()))
 
 
 def spelled_out(machine: eq.Machine) -> eq.Machine:

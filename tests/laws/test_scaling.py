@@ -45,15 +45,17 @@ MICRO = Units(2.0**-13, 2.0**-38, 2.0**-6)
 NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
-SCALES = (*FACTORS, "kg/m³", "µg", "ng", "nN m", "nN", "nJ")
+SCALES = (*FACTORS, "kg/m³", "µm", "nm", "µg", "ng", "nN m", "nN", "nJ")
 """Units, and those that only tell what is small."""
-UNIT = re.compile(f"# (?:{'|'.join(sorted(map(re.escape, SCALES), key=len, reverse=True))})\\b")
+UNIT = re.compile(
+    f"(#\\)?) (?:{'|'.join(sorted(map(re.escape, SCALES), key=len, reverse=True))})\\b"
+)
 
 
 def words(text: Any) -> str:
     """A sentence without its numbers, the units that their sizes choose, and materials."""
     named = re.sub("|".join(MATERIALS), "1 kg/m³", str(text))
-    return UNIT.sub("#", NUMBER.sub("#", named))
+    return UNIT.sub(r"\1", NUMBER.sub("#", named))
 
 
 def same_blocks(result: Any, want: Any, tolerance: float) -> None:

@@ -609,7 +609,8 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
         ),
         loads=tuple(
             replace(load, link=body(load.link),
-                    point=None if load.point is None else names(load.point))
+                    point=None if load.point is None else names(load.point),
+                    reaction=None if load.reaction is None else body(load.reaction))
             for load in machine.loads
         ),
         circular_slots=tuple(

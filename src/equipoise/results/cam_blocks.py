@@ -35,7 +35,7 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
     by_name: Mapping[str, CamFigures] = analysis.part_figures[Cam.list_name]
     limited = any(cam.lift_off_speed is not None for cam in by_name.values())
     for name, item in by_name.items():
-        steep = motion.figures(abs(analysis.outputs[f"cams.{name}.pressure_angle"].values))
+        steep = motion.figures(abs(analysis.outputs[f"cams.{name}.pressure_angle"].resolved))
         row: tuple[Cell, ...] = (
             name.replace(" to ", " → "),
             Value(item.least_radius),

@@ -16,6 +16,7 @@ from equipoise.results.analysis import Analysis
 from equipoise.results.blocks import Table
 from equipoise.results.outputs import unit_of
 from support.chosen import DISTINCT, few
+from support.machines import make
 from support.refusals import refused
 
 NAMES = sorted(eq.examples("linkage"))
@@ -297,3 +298,13 @@ def test_an_attribute_that_there_is_not() -> None:
     """It is refused with the sentence of Python, which offers the attribute meant."""
     with pytest.raises(AttributeError, match="'Analysis' object has no attribute 'summry'"):
         _ = bare().summry  # type: ignore[attr-defined]
+
+
+def test_cams_of_a_machine_whose_forces_jump_are_listed() -> None:
+    """Their pressure angles over the crank angles that resolve the jumps, as their forces are."""
+    analysis = eq.analyze(make("camshaft_tappet", 0).machine)
+    assert analysis.resolved is not analysis
+    (table,) = (block for block in analysis.blocks()
+                if isinstance(block, Table) and block.title.startswith("Cams;"))  # fmt: skip
+    assert len(table.rows) == len(analysis.machine.cams)
+    assert max(len(line) for line in table.rows) == len(table.columns)
