@@ -174,6 +174,19 @@ def test_typed_numbers_and_keys(open_file: Open) -> None:
 
 
 @pytest.mark.exhaustive
+def test_curves_of_forces_that_jump_at_the_beginning_go_from_left_to_right(open_file: Open) -> None:
+    """The side before the jump is the end of the cycle."""
+    page = open_file("plunger-pump").page
+    paths = page.locator(".plot .curves path").evaluate_all(
+        "paths => paths.map((path) => path.getAttribute('d'))"
+    )
+    assert paths
+    for path in paths:
+        across = [float(point.partition(" ")[0]) for point in path[1:].split("L")]
+        assert len(across) > 360
+        assert across == sorted(across)
+
+
 def test_it_begins_at_a_crank_angle(open_file: Open) -> None:
     live = open_file("yamashita-1", "--at", "30 deg")
     expect(live.page.locator(".transport .angle")).to_have_text("30.0°")

@@ -75,10 +75,7 @@ export class Plot {
     const y = (value: number) => HIGH - BELOW - share(value, scale) * (HIGH - BELOW - ABOVE);
     const path = (row: Float64Array) =>
       this.machine.shown
-        .map(
-          (at, i) =>
-            `${i ? "L" : "M"}${this.x(this.machine.theta[at] as number).toFixed(1)} ${y(row[at] as number).toFixed(1)}`,
-        )
+        .map((at, i) => `${i ? "L" : "M"}${this.across(i).toFixed(1)} ${y(row[at] as number).toFixed(1)}`)
         .join("");
     this.before.replaceChildren(...old.map((row) => s("path", { d: path(row) })));
     this.lines.replaceChildren(...this.rows.map((row, i) => s("path", { class: ROLES[i] ?? "main", d: path(row) })));
@@ -110,6 +107,13 @@ export class Plot {
       ...marks.map((mark) => text(LEFT - 6, y(mark) + 3.5, "end", format(mark, marks))),
       ...angles.map((degrees) => text(across(degrees), HIGH - 5, degrees === whole ? "end" : "middle", `${degrees}°`)),
     );
+  }
+
+  /** Where a point of curves is: the side before a jump at crank angle 0 is at the end of the cycle. */
+  private across(i: number): number {
+    const { shown, theta, data } = this.machine;
+    const [last, here] = [theta[shown[i - 1] ?? 0] ?? 0, theta[shown[i] as number] as number];
+    return this.x(here < last ? here + 2 * Math.PI * data.turns : here);
   }
 
   /** Show where the crank is. */
